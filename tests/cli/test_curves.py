@@ -70,7 +70,7 @@ def test_curves_that_an_interruption_left_out_are_counted():
     _, *rows = as_table({"curves": each}, "Hz").splitlines()
     assert len(rows) == 4 and rows[1].split()[-2:] == ["NOT", "COMPLETE"]
     assert rows[2] == "n_0 = 3 NOT COMPLETE: interrupted at 3 rad/s"
-    assert rows[3] == "2 more curves NOT COMPLETE: interrupted before it was traced"
+    assert rows[3] == "2 more curves NOT COMPLETE: interrupted before they were traced"
 
 
 def test_what_is_minimised_is_shown_however_small():
@@ -96,9 +96,9 @@ def test_where_a_peak_does_not_stay_the_greatest_motion_that_does_is_shown():
     }
     _, table = as_table({"curves": [one, two]}, "Hz").split("\n\n")
     said, header, *rows = table.splitlines()
-    assert (
-        said
-        == "the greatest motions known to stay, where a peak does not, or may not; others may be greater:"
+    assert said == (
+        "the greatest stable motions found, where a peak is unstable or its stability unknown; others "
+        "may be greater:"
     )
     assert header.split() == ["stable", "u", "at", "Hz", "error", "stable", "v", "at", "Hz", "error"]
     assert [row.split() for row in rows] == [["1.25000", "1.50000", "1.0e-02"]]
@@ -164,9 +164,9 @@ def test_a_range_with_residual_friction_that_is_not_known_is_a_dash_and_says_so(
     for dof, change in (("u", 0.034), ("v", 0.0)):
         one["peak"][dof]["residual_change"] = change
     told = as_table({"curves": [one]}, "Hz").splitlines()
-    assert "3.4 %" in told[1] and told[-1].endswith("may change the peak") and told[0].count("residual") == 1
+    assert "3.4 %" in told[1] and told[-1].endswith("share of it") and told[0].count("residual") == 1
     one["peak"]["u"]["residual_change"] = None
-    assert as_table({"curves": [one]}, "Hz").endswith("may change the peak, - unknown")
+    assert as_table({"curves": [one]}, "Hz").endswith("up to this share of it, - unknown")
 
 
 def test_residual_friction_is_told_of_those_curves_alone_of_which_it_is_known():
@@ -212,7 +212,7 @@ def test_contacts_that_shake_down_are_not_said_to_be_as_they_are_whatever_their_
     alone, shaken = {"curves": [one]} | run, {"curves": [one | {"shakedown_at": 1.25}]} | run
     assert "it changes no peak" in residual_friction(alone) and residual_friction(shaken) == ""
     assert "With less preload" in linear(alone) and "With less preload" not in linear(shaken)
-    assert "would slip at 1.25 Hz" in linear(shaken) and "--method exact --at 1.25 looks there" in linear(
+    assert "would slip at 1.25 Hz" in linear(shaken) and "--method exact --at 1.25 looks for them" in linear(
         shaken
     )
 
@@ -257,8 +257,8 @@ def test_jumps_and_folds_that_nobody_could_see_are_counted():
     one = curve({"u": 1.0}, jumps) | {"no_stable_motion": [[1.3, 1.3001]]}
     one["folds"] = [1.5, 1.4, 1.2, 1.2001, 1.45, 1.4501]
     told = as_table({"curves": [one], "range": [1.0, 2.0]}, "Hz")
-    assert told.count("  up") == 1 and "  down" not in told and "1.50000  1.40000, 4 in hooks" in told
-    assert "hooks: folds in pairs less than 0.001 Hz apart, too near to be seen" in told
+    assert told.count("  up") == 1 and "  down" not in told and "1.50000  1.40000, 4 in close pairs" in told
+    assert "close pairs: folds less than 0.001 Hz apart, too near to be seen in a sweep" in told
     assert "3 jumps too small to be seen: by less than 1 %, or over less than 0.001 Hz without" in told
     jumps[3]["before"]["u"] = 2.0  # across the gap the amplitude doubles, which anyone sees
     seen = as_table({"curves": [one], "range": [1.0, 2.0]}, "Hz")
@@ -326,7 +326,7 @@ def test_where_stability_is_not_told_is_a_table_of_its_own():
         ["1.50000", "1.00000", "0.500000", "down"],
     ]
     said, header, *rows = other.splitlines()
-    assert said.startswith("between these stability is unknown")
+    assert said.startswith("between these frequencies stability is unknown")
     assert "jump" not in header and [row.split() for row in rows] == [
         ["1.20000", "1.30000", "0.700000", "up"],
         ["1.50000", "1.45000", "0.900000", "down"],

@@ -64,12 +64,12 @@ def test_a_level_whose_resonance_is_not_among_the_amplitudes_is_told(fcm):
     done = fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels)
     assert done.code == 0
     assert done.out.splitlines()[3:5] == [
-        "force level 0.001: its resonance lies below amplitude 5",
-        "force level 20: its resonance lies beyond amplitude 30",
+        "force level 0.001: its resonance lies below the modal amplitude 5",
+        "force level 20: its resonance lies beyond the modal amplitude 30",
     ]
     assert done.out.splitlines()[1].count("(level ") == 1 and "(level 1)" in done.out
     several = ("respond", "yang1998", *MODE[2:4], "--level", "5:30", "--harmonics", 1, "--force-level", 20)
-    told = "force level 20: its resonance lies beyond amplitude 30, in 10 of 10 curves"
+    told = "force level 20: its resonance lies beyond the modal amplitude 30, in 10 of 10 curves"
     assert fcm(*several).out.splitlines()[12:] == [told]
     mode = json.loads(fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels, "--json").out)["curves"][0]
     assert [one["level"] for one in mode["mode"]["not_met"]] == [0.001, 20.0]
@@ -92,7 +92,7 @@ def test_the_picture(fcm, result, tmp_path):
     ("args", "said"),
     [
         (["--mode", 1], "--mode needs --level FROM:TO"),
-        (["--mode", 1, "--level", "0:1"], "from more than 0"),
+        (["--mode", 1, "--level", "0:1"], "a --level that begins above 0"),
         (["--mode", 1, "--level", "1:2", "--at", 1.2], "--at is of no use with --mode"),
         (["--mode", 1, "--level", "1:2", "--method", "exact"], "--method is of no use with --mode"),
         (["--mode", 9, "--level", "1:2"], "there is no mode 9; the structure has the modes 1 to 2"),
@@ -116,7 +116,7 @@ def test_what_a_modal_amplitude_is_of_displacements_is_told(fcm):
     shapes = np.array([[0.707, 0.707], [1.0, -0.5]])
     springs = shapes @ np.diag([1.0, 1.0]) @ shapes.T  # k_u along u, k_v along v
     u, v = np.abs(shapes.T @ np.linalg.eigh(np.diag([1.0, 100.0]) + springs)[1][:, 0])
-    assert f"a modal amplitude of 1 is, at the least one followed: u {u:.4g}, v {v:.4g}\n" in done.out
+    assert f"a modal amplitude of 1 means, at the least that was followed: u {u:.4g}, v {v:.4g}\n" in done.out
 
 
 def test_another_file_is_no_mode(fcm, tmp_path):

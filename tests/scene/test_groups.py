@@ -60,9 +60,12 @@ def test_totals_are_shared_by_areas():
 
 def test_without_areas_it_is_said_that_numbers_are_of_each_pair():
     (said,) = (note for note in read().notes if "of each" in note)
-    assert said.startswith('contact "shroud": k_u, k_v and n_0 are those of each of its 2 pairs.')
+    assert said.startswith('contact "shroud": k_u, k_v and n_0 are those of each of 2 pairs.')
     (said,) = (note for note in read([PAIRS | NUMBERS | {"n_0": [5.0, -1.0]}]).notes if "of each" in note)
     assert said.startswith('contact "shroud": k_u and k_v are those of each')
+    two = read([PAIRS | NUMBERS, PAIRS | NUMBERS | {"name": "root", "mu": 0.7}])
+    (said,) = (note for note in two.notes if "of each" in note)
+    assert said.startswith('contacts "shroud" and "root": k_u, k_v and n_0 are those of each of 2 pairs.')
 
 
 def test_a_gap_is_that_of_each_pair():

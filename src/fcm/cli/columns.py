@@ -144,10 +144,23 @@ def number(value: float | None) -> str:
     return "-" if value is None else f"{value:#.6g}"
 
 
-def not_complete(curve: Mapping[str, Any], names: Sequence[str]) -> str:
-    """The line that says of a curve that it is not complete, and why."""
-    given = ", ".join(f"{name} = {value}" for name, value in zip(names, swept(curve), strict=True))
-    return f"{given} {NOT_COMPLETE}: {curve.get('reason') or 'it stopped early'}".lstrip()
+def not_complete(curves: Sequence[Mapping[str, Any]], names: Sequence[str]) -> list[str]:
+    """A line for each reason for which curves are not complete, with the first of them.
+
+    >>> lost = [{"parameters": {"n_0": n}, "complete": False, "reason": "no point"} for n in (1.0, 2.0, 3.0)]
+    >>> not_complete([*lost, lost[0] | {"reason": "interrupted"}, {"complete": True}], ["n_0"])
+    ['n_0 = 1 and 2 more curves NOT COMPLETE: no point', 'n_0 = 1 NOT COMPLETE: interrupted']
+    """
+    reasons: dict[str, list[Mapping[str, Any]]] = {}
+    for curve in curves:
+        if not curve["complete"]:
+            reasons.setdefault(curve.get("reason") or "it stopped early", []).append(curve)
+    lines = []
+    for reason, (first, *others) in reasons.items():
+        given = ", ".join(f"{name} = {value}" for name, value in zip(names, swept(first), strict=True))
+        more = f" and {len(others)} more curve{'s' * (len(others) > 1)}" if others else ""
+        lines.append(f"{given}{more} {NOT_COMPLETE}: {reason}".lstrip())
+    return lines
 
 
 def swept(curve: Mapping[str, Any]) -> list[str]:

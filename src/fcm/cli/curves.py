@@ -30,7 +30,7 @@ from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
-_AT_REST = "0 the degree of freedom does not move, beside rounding"
+_AT_REST = "0 the degree of freedom does not move, but for rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
@@ -46,12 +46,12 @@ _OF_LEVELS = (
     "More --harmonics may tell it"
 )
 _BEYOND = (
-    f"{BEYOND} the error is more than the peak, which these harmonics do not tell. Give more by --harmonics, "
-    "or leave them to --accuracy"
+    f"{BEYOND} the error is more than the peak, so that these harmonics do not suffice. Give more by "
+    "--harmonics, or leave them to --accuracy"
 )
 _EVERY = "degrees of freedom with several peaks, in order of frequency:"
 _RESIDUAL = "residual"  # heads a column of shares
-_OF_RESIDUAL = "residual: up to this share of it the friction that stuck contacts keep may change the peak"
+_OF_RESIDUAL = "residual: the friction that stuck contacts keep may change the peak by up to this share of it"
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
@@ -226,11 +226,12 @@ def _curves(
         ],
     )
     lines = [table.text(last=1 + len(broken))]
-    lines += [not_complete(curve, names) for curve in begun if not curve["complete"]]
+    lines += not_complete(begun, names)
     if left := len(curves) - len(begun):
-        lines.append(f"{left} more curve{'s' * (left > 1)} {NOT_COMPLETE}: {NOT_BEGUN}")
+        why = NOT_BEGUN if left == 1 else NOT_BEGUN.replace("it was", "they were")
+        lines.append(f"{left} more curve{'s' * (left > 1)} {NOT_COMPLETE}: {why}")
     if any(hooks for _, hooks in folds_of.values()):
-        lines.append(f"hooks: folds in pairs less than {least:.2g} {unit} apart, too near to be seen")
+        lines.append(f"close pairs: folds less than {least:.2g} {unit} apart, too near to be seen in a sweep")
     if shown:
         lines.append(f"shown: {shown}")
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
@@ -371,14 +372,14 @@ def _seen_folds(curve: Curve, dofs: list[str], least: float) -> tuple[list[float
 
 
 def _folds(folds: Sequence[float | None], hooks: int = 0) -> str:
-    """All of them, or of many how many there are and between which they lie; and how many are in hooks.
+    """All of them, or of many how many there are and between which they lie; and how many are in close pairs.
 
     >>> _folds([]), _folds([1.0, 2.0]), _folds([1.0, 4.0, 2.0, 3.0, 5.0])
     ('none', '1.00000  2.00000', '5: 1.00000 to 5.00000')
     >>> _folds([1.0, 2.0], 4), _folds([], 2)
-    ('1.00000  2.00000, 4 in hooks', '2 in hooks')
+    ('1.00000  2.00000, 4 in close pairs', '2 in close pairs')
     """
-    narrow = f"{hooks} in hooks" if hooks else ""
+    narrow = f"{hooks} in close pairs" if hooks else ""
     if len(folds) <= SENTENCES.folds:
         every = "  ".join(map(number, folds))
         return ", ".join(filter(None, [every, narrow])) or "none"
@@ -450,12 +451,14 @@ def _of_lower_peaks(summary: Mapping[str, Any]) -> str:
     """That lower peaks of exact curves are points of these, and not sought between them; empty without any.
 
     >>> _of_lower_peaks({"curves": [{"peak": {"u": {}}, "peaks": {"u": [{}, {}]}}], "output": ["u"]})
-    ', at the points; lower peaks are the highest of these, and how much lies between them is not told'
+    ', at the points; lower peaks are the highest of these, and what lies between points is not estimated'
     """
     shown = shown_dofs(summary)
     if not any(len(curve.get("peaks", {}).get(dof, ())) > 1 for curve in summary["curves"] for dof in shown):
         return ""
-    return ", at the points; lower peaks are the highest of these, and how much lies between them is not told"
+    return (
+        ", at the points; lower peaks are the highest of these, and what lies between points is not estimated"
+    )
 
 
 def _amount(error: float) -> str:

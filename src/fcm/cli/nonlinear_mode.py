@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fcm.run import Execution
 
 OF_NO_USE = {  # with --mode, and why
-    "method": "modes are followed by the balance",
+    "method": "modes are followed by harmonic balance",
     "table": "their forces are exact",
     "tolerance": "nothing is left out",
     "keep_all": "nothing is left out",
@@ -42,7 +42,10 @@ def check_options(
             "--mode needs --level FROM:TO, the modal amplitudes over which it is followed."
         )
     if not level[0] > 0.0:
-        raise click.UsageError("--mode needs a --level from more than 0: it is followed in proportion to it.")
+        raise click.UsageError(
+            "--mode needs a --level that begins above 0, as 1e-5:1e-3: amplitudes are followed by their "
+            "ratio."
+        )
     if at is not None:
         raise click.UsageError("--at is of no use with --mode: a mode has a frequency of its own.")
     context = click.get_current_context()
@@ -73,7 +76,7 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
     if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
         told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
-    told += [not_complete(curve, names) for curve in curves if not curve["complete"]]
+    told += not_complete(curves, names)
     lines = "\n".join([table, *filter(None, told)])
     return "\n\n".join(filter(None, [lines, _in_resonance(summary, names, unit)]))
 
@@ -169,4 +172,4 @@ def _of_dofs(summary: Mapping[str, Any]) -> str:
         return ""
     moved, length = first["displacement"], summary.get("units", {}).get("length", "")
     each = (f"{dof} {moved[dof]:.4g} {unit_of(dof, length)}".rstrip() for dof in _shown(summary))
-    return f"a modal amplitude of 1 is, at the least one followed: {', '.join(each)}"
+    return f"a modal amplitude of 1 means, at the least that was followed: {', '.join(each)}"

@@ -11,7 +11,7 @@ import numpy as np
 
 from fcm.model.interface import Interface
 from fcm.model.scene import FloatArray
-from fcm.scene.errors import choices, counted, kind, quoted
+from fcm.scene.errors import choices, counted, kind, quoted, several
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
@@ -290,17 +290,18 @@ def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
     for draft in drafts:
         if "group" in draft:
             groups.setdefault(draft["group"], []).append(draft)
-    said = []
+    said: dict[str, list[str]] = {}  # the names of the contacts of which a sentence is said
     for name, pairs in groups.items():
         if share := pairs[0]["share"]:
             totals = _are(list(share), "totals", "a total")
-            said.append(
-                f"contact {quoted(name)}: {totals}, which its {len(pairs)} pairs share by their areas"
-            )
+            said.setdefault(f"{totals}, which {len(pairs)} pairs share by their areas", []).append(name)
         elif len(pairs) > 1 and (same := [key for key in SHARED if _same(pairs, key)]):
-            each = f"{_are(same, 'those', 'that')} of each of its {len(pairs)} pairs"
-            said.append(f"contact {quoted(name)}: {each}. With areas one number would be a total")
-    return said
+            each = f"{_are(same, 'those', 'that')} of each of {len(pairs)} pairs"
+            said.setdefault(f"{each}. With areas one number would be a total", []).append(name)
+    return [
+        f"{'contact' if len(names) == 1 else 'contacts'} {several(names)}: {text}"
+        for text, names in said.items()
+    ]
 
 
 def _same(pairs: Sequence[Mapping[str, Any]], key: str) -> bool:
