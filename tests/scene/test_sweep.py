@@ -154,6 +154,7 @@ REFUSED = [
     ("contact.shroud.n0", [1], 'did you mean "contact.shroud.n_0"?'),
     ("contact.7.n_0", [1], 'there is no such number in the scene; contacts are "shroud"'),
     ("contact.shroud", [1], "there is no such number"),
+    ("mu", [1], 'there is no such number in the scene; there are "contact.shroud.mu", "contact.damper.mu"'),
     ("contact.shroud.name", [1], "there is no such number"),
     ("modal.damping.2", [1], "there is no such number"),
     ("modal.damping.99999999999999999999", [1], "there is no such number"),

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Address
-from fcm.scene.errors import Mistakes, choices, nearest, quoted
+from fcm.scene.errors import Mistakes, choices, nearest, quoted, suggestion
+from fcm.scene.options import MESSAGES
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
@@ -46,7 +47,7 @@ class Addresses:
         if not self._excused(key, path, mistakes):
             what = "there is no such number in the scene"
             hint = self._forces_meant() if key == LEVEL else self._contact_meant(key)
-            mistakes.add(path, what + hint, *(() if hint else (key, self.numbers)))
+            mistakes.add(path, what + (hint or suggestion(key, self.numbers) or self._those_there(key)))
         return ()
 
     def _forces_meant(self) -> str:
@@ -67,6 +68,15 @@ class Addresses:
         if close := nearest(label, names):
             return f"; did you mean {quoted(f'contact.{close}.{field}')}?"
         return f"; contacts are {choices(names)}, or * for all"
+
+    def _those_there(self, key: str) -> str:
+        """The numbers that end as a key path does, or else those of contacts, by the names of these."""
+        every = list({address: one for one, address in self.numbers.items()}.values())
+        last = f".{key.rpartition('.')[2]}"
+        same = [one for one in every if one.endswith(last)]
+        found = same or [one for one in every if one.startswith("contact.")] or every
+        there = "there is" if len(found) == 1 else "there are"
+        return f"; {there} {choices(found, MESSAGES.groups)}" if found else ""
 
     def _matching(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
         """The numbers of all contacts or forces whose names match a key path with a *; of all modes."""
