@@ -97,7 +97,7 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
         {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "exact_motion": InTime.RING.value}
     )
     assert "--method" not in ring and ring.endswith(
-        "More harmonics may have one"
+        "More harmonics may find one"
     )  # the exact motion of a ring is not visited
 
 
@@ -105,7 +105,10 @@ def test_stretches_too_narrow_to_be_seen_are_counted():
     run = {"frequency_unit": "Hz", "method": "table", "range": [1.0, 6.0], **COMPUTED}
     hook, wide = [2.0, 2.001], [4.0, 4.3]
     said = nothing_stable({"curves": [{"parameters": {}, "no_stable_motion": [hook]}], **run})
-    assert said == "no stable motion was found in 1 range narrower than 0.005 Hz, which no one sees"
+    assert (
+        said
+        == "no stable motion was found in 1 range narrower than 0.005 Hz, too narrow to be seen in a sweep"
+    )
     said = nothing_stable({"curves": [{"parameters": {}, "no_stable_motion": [hook, wide, hook]}], **run})
     assert "found between 4 and 4.3 Hz and in 2 ranges narrower than 0.005 Hz, so no steady" in said
 

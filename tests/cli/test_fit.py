@@ -85,7 +85,7 @@ def test_a_number_that_the_data_do_not_tell_is_said_with_what_would_tell_it(meas
     done = called("respond", path)
     assert done.code == 0, done.err
     assert "contact.shroud.mu has no effect on these data" in done.err
-    advice = r'to tell contact.shroud.mu: a response at "[uv]" with forces at a level of (3|10) would tell it'
+    advice = r'contact.shroud.mu: a response at "[uv]" with forces at a level of (3|10) would determine it'
     assert re.search(advice, done.err)
 
 
@@ -130,7 +130,7 @@ def test_a_fit_interrupted_anywhere_tells_the_best_so_far_and_is_gone_on_with(me
         assert done.code == 3 and "continue with --resume" in done.err
         found = json.loads(done.out)["fitted"]
         assert found["interrupted"] and not found["final"]
-        assert "those told are the best so far" in done.err
+        assert "those shown are the best so far" in done.err
         with xarray.open_dataset(out) as data:
             assert data.fitted_value.values == pytest.approx(
                 [one["value"] for one in found["numbers"].values()]

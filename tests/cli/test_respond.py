@@ -258,15 +258,15 @@ def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path):
     assert kept.endswith("kept in a.nc.unfinished: continue with --resume")
     assert error == "fcm: error: a.nc: File too large"
     done = fcm("respond", scene, "-o", "a.nc", "--resume", place=nowhere)
-    assert done.code == 0 and "afresh" not in done.err
+    assert done.code == 0 and "begins anew" not in done.err
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
 def test_where_nothing_is_kept_to_go_on_with_it_says_that_it_begins_afresh(fcm, scene):
-    fresh = "a.nc: nothing of an unfinished run is kept: begun afresh"
+    fresh = "a.nc: no unfinished run is kept: this one begins anew"
     assert fresh in fcm("respond", scene, "-o", "a.nc", "--resume").err.splitlines()
     assert fresh in fcm("respond", scene, "-o", "a.nc", "--resume").err  # of a run that was finished
-    assert "afresh" not in fcm("respond", scene, "-o", "a.nc").err
+    assert "begins anew" not in fcm("respond", scene, "-o", "a.nc").err
 
 
 def test_an_interrupted_run_says_so_and_leaves_nothing(program, scene, tmp_path):

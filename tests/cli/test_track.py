@@ -213,7 +213,7 @@ def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     assert (known == 0.0).sum() == told.count(None) and (known == 1.0).sum() + told.count(None) == len(told)
     assert error[known == 1.0].tolist() == [one for one in told if one is not None]
     assert np.isnan(error[known != 1.0]).all()
-    assert "cannot tell" in fcm("respond", "yang1998", *FOLDS, "4", "--to", "10").out
+    assert "unknown" in fcm("respond", "yang1998", *FOLDS, "4", "--to", "10").out
 
 
 @pytest.mark.slow
@@ -242,7 +242,7 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
     ("args", "said"),
     [
         (["--over", "contact.shroud.n_0"], "--over needs --track"),
-        (["--track", "folds"], "--track needs --over and --from and --to"),
+        (["--track", "folds"], "--track needs --over, --from, --to"),
         (["--track", "peaks", *FOLDS, "4", "--to", "5"], "--track is given 2 times (peaks, folds)"),
         ([*FOLDS, "5", "--to", "4"], "--from 5 --to 4: contact.shroud.n_0 must rise; swap them: 4 to 5"),
         ([*FOLDS, "5", "--to", "5.0000000000001"], "too narrow"),

@@ -372,7 +372,7 @@ REFUSED = {
     "--mesh is of no use without": ("--mesh", BEAM / "beam.inp"),
     "--motion-at needs one of": ("--motion-at", 4.0),
     "give -o FILE": ("--modal-amplitudes",),
-    "--method exact: it is of motions by their harmonics": ("--export", "a.h5", "--method", "exact"),
+    "--method exact: it writes motions by their harmonics": ("--export", "a.h5", "--method", "exact"),
     "give the forces that amplitude": ("--contact-forces", "f.csv", "--level", "0:2", "--at", 1.2),
     "--motion-at 2: the range is 0.1 to 1 (modal amplitude)": (
         *("--contact-forces", "f.csv", "--mode", 1, "--level", "0.1:1", "--motion-at", 2),
@@ -390,7 +390,7 @@ REFUSED = {
         5,
     ),
     "--peaks-only": ("--contact-forces", "f.csv", "--peaks-only"),
-    "no row of the structure names a node": ("--export", "a.vtu", "--mesh", BEAM / "beam.inp"),
+    "no degree of freedom is named by a node": ("--export", "a.vtu", "--mesh", BEAM / "beam.inp"),
     "--motion-at 9: the range is": ("--contact-forces", "f.csv", "--motion-at", 9.0),
     "has to end in .vtu or": ("--export", "a.txt"),
 }
@@ -398,7 +398,7 @@ REFUSED = {
 
 def test_a_universal_file_needs_rows_of_nodes(tmp_path):
     done = called("respond", "yang1998-n5", "--export", tmp_path / "a.uff")
-    assert done.code == 2 and "no row of the structure names a node" in done.err
+    assert done.code == 2 and "no degree of freedom is named by a node" in done.err
 
 
 @pytest.mark.parametrize("said", REFUSED)

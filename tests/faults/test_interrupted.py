@@ -116,8 +116,7 @@ def test_a_part_of_the_only_phase_is_written_and_no_work_is_kept(program):
     stopped = program("respond", "one.toml", "-o", "a.nc", before=measured)
     assert stopped.returncode == 3 and "NOT COMPLETE: interrupted" in stopped.out
     assert (
-        "fcm: warning: interrupted; nothing is kept to go on from: --resume skips finished curves"
-        in stopped.err
+        "fcm: warning: interrupted; no finished curve is kept, so --resume would begin anew\n" in stopped.err
     )
     assert "fcm: ending, which may take some seconds\n" in stopped.err
     assert begun(program) == 4 and program.files == ["a.nc", "one.toml", "sweep.toml"]

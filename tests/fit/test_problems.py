@@ -32,12 +32,12 @@ def test_data_that_are_met_are_not_named(off):
 def test_data_that_the_model_misses_are_named():
     """A fit at a thousand times the frequency said nothing of it."""
     (said,) = fitted(0.25).problems()
-    assert said.startswith("a.csv: the model does not meet these data, from which it is off by 25 %")
+    assert said.startswith("a.csv: the model is off from these data by 25 %")
 
 
 def test_so_is_the_damping_of_a_backbone():
     (said,) = fitted(0.01, damping=0.02, off_damping=0.01).problems()
-    assert "is off by 50 %" in said
+    assert "is off from these data by 50 %" in said
 
 
 def test_numbers_that_are_no_end_are_said():
@@ -61,12 +61,13 @@ def test_numbers_that_are_hardly_told_are_said_once_and_their_product():
         alike=((0, 1, 1.0),),
     )
     assert hardly.problems() == [
-        "contact.c.mu and contact.c.n_0 are hardly told by these data: their standard errors are 150 % and "
-        "many times as large",
-        "contact.c.mu and contact.c.n_0 are not told apart: the data tell contact.c.mu * contact.c.n_0 alone",
+        "contact.c.mu and contact.c.n_0 are hardly determined by these data: their standard errors are 150 "
+        "% and many times as large",
+        "contact.c.mu and contact.c.n_0 cannot be told apart: these data determine "
+        "contact.c.mu * contact.c.n_0 alone",
     ]
     (said,) = replace(hardly, untold=np.array([1.0, 0.0]), alike=()).problems()
-    assert said == "contact.c.mu is hardly told by these data: its standard error is 150 %"
+    assert said == "contact.c.mu is hardly determined by these data: its standard error is 150 %"
 
 
 def misfit_of(residual):

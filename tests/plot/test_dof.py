@@ -21,7 +21,7 @@ def test_of_two_the_one_that_is_written_so():
 
 
 def test_what_is_not_there_is_said_with_what_is():
-    with pytest.raises(PlotError, match="no degree of freedom 'tpi'; the file has tip, 2x; did you mean"):
+    with pytest.raises(PlotError, match='no degree of freedom "tpi"; the file has "tip", "2x"; did you mean'):
         column_of(("tip", "2x"), "tpi")
-    with pytest.raises(PlotError, match=r"11x, \.\.\. \(30 in all\)"):
+    with pytest.raises(PlotError, match=r'"11x", \.\.\. \(30 in all\)'):
         column_of([f"{node}x" for node in range(30)], "2y")

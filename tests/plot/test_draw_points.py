@@ -76,7 +76,7 @@ def test_a_traced_curve_is_marked_by_circles():
 
 @pytest.mark.parametrize(
     ("points", "said"),
-    [(swept(curve(3.0)), "= 3"), (swept(curve(1.0), dofs=("x", "y")), "no degree of freedom 'u'")],
+    [(swept(curve(3.0)), "= 3"), (swept(curve(1.0), dofs=("x", "y")), 'no degree of freedom "u"')],
 )
 def test_points_of_something_else_are_refused(points, said):
     with pytest.raises(PlotError, match=said):

@@ -178,7 +178,7 @@ def test_colours_go_from_dark_to_light():
 
 
 def test_what_cannot_be_drawn_is_said():
-    with pytest.raises(PlotError, match="no degree of freedom 'w'; the file has u, v"):
+    with pytest.raises(PlotError, match='no degree of freedom "w"; the file has "u", "v"'):
         draw_response(three(), dof="w")
     with pytest.raises(PlotError, match="no point"):
         draw_response(response(DrawnCurve({}, np.empty(0), np.empty((0, 2)))))
@@ -382,5 +382,5 @@ def test_a_backbone_is_drawn_within_the_axes_of_the_curves():
             response(resonance(9.0, 1.2, 5.0)),
             backbone=replace(modes, curves=(replace(mode, frequency=mode.frequency + 90),)),
         )
-    with pytest.raises(PlotError, match="the modes have v, w"):
+    with pytest.raises(PlotError, match='the modes have "v", "w"'):
         draw_response(drawn, backbone=replace(modes, dofs=("v", "w")))

@@ -136,7 +136,7 @@ def test_windows_that_show_nothing(path, window):
 
 
 def test_files_that_hold_no_motion(path):
-    with pytest.raises(PlotError, match="no degree of freedom 'x'; the file has tip, root"):
+    with pytest.raises(PlotError, match='no degree of freedom "x"; the file has "tip", "root"'):
         read_history(path, "x")
     with netCDF4.Dataset(path, "a") as data:
         for name in ("cycle_least", "displacement"):

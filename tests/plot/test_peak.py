@@ -172,7 +172,7 @@ def test_decades_of_positive_values_are_logarithmic():
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        ({"dof": "w"}, "no degree of freedom 'w'; the file has u, v"),
+        ({"dof": "w"}, 'no degree of freedom "w"; the file has "u", "v"'),
         ({"against": "x"}, '"x" was not swept; the file has "contact.shroud.n_0"'),
     ],
 )

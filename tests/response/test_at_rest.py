@@ -117,7 +117,7 @@ def test_nothing_is_said_of_what_does_not_move(fcm, tmp_path, options):
     assert done.code == 0, done.err
     assert "may rise further" not in done.out and "not unique" not in done.err and "tip_y" not in done.err
     if "--mode" not in options:
-        assert "0 the degree of freedom does not move, beside rounding" in done.out
+        assert "0 the degree of freedom does not move, but for rounding" in done.out
 
 
 def test_small_motions_that_are_known_stay(fcm, tmp_path):
@@ -167,4 +167,4 @@ def test_nothing_is_chosen_by_rounding(fcm, tmp_path, what):
     (tmp_path / "s.toml").write_text(SCENES["slips"][0] + aim)
     done = fcm("respond", "s.toml")
     assert done.code == 2 and done.out == ""
-    assert "optimum: tip_y does not move, beside rounding: no force reaches it" in done.err
+    assert "optimum: tip_y does not move, but for rounding: no force reaches it" in done.err

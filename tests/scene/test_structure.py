@@ -421,7 +421,7 @@ def test_a_damping_matrix_that_leaves_modes_undamped():
 
 def test_a_loss_factor_is_half_of_it_at_each_resonance():
     scene = read(damping={"loss_factor": 0.02})
-    assert any("a loss factor is taken as half of it for damping ratio" in note for note in scene.notes)
+    assert any("half the loss factor is taken as damping ratio" in note for note in scene.notes)
     for omega in EXACT:
         hysteretic = np.linalg.inv(K * (1 + 0.02j) - omega**2 * M)[2, 2]
         assert abs(answer(scene.modal, omega)[2, 2]) == pytest.approx(abs(hysteretic), rel=5e-3)

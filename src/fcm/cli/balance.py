@@ -85,7 +85,7 @@ def check_level(
         )
     if method == "exact":
         raise click.UsageError(
-            "--level is of no use with --method exact: levels are followed by the balance."
+            "--level is of no use with --method exact: levels are followed by harmonic balance."
         )
     from fcm.response.level import level_fault
 

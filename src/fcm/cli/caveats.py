@@ -73,17 +73,17 @@ def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
     """That contacts which stick would slip if they began unstressed, so that there may be other motions."""
     unit = summary["frequency_unit"]
     how = _how(summary).replace("--at F", f"--at {at:.5g}")
-    looks = f". {how} looks there" if how else ""
+    looks = f". {how} looks for them" if how else ""
     return (
-        f"One that began unstressed would slip at {at:.5g} {unit}: the friction force that slip leaves "
-        f"holds it, and changes normal loads. Motions in which it slips on may exist, too{looks}"
+        f"Contacts have shaken down: one that began unstressed would slip at {at:.5g} {unit}, and the "
+        f"friction force that this leaves then holds it. Motions in which it slips on may exist, too{looks}"
     )
 
 
 def branches_uncertain(summary: Mapping[str, Any]) -> str:
     """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
     what = "other branches may be missing at {}: there the level of the forces was not followed to its end"
-    helps = f"{_BY_LEVEL} {{}} looks there: a branch has amplitudes at the level 1 that the curve has not"
+    helps = f"{_BY_LEVEL} {{}} looks there: amplitudes at the level 1 that the curve lacks are such a branch"
     return _may_be_missing(summary, "branches_unsure_at", what, helps)
 
 
@@ -150,9 +150,9 @@ def not_confirmed(summary: Mapping[str, Any]) -> str:
 
     most = f"{100.0 * STABILITY.confirmation.max_fraction_of_many:.0f} %"
     return (
-        f"at {count} points stability is unknown. Of many contacts a motion with more harmonics takes long, "
-        f"and was looked for at {most} of the points at most. With more --harmonics, or a narrower range, "
-        "fewer are needed"
+        f"at {count} points stability is unknown. With many contacts a motion with more harmonics takes "
+        f"long, so it was looked for at {most} of the points at most. More --harmonics, or a narrower range, "
+        "leave fewer points unknown"
     )
 
 
@@ -226,7 +226,7 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     narrow = sum(map(len, every.values())) - sum(map(len, wide.values()))
     hooks = f"{narrow} range{'s' * (narrow > 1)} narrower than {least:.2g} {unit}"
     if not wide:
-        return f"no stable motion was found in {hooks}, which no one sees" if narrow else ""
+        return f"no stable motion was found in {hooks}, too narrow to be seen in a sweep" if narrow else ""
     found, shown = [curves[i] for i in wide], next(iter(wide.values()))
     widest = sorted(_widest_first(shown)[: SENTENCES.stretches])
     ways = ", ".join(_between(*ends) for ends in widest)
@@ -234,7 +234,7 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     more += f" and in {hooks}" if narrow else ""
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
-    shows = f"{how} shows the motion there" if (how := _how(summary)) else "More harmonics may have one"
+    shows = f"{how} shows the motion there" if (how := _how(summary)) else "More harmonics may find one"
     return (
         f"no stable motion was found {ways} {unit}{more}{which}, so no steady amplitude is known there. The "
         f"motion repeats after several periods or never, or is on a branch that was not found{other}."
@@ -290,7 +290,7 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     if how:
         tells += f": {how}{', at the level 1,' if of_levels else ''} tells how far the motions range"
     elif any("mode" in curve for curve in summary["curves"]):
-        tells += ": the response, without --mode, tells it of its peaks"
+        tells += ": a run without --mode estimates it at peaks"
     return f"at {points} the motion may be one of many. {tells}"
 
 

@@ -71,7 +71,7 @@ def angle(text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise click.BadParameter(f"{text!r} is no angle; it is a number of radians, or of degrees as 15deg.")
+        raise click.BadParameter(f"{text!r} is no angle: give a number of radians, or degrees as 15deg.")
     return math.radians(number) if text.endswith("deg") else number
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fcm.results.result import Response
 
 UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
-_MISTUNED = "a mistuned ring has no mesh: that is of one sector; -o FILE has the displacements of all sectors"
+_MISTUNED = "it writes one sector, and those of a mistuned ring differ; -o FILE has the displacements of all"
 _RING = (
     "a ring's sector moves in modes that travel around it; its contact forces alone are exported "
     "(--contact-forces), and -o FILE has its displacements"
@@ -80,7 +80,7 @@ def check_options(asked: Asked) -> None:
     others = {
         "--method exact": (
             asked.method == "exact",
-            "it is of motions by their harmonics, which the balance has; leave --method out",
+            "it writes motions by their harmonics, which harmonic balance has; leave --method out",
         ),
         "--level": (
             asked.level is not None and asked.mode is None,

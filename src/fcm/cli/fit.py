@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 def check_scene(scene: Scene, asked: Asked) -> None:
     """A usage error if a scene with a [fit] is asked for what has no meaning with it."""
     if asked.method == "exact":
-        raise click.UsageError("--method exact is of no use with [fit]: it is the balance that is fitted.")
+        raise click.UsageError(
+            "--method exact is of no use with [fit]: numbers are fitted by harmonic balance."
+        )
     given = {
         "--track": asked.track, "--mode": asked.mode, "--level": asked.level, "--at": asked.at,
         "--sensitivity": asked.sensitivity,
@@ -98,8 +100,8 @@ def _searches(found: Mapping[str, Any]) -> str:
         points = "all" if one["finished"] else "some"
         rows.append([str(k), points, f"{one['cost']:.3g}", *ends, ranges(one["harmonics"])])
     note = (
-        "cost: half the sum of the squares of the distances in units of the errors; of all points, with the "
-        "errors at the numbers told"
+        "cost: half the sum of the squares of the distances in units of the errors, of all points, with the "
+        "errors at the numbers found"
     )
     return f"{aligned(rows, left=1)}\n{note}"
 
@@ -107,7 +109,7 @@ def _searches(found: Mapping[str, Any]) -> str:
 def caveats(result: Mapping[str, Any]) -> list[str]:
     """What of the numbers is not told, and what would tell it."""
     found = result.get("fitted")
-    return [] if found is None else [*found["problems"], *(f"to tell {one}" for one in found["advice"])]
+    return [] if found is None else [*found["problems"], *found["advice"]]
 
 
 def incomplete(result: Mapping[str, Any]) -> str:
@@ -117,4 +119,4 @@ def incomplete(result: Mapping[str, Any]) -> str:
         return ""
     if found["final"]:
         return "interrupted before the response with the numbers found was traced"
-    return "interrupted before the numbers were found: those told are the best so far"
+    return "interrupted before the numbers were found: those shown are the best so far"

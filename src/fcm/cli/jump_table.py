@@ -98,7 +98,10 @@ def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
             rows.append((swept(curve), [_stays(one) for one in peaks], list[str]()))
     if not rows:
         return ""
-    said = "the greatest motions known to stay, where a peak does not, or may not; others may be greater:"
+    said = (
+        "the greatest stable motions found, where a peak is unstable or its stability unknown; others may "
+        "be greater:"
+    )
     return f"{said}\n{DofTable(names, dofs, ['stable {}', f'at {unit}', 'error'], [], rows).text(last=0)}"
 
 
@@ -137,7 +140,7 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
         return said if narrow else ""
     table = DofTable([*names, f"from {unit}", "to"], dofs, ["{} there"], ["sweep"], cells)
-    said = "between these stability is unknown, and a sweep may jump; more harmonics may tell:"
+    said = "between these frequencies stability is unknown, and a sweep may jump; more harmonics may tell:"
     more = f"\nand in {narrow} more {windows}" if narrow else ""
     return f"{said}\n{table.text(last=1)}{more}"
 

@@ -62,7 +62,7 @@ def _harmonics(
     found: dict[tuple[str, int], Harmonic] = {}
     for motion, order, amplitude, phase in values:
         if not (math.isfinite(amplitude) and amplitude >= 0.0):
-            raise click.BadParameter(f"{amplitude:g} is no amplitude; it is a number of at least 0.")
+            raise click.BadParameter(f"{amplitude:g} is no amplitude: give a number of at least 0.")
         if (motion, order) in found:
             raise click.BadParameter(f"harmonic {order} of {motion} is given twice.")
         found[motion, order] = Harmonic(motion, order, amplitude, angle(phase))

@@ -37,7 +37,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     click.echo(json.dumps(found, indent=2, allow_nan=False) if to_json else as_table(found))
     if not to_json:
         if any(share is None for mode in found["modes"] for share in mode["participation"].values()):
-            messages.info("- no share: there rigid-body modes yield to a static load without end")
+            messages.info("- no share: under a static load there the rigid-body modes move without limit")
         count, shown = len(found["modes"][0]["participation"]), len(_shown(found))
         if shown < count:
             messages.info(f"shown are {shown} of {count} directions of contacts and forces: --json has all")

@@ -57,7 +57,7 @@ class Outputs:
                 self.checkpoint = held.enter_context(Checkpoint(unfinished(anchor), resume))
             held.enter_context(alone(files[1:]))
             if resume and not self.checkpoint.resumable:
-                self.messages.info(f"{plain(anchor)}: nothing of an unfinished run is kept: begun afresh")
+                self.messages.info(f"{plain(anchor)}: no unfinished run is kept: this one begins anew")
             remove_stale(real(anchor))
             try:
                 yield self.checkpoint
@@ -82,8 +82,9 @@ class Outputs:
         if response.interrupted:
             self._say_kept(
                 "interrupted; what is finished is kept",
-                "interrupted; nothing is kept to go on from: --resume skips finished curves, and begins "
-                "others anew",
+                "interrupted; no finished curve is kept, so --resume would begin anew"
+                if self.checkpoint is not None
+                else "interrupted; nothing is kept without -o FILE, with which --resume continues",
             )
         elif self.checkpoint is not None:
             for path in self.checkpoint.done():

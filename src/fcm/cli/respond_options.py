@@ -86,17 +86,19 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table."),
     click.option(
         "--method", type=click.Choice(["table", "closed-form", "exact"]), default="table", show_default=True,
-        help="Harmonic balance in closed form, with the errors of a table told or without; or exact periodic "
-        "solutions.",
+        help=(
+            "table and closed-form: harmonic balance, with or without the error of a table of its "
+            "coefficients. exact: exact periodic solutions."
+        ),
     ),
     click.option(
         "--harmonics", metavar="H", callback=balance.harmonics,
-        help="Harmonics of the balance: up to a number from 1 to 50, or some such as 1,2,3,9 or 1-3,9.  "
+        help="Harmonics that are balanced: up to a number from 1 to 50, or some such as 1,2,3,9 or 1-3,9.  "
         "[default: the scene's, or as --accuracy]",
     ),
     click.option(
         "--accuracy", metavar="E", callback=balance.accuracy,
-        help="As many harmonics as it takes for greatest peaks and folds that are right to this, relative.  "
+        help="Relative error that the greatest peaks and folds may have: as many harmonics as that takes.  "
         "[default: the scene's, or 0.01]",
     ),
     click.option(
@@ -125,7 +127,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     track_options,
     click.option(
         "--only", type=click.Choice(["peaks"]),
-        help="Peaks, folds and jumps alone, near those of the balance. With --method exact.",
+        help="Peaks, folds and jumps alone, near those of harmonic balance. With --method exact.",
     ),
     click.option(
         "--periods", type=click.Choice([1, 2, 4, 8]), default=1, show_default=True,
@@ -145,11 +147,14 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option(
         "--cluster", metavar="ADDRESS",
-        help="Instead, the workers of the dask.distributed scheduler there, as in tcp://127.0.0.1:8786.",
+        help=(
+            "Instead of processes, the workers of the dask.distributed scheduler there, as in "
+            "tcp://127.0.0.1:8786."
+        ),
     ),
     click.option(
         "--time-limit", type=float, metavar="SECONDS", callback=seconds,
-        help="Stop after so long, and keep what is finished, as Ctrl-C does; see --resume.",
+        help="Stop after this time, and keep what is finished, as Ctrl-C does; see --resume.",
     ),
     click.option(
         "--resume", is_flag=True,
@@ -159,7 +164,8 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option(
         "--leave-out-tolerance", "tolerance", type=FiniteRange(min=0.0), default=1e-5, show_default=True,
-        metavar="X", help="Greatest relative change of the response by what is left out.",
+        metavar="X",
+        help="What is left out, as modes far above the range, may change the response by this, relative.",
     ),
     click.option(
         "--peaks-only", is_flag=True, help="Write peaks, folds and errors of each curve, not its points."
@@ -168,7 +174,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
         "--sensitivity", is_flag=True,
         help="Derivatives of every peak, its height and its frequency, by the numbers of the scene.",
     ),
-    click.option("--keep-all", is_flag=True, help="Leave nothing out."),
+    click.option("--keep-all", is_flag=True, help="Leave nothing out, as modes far above the range."),
     largest_file_option,
     about_scenes,
     click.option(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli.columns import aligned, number, stopped_early, swept
+from fcm.cli.columns import aligned, number, share_of, stopped_early, swept
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.rotational_dofs import MOST_DOFS
@@ -73,6 +73,9 @@ def write_csv(response: Response, path: Path) -> None:
         write_csv(response.histories, path)
 
 
+_NOT_SETTLED = "settled, no: by this share the amplitudes still change, estimated. More cycles settle them"
+
+
 def as_table(histories: Sequence[Summary], unit: str) -> str:
     """One line for each phase of each curve: amplitudes, states, whether the motion has settled."""
     from fcm.plot.labels import short_names
@@ -85,7 +88,13 @@ def as_table(histories: Sequence[Summary], unit: str) -> str:
     amplitudes = [f"amplitude {dof}" for dof in dofs]
     header = [*names, "phase", unit, "cycles", *amplitudes, "transitions", *contacts, "settled", ""]
     rows = [row for one in histories for row in _rows(one, dofs, contacts)]
-    return aligned([header, *rows], left=len(contacts) + 2)
+    table = aligned([header, *rows], left=len(contacts) + 2)
+    going = any(
+        phase["unsettled"] is not None and not phase["settled"]
+        for one in histories
+        for phase in one["phases"]
+    )
+    return f"{table}\n{_NOT_SETTLED}" if going else table
 
 
 def _rows(one: Summary, dofs: list[str], contacts: list[str]) -> list[list[str]]:
@@ -111,7 +120,7 @@ def _rows(one: Summary, dofs: list[str], contacts: list[str]) -> list[list[str]]
 
 def _settled(phase: Mapping[str, Any]) -> str:
     left = phase["unsettled"]
-    return "yes" if phase["settled"] else "no" if left is None else f"no, by {left:.1g}"
+    return "yes" if phase["settled"] else "no" if left is None else f"no, by {share_of(left)}"
 
 
 def cost_and_error(histories: Sequence[Summary]) -> str:

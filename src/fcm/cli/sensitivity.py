@@ -16,7 +16,7 @@ def check_options(wanted: bool, method: str, level: object, mode: int | None, pe
     """A usage error if --sensitivity is given with what has no peaks of a balance."""
     if wanted and method == "exact":
         raise click.UsageError(
-            "--sensitivity is of no use with --method exact: it is of the balance's peaks."
+            "--sensitivity is of no use with --method exact: it is of the peaks of harmonic balance."
         )
     if wanted and (level is not None or mode is not None):
         option = "--level" if mode is None else "--mode"

@@ -70,8 +70,8 @@ def track_options(command: Any) -> Any:
             "--over", metavar="KEY", multiple=True, callback=_only_one,
             help="With --track: the number, as contact.NAME.n_0 or level.",
         ),
-        click.option("--from", "low", type=float, metavar="X", help="Where it begins, with --track."),
-        click.option("--to", "high", type=float, metavar="X", help="Where it ends, with --track."),
+        click.option("--from", "low", type=float, metavar="X", help="Where that number begins, for --track."),
+        click.option("--to", "high", type=float, metavar="X", help="Where that number ends, for --track."),
     ]  # fmt: skip
     for option in reversed(options):
         command = option(command)
@@ -90,10 +90,10 @@ def check_options(
         return
     missing = [name for name, value in rest.items() if value is None]
     if missing:
-        raise click.UsageError(f"--track needs {' and '.join(missing)}.")
+        raise click.UsageError(f"--track needs {', '.join(missing)}.")
     if method == "exact":
         raise click.UsageError(
-            "--track is of no use with --method exact: it is the balance that is followed."
+            "--track is of no use with --method exact: it follows solutions of harmonic balance."
         )
     context = click.get_current_context()
     for name, why in OF_NO_USE.items():
@@ -135,7 +135,7 @@ def check_scene(scene: Scene, method: str, other: bool) -> None:
     """A usage error if a scene with an [optimum] is asked for what has no meaning with it."""
     if method == "exact":
         raise click.UsageError(
-            "--method exact is of no use with [optimum]: it is the balance that is followed."
+            "--method exact is of no use with [optimum]: its peaks are followed by harmonic balance."
         )
     if scene.schedule or other:
         what = "[[schedule]]" if scene.schedule else "--level"
@@ -303,7 +303,7 @@ def _errors(tracked: Mapping[str, Any], unit: str) -> str:
     for curve in tracked["curves"]:
         for one in curve["errors"]:
             told = one["error"] is not None
-            error = short(one["error"]) if told else "cannot tell"
+            error = short(one["error"]) if told else "unknown"
             of_number = short(one["error_of_number"]) if told and "error_of_number" in one else ""
             where = [f"{one[key]:.6g}" for key in ("number", "frequency")]
             errors = [error, of_number] if turned else [error]

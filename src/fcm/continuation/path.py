@@ -22,8 +22,8 @@ class Status(Enum):
     STALLED = "no further point could be found. Try a smaller --max-step or another range"
     UNBOUNDED = "the amplitude grows without limit, at a resonance that hardly anything damps; add damping"
     TOO_LONG = "the curve did not leave the range within the number of steps allowed; try a larger --max-step"
-    AROUND = "the curve was lost to a closed one, and went around that; try a smaller --max-step"
-    REVERSED = "the curve goes back on itself at a corner, by short steps, too"
+    AROUND = "a step left the curve for a closed one, and went around that; try a smaller --max-step"
+    REVERSED = "at a corner the curve goes back on itself, even by short steps"
     EVENT = "the curve came to an event at which it was to end"
     INTERRUPTED = "interrupted"
 

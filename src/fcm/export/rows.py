@@ -94,8 +94,8 @@ def check_nodes(rows: Rows) -> None:
     """Raise ExportError where no row is of a node."""
     if not rows.nodes.size:
         raise ExportError(
-            f"no row of the structure names a node and a direction, as 40x does; its first are "
-            f"{choices(rows.names[:3])}: give their names as dofs"
+            'no degree of freedom is named by a node and a direction, as "40x"; the first are '
+            f"{choices(rows.names[:3])}. Name them so in dofs"
         )
 
 
@@ -113,25 +113,25 @@ def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
     there = rows.nodes.size - lacking.size
     if not there:
         raise ExportError(
-            f"{name}: it has none of the {counted(lacking.size, 'node')} of the structure, "
-            f"which begin with {which}: it is the mesh of another"
+            f"{name} has none of the {counted(lacking.size, 'node')} of the structure, "
+            f"which begin with {which}: it is the mesh of another structure"
         )
     said = []
     if lacking.size:
         said.append(
-            f"{name}: it has {there} of the {rows.nodes.size} nodes of the structure. "
-            f"Without a place, and not on the mesh: {counted(lacking.size, 'node')} "
-            f"({which}{', ...' if lacking.size > 3 else ''})"
+            f"{name} has {there} of the {rows.nodes.size} nodes of the structure. "
+            f"The motion of the other {counted(lacking.size, 'node')} "
+            f"({which}{', ...' if lacking.size > 3 else ''}) is left out"
         )
     without = len(mesh.nodes) - there
     if without:
         have = f"{counted(without, 'node')} of {len(mesh.nodes)} {'have' if without > 1 else 'has'} no row"
         said.append(
-            f"{name}: {have}, held or left out of the matrices: displacement 0, and 0 in the array has_rows"
+            f"{name}: {have}, as they are held or left out: displacement 0, and 0 in the array has_rows"
         )
     unnamed = int((rows.node < 0).sum())
     if unnamed:
-        said.append(f"{counted(unnamed, 'row')} of no node and direction: not on the mesh")
+        said.append(f"{counted(unnamed, 'row')} without a node and a direction: not on the mesh")
     if mesh.lacking:
         said.append(f"{name}: elements of type {choices(mesh.lacking)} are left out; their nodes are there")
     return said

@@ -97,7 +97,7 @@ def respond(
             raise ResponseError(f"max_step {fault}")
         scene = scene.with_step(max_step)
     if sensitivity and method == "exact":
-        raise ResponseError("sensitivities are of the balance's peaks; the method is 'exact'")
+        raise ResponseError("sensitivities are of the peaks of harmonic balance; the method is 'exact'")
     if sensitivity:
         check_no_ring(scene, "sensitivities")
         refuse_own_laws(scene, "a sensitivity")

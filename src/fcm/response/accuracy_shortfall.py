@@ -46,8 +46,14 @@ def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
     which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
     if found.begun:
         most = found.system.options.work.max_seconds
-        return f"{said}. More were given up after some {most:.0f} s of work: --harmonics {which}"
-    return f"{said}. More would take some {_seconds(found, more, spent):.0f} s: --harmonics {which}"
+        return (
+            f"{said}. More harmonics were given up after some {most:.0f} s of work: --harmonics {which} "
+            "uses them"
+        )
+    return (
+        f"{said}. More harmonics would take some {_seconds(found, more, spent):.0f} s: --harmonics {which} "
+        "uses them"
+    )
 
 
 def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> float:

@@ -218,7 +218,10 @@ def _with_uncertain_frequencies(curve: Curve, uncertain: UncertainFrequencies) -
 
 def _missing_periods(problem: OrbitProblem, lost: int) -> str:
     """Why the curves of motions that repeat after so many periods are not complete."""
-    return f"of {counted(lost, 'flip')} no motion was found that repeats after {problem.repeats} periods"
+    return (
+        f"from {counted(lost, 'period doubling')} no motion was found that repeats after {problem.repeats} "
+        "periods"
+    )
 
 
 def _check_held_contacts(problem: OrbitProblem, z: FloatArray) -> None:

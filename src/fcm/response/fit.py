@@ -309,12 +309,12 @@ def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tu
     doubtful |= {k for i, j, _ in told.alike for k in (i, j)}
     every = advice(parameters, found, sorted(doubtful), harmonics)
     said = [
-        f"{one.key}: a response at {quoted(one.dof)} with forces at a level of {one.level:.2g} would tell "
-        f"it to {100.0 * one.error:.2g} %"
+        f"{one.key}: a response at {quoted(one.dof)} with forces at a level of {one.level:.2g} would "
+        f"determine it to {100.0 * one.error:.2g} %"
         for one in every
     ]
     helped = {one.key for one in every}
     if without := [key for k in sorted(doubtful) if (key := parameters.keys[k]) not in helped]:
         them = "it" if len(without) == 1 else "them"
-        said.append(f"{' and '.join(without)}: no response at the levels looked at tells {them}")
+        said.append(f"{' and '.join(without)}: no response at the levels that were tried determines {them}")
     return said

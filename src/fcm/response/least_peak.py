@@ -237,10 +237,10 @@ def still(dofs: str, count: int) -> str:
     """Of degrees of freedom that only rounding moves.
 
     >>> still("8y", 1)
-    '8y does not move, beside rounding: no force reaches it. Minimise another degree of freedom'
+    '8y does not move, but for rounding: no force reaches it. Minimise another degree of freedom'
     """
     verb, which = ("does", "it") if count == 1 else ("do", "them")
-    why = f"{dofs} {verb} not move, beside rounding: no force reaches {which}"
+    why = f"{dofs} {verb} not move, but for rounding: no force reaches {which}"
     return f"{why}. Minimise another degree of freedom"
 
 

@@ -36,7 +36,7 @@ def refuse_other_harmonics(scene: Scene, what: str) -> None:
         named = " and ".join(map(str, others))
         raise ResponseError(
             f"{scene.name}: {what} knows forces of harmonic 1 alone, and there are some of harmonic {named}. "
-            "Curves of the balance have them (--method closed-form)"
+            "Curves of harmonic balance have them (--method closed-form)"
         )
 
 
@@ -55,7 +55,7 @@ def refuse_own_laws(scene: Scene, what: str) -> None:
         names = [quoted(one.name) for one in scene.contacts if one.law is not None]
         raise ResponseError(
             f"{scene.name}: contact {names[0]}: {what} needs more than the forces over a cycle that its own "
-            "law gives. Response curves of the balance do not (method 'closed-form')"
+            "law gives. Response curves of harmonic balance do not (method 'closed-form')"
         )
 
 

@@ -29,7 +29,7 @@ from fcm.table import Table
 
 HILL = (
     "the sequence of states of contacts with laws of their own: stability is by Hill's method, with the "
-    "harmonics of the balance"
+    "harmonics that are balanced"
 )
 NO_TABLE_IN_PLANE = "the table: forces of contacts in a plane are exact, with one harmonic too (no effect)"
 

@@ -199,9 +199,9 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
         swapped = f"; swap them: {high:.6g} to {low:.6g}" if high < low else ""
         raise SpanError(both, f"{number.key} must rise{swapped}")
     if high - low < INPUT_LIMITS.min_relative_width * max(abs(low), abs(high)):
-        raise SpanError(both, "too narrow to follow anything in", digits=17)
+        raise SpanError(both, "too narrow to follow a curve through", digits=17)
     if number.key == LEVEL and low <= 0.0:
-        raise SpanError({0: low}, "the level must be positive: at 0 nothing moves, and nothing is special")
+        raise SpanError({0: low}, "the level must be positive: at 0 nothing moves")
     rigid = [int((linear_of(curve).natural == 0.0).sum()) for curve in _at_ends(scene, number, span)]
     if len(set(rigid)) > 1:
         fault = (

@@ -52,7 +52,9 @@ def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> 
         undetermined = np.array([curve.undetermined for curve in curves], dtype=np.float64)
         out["points_maybe_not_unique"] = Field(("curve",), undetermined, {"long_name": meaning, "units": "1"})
     if any(curve.not_confirmed for curve in curves):
-        meaning = "points of unknown stability, as no more of many contacts were looked at"
+        meaning = (
+            "points of unknown stability, as more harmonics were not tried at all points of many contacts"
+        )
         points = np.array([curve.not_confirmed for curve in curves], dtype=np.float64)
         out["points_not_confirmed"] = Field(("curve",), points, {"long_name": meaning, "units": "1"})
     if any(curve.uncertain_at for curve in curves):

@@ -158,18 +158,21 @@ class Fitted:
             if self.without_effect[k]:
                 said.append(f"{key} has no effect on these data: its value means nothing")
             if self.at_bound[k] and not self.without_effect[k]:
-                said.append(f"{key} lies at its bound: the data would have it beyond")
+                said.append(
+                    f"{key} lies at its bound, and would fit the data better beyond: give wider bounds"
+                )
         if hardly := [k for k in range(len(self.keys)) if self.untold[k] and not self.without_effect[k]]:
             each, error = ("is", "its standard error is") if len(hardly) == 1 else _EACH
             errors = " and ".join(self._relative(k) for k in hardly)
             said.append(
-                f"{' and '.join(self.keys[k] for k in hardly)} {each} hardly told by these data: {error} "
-                f"{errors}"
+                f"{' and '.join(self.keys[k] for k in hardly)} {each} hardly determined by these data: "
+                f"{error} {errors}"
             )
         for i, j, power in self.alike:
             one, other = self.keys[i], self.keys[j]
             said.append(
-                f"{one} and {other} are not told apart: the data tell {_told(one, other, power)} alone"
+                f"{one} and {other} cannot be told apart: these data determine {_told(one, other, power)} "
+                "alone"
             )
         for part in self.data:
             if part.unreached:
@@ -178,14 +181,15 @@ class Fitted:
             off = max(part.misfit, np.nan_to_num(part.damping_misfit))
             if off > self.poor:
                 said.append(
-                    f"{part.measured.file}: the model does not meet these data, from which it is off by "
-                    f"{100.0 * off:.0f} %. It lacks something, and the intervals do not know what"
+                    f"{part.measured.file}: the model is off from these data by {100.0 * off:.0f} %. It "
+                    "lacks something, which the confidence intervals do not include"
                 )
             elif part.systematic:
                 said.append(
                     f"{part.measured.file}: neighbouring points are off to the same side. Of the misfit, "
                     f"{100.0 * part.misfit:.2g} %, only {100.0 * part.scatter:.1g} % is scatter. The model "
-                    "lacks something, as harmonics, or other numbers are nearer: the intervals do not know it"
+                    "lacks something, as harmonics, or other numbers are nearer. The confidence intervals "
+                    "do not include that"
                 )
         return said
 

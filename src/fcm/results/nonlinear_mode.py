@@ -90,7 +90,7 @@ class NonlinearMode:
             return "the forces do nothing on the mode"
         least, most = int(self.amplitude.argmin()), int(self.amplitude.argmax())
         if self.resonant_level[most] < level:
-            return f"its resonance lies beyond amplitude {self.amplitude[most]:.4g}"
+            return f"its resonance lies beyond the modal amplitude {self.amplitude[most]:.4g}"
         if self.resonant_level[least] > level and all(one.level != level for one in self.resonances):
-            return f"its resonance lies below amplitude {self.amplitude[least]:.4g}"
+            return f"its resonance lies below the modal amplitude {self.amplitude[least]:.4g}"
         return ""

@@ -105,7 +105,7 @@ def _kind(response: Response) -> str:
     if response.histories is not None:
         kinds.append("exact simulation of a schedule")
     if response.tracking is not None:
-        kinds.append(f"{response.tracking.what} tracked by extended systems of the balance")
+        kinds.append(f"{response.tracking.what} tracked by extended systems of harmonic balance")
     return "; ".join(kinds)
 
 

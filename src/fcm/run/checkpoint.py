@@ -92,7 +92,7 @@ class Checkpoint:
             elif results is not None and fits(record.number, results):
                 found.finished[record.number] = results
         if others and not (found.finished or found.states) and not self.used:
-            self._empty("it is of another scene, other options or another state of fcm")
+            self._empty("it is of another scene, other options or another version of fcm")
             self._sign()
         self.used = True
         self._marks.add(mark)
@@ -185,7 +185,7 @@ class Checkpoint:
             return
         aside = _free(self.path, self.options.max_set_aside)
         self.path.rename(aside)
-        warnings.warn(f"{self.path}: {reason}; moved to {aside.name}", stacklevel=3)
+        warnings.warn(f"{self.path}: {reason}; moved to {aside.name}, and this run begins anew", stacklevel=3)
         os.close(self._file)
         self._file = locked(self.path)
 

@@ -78,4 +78,4 @@ class _Reader(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
         if (module, name) in self.allowed:
             return super().find_class(module, name)
-        raise pickle.UnpicklingError(f"{module}.{name} does not belong into a result")
+        raise pickle.UnpicklingError(f"{module}.{name} does not belong in a result")

@@ -29,7 +29,7 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
         return [
             Question(
                 f"{contacts} {names}: {ratio.max():.1e} times as stiff as the structure there{at_most}. "
-                "Are k_u and k_v in its units? Beyond some hundred times little changes, and it takes long"
+                "Are k_u and k_v in its units? Beyond some hundred times little changes, and runs take long"
             )
         ]
     if not 0.0 < ratio.max() < MESSAGES.soft_contact or not scene.modal.frequency.all():

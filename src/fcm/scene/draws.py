@@ -273,7 +273,10 @@ def _fault(matrix: FloatArray) -> str:
         return "must have numbers from -1 to 1"
     least = np.linalg.eigvalsh(matrix)[0]
     if least < -TOLERANCES.correlation * len(matrix):
-        return f"is that of no draws at all: it has the negative eigenvalue {least:.3g}"
+        return (
+            f"is no correlation matrix: it has the negative eigenvalue {least:.3g}, and needs all to be at "
+            "least 0"
+        )
     return ""
 
 

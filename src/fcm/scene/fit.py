@@ -66,7 +66,7 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
     values = sum(one.values for one in known)
     if values <= len(numbers):
         what = f"has {counted(values, 'measured value')} for {counted(len(numbers), 'number')}"
-        section.wrong("data", f"{what}; give more than the numbers that vary")
+        section.wrong("data", f"{what}; give more values than numbers that vary")
         return None
     keys = tuple(number.key for number in numbers if number)
     return Fit(keys, tuple(bounds), known, None if starts is None else int(starts))

@@ -163,7 +163,7 @@ TABLES: dict[str, dict[str, Key]] = {
     "response": {
         "frequency": Key("[from, to], the range that is traced", POSITIVE, "needed without [[schedule]]"),
         "max_step": Key("longest step, relative to the curve's own extent", FRACTION, "0.05"),
-        "harmonics": Key("harmonics of the balance: up to a number, or some of them",
+        "harmonics": Key("harmonics that are balanced: up to a number, or some of them",
                          "1 to 50, or a list such as [1, 2, 3, 9]", "as many as accuracy takes"),
         "accuracy": Key("relative error of greatest peaks and folds; it chooses harmonics", FRACTION, "0.01"),
         "output": Key("degrees of freedom to show, and to be accurate; netCDF has those of contacts, too",

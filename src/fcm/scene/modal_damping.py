@@ -48,8 +48,9 @@ def damping_of(
         return Damping(np.full(stiffness.size, matrices.ratio), 0.0, _of_floating(matrices.ratio, rigid))
     if matrices.hysteretic:
         equal = (
-            "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance "
-            f"without contacts. Where contacts move it far, or hold rigid bodies, it is another. {_AT_ONE}"
+            "structure: half the loss factor is taken as damping ratio, which is equal at each resonance "
+            "without contacts. Where contacts move a resonance far, or hold rigid bodies, it is another. "
+            f"{_AT_ONE}"
         )
         return Damping(np.full(stiffness.size, matrices.hysteretic / 2.0), 0.0, [equal])
     if matrices.C is None:

@@ -155,7 +155,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
     if off > max(MESSAGES.damping_left_out * float(ratios.min(initial=1.0)), TOLERANCES.undamped):
         why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"
         said.append(
-            f"structure: rounding moves the frequencies of its modes by up to {_upwards(off)} of themselves, "
+            f"structure: rounding changes the frequencies of its modes by up to {_upwards(off)}, relative, "
             f"as its stiffness {why}"
         )
     return said

@@ -126,7 +126,7 @@ def explore(
     if not sought:
         paths = search.with_others(paths, apart)
     if search.too_many_broken(paths):
-        bounded.add_reason(f"{problem.options.search.max_broken} that were followed break off")
+        bounded.add_reason(f"{problem.options.search.max_broken} of them broke off while they were followed")
     if not bounded.given_up:
         paths = search.with_motions(paths, orbits_in_unstable_ranges(problem, paths, poll))
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
@@ -135,7 +135,7 @@ def explore(
             omega for omega, height in search.unreached if not _reaches_height(problem, paths, omega, height)
         ]
     told = [
-        f"no exact motion was found from the stable branch of the balance at {with_unit(scene, one)}"
+        f"no exact motion was found from the stable branch of harmonic balance at {with_unit(scene, one)}"
         for one in dict.fromkeys(lost)
     ]
     return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])
@@ -192,7 +192,7 @@ class _BranchSearch:
                 if one.out_of_time
                 else "cannot be followed"
             )
-            bounded.add_reason(f"the level of the forces {failed} at {with_unit(scene, one.omega)}")
+            bounded.add_reason(f"at {with_unit(scene, one.omega)} the level of the forces {failed}")
         return paths
 
     def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:

@@ -73,7 +73,7 @@ class BranchBudget:
             try:
                 found = next(finds, None)
             except WorkLimitError:
-                self.add_reason(f"what leads to them takes more than {self.most:.3g} s to be found")
+                self.add_reason(f"it takes more than {self.most:.3g} s")
                 return
             self._left -= self.clock() - self._begin
             if found is None:
