@@ -54,6 +54,17 @@ def notes(data, **more):
             ["contact[0].mu: is 30 right? Friction is 30 times the normal force; if 30 % is meant"],
         ),
         (("contact", 0, "mu"), 2.0, []),
+        (
+            ("contact", 1, "gap"),
+            -0.01,
+            ["contact[1].gap: is -0.01 right? Below zero the faces overlap, and press at rest with -k_v"],
+        ),
+        (("contact", 1, "gap"), 0.0, []),
+        (
+            ("sweep", "contact.damper.gap"),
+            [-1.0, 1.0],
+            ['sweep."contact.damper.gap": is -1 right? Below zero the faces overlap'],
+        ),
         (("force", 1, "phase"), 2.0 * pi, []),
         (("sweep", "force.1.phase"), [0.0, 45.0], ["if degrees are meant, write it in rad"]),
         (("sweep", "modal.damping"), [0.01, 5.0], ['sweep."modal.damping": is 5 right? It is 500 %']),

@@ -23,12 +23,13 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large,
-    no damping at all, coefficients of friction above two, and angles of more than a turn that are given in
-    rad.
+    no damping at all, coefficients of friction above two, negative gaps, and angles of more than a turn that
+    are given in rad.
     """
     found = [_of_ratio(*one) for one in _ratios(top, parts, swept)]
     found += [_of_nothing(*one) for one in _ratios(top, parts, swept)]
-    found += [_of_friction(*one) for one in _frictions(top, swept)]
+    found += [_of_friction(*one) for one in _of_contacts("mu", top, swept)]
+    found += [_of_gap(*one) for one in _of_contacts("gap", top, swept)]
     found += [_of_angle(*one) for one in _angles(top, swept)]
     return [Question(one) for one in found if one]
 
@@ -65,12 +66,15 @@ def _angles(top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iter
             yield _of_sweep(one), one.values
 
 
-def _frictions(top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iterable[float]]]:
+def _of_contacts(
+    key: str, top: Section, swept: Sequence[SweptKey]
+) -> Iterator[tuple[str, Iterable[float]]]:
+    """The numbers of a key of each contact."""
     contacts = top.data.get("contact")
     for index, one in enumerate(contacts if isinstance(contacts, list | tuple) else ()):
-        yield f"contact[{index}].mu", _numbers(one.get("mu") if isinstance(one, Mapping) else None)
+        yield f"contact[{index}].{key}", _numbers(one.get(key) if isinstance(one, Mapping) else None)
     for varied in swept:
-        if varied.key.endswith(".mu"):
+        if varied.key.endswith(f".{key}"):
             yield _of_sweep(varied), varied.values
 
 
@@ -107,6 +111,13 @@ def _of_friction(key: str, values: Iterable[float]) -> str:
         return ""
     meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
     return f"{key}: is {shown(value)} right? Friction is {shown(value)} times the normal force; {meant}"
+
+
+def _of_gap(key: str, values: Iterable[float]) -> str:
+    value = min(values, default=0.0)
+    if value >= 0.0:
+        return ""
+    return f"{key}: is {shown(value)} right? Below zero the faces overlap, and press at rest with -k_v * gap"
 
 
 def _of_angle(key: str, values: Iterable[float]) -> str:
