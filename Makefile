@@ -39,7 +39,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help docs reference guide-figures measured oblique joint design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
+.PHONY: help docs reference guide-figures measured oblique joint design fuzz kills dist matrix wheels kernels extremes bench-time bench-many bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
 	clean bench study study-plane
 
 help:  ## this list
@@ -144,6 +144,7 @@ study: $(VENV)/installed  ## bundled and two hundred random scenes: do three ste
 	$(BIN)/python tests/response/bundled_steps.py > build/study.partial
 	$(BIN)/python tests/response/random_scenes.py >> build/study.partial
 	$(BIN)/python tests/response/random_peaks.py >> build/study.partial
+	$(BIN)/python tests/response/random_points.py >> build/study.partial
 	$(BIN)/python tests/response/lightly_damped.py >> build/study.partial
 	@mv build/study.partial build/study.txt; cat build/study.txt
 
@@ -171,6 +172,13 @@ bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, s
 
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
 	$(BIN)/python tests/benchmarks/motion.py
+
+bench-many: $(VENV)/installed $(OTHERS)/numba/installed  ## a strip on 25 to 500 contacts beside a sampled balance, lap joints; half an hour
+	$(BIN)/python -m tests.benchmarks.many 25 50 100 200 --harmonics 1 --sampled $(OTHERS)/numba/bin/python
+	$(BIN)/python -m tests.benchmarks.many 25 50 100 --harmonics 3 --sampled $(OTHERS)/numba/bin/python
+	$(BIN)/python -m tests.benchmarks.many 500 --harmonics 1 3
+	$(BIN)/python -m tests.benchmarks.lap_joint 7x3 20x5 --line --harmonics 1 3
+	$(BIN)/python -m tests.benchmarks.lap_joint 7x3 20x5 --harmonics 1
 
 bench-others: $(VENV)/installed  ## beside pyHarm-os and tmdsimpy, in environments of their own; half an hour
 	@mkdir -p $(OTHERS)
@@ -289,6 +297,11 @@ $(VENV)/installed: pyproject.toml $(KERNELS)
 $(OTHERS)/pyharm/installed:
 	$(PYTHON) -m venv $(@D)
 	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check 'pyHarm-os>=1.2'
+	@touch $@
+
+$(OTHERS)/numba/installed:
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check numba scipy
 	@touch $@
 
 $(OTHERS)/tmdsimpy/installed:  # a repository that no package index has, at one of its commits

@@ -7,6 +7,7 @@ a multiple of the first row's. The aim for ``fcm respond yang1998`` is 1.2.
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -31,16 +32,21 @@ COMMANDS = {
 }
 
 
-def seconds(arguments: tuple[str, ...], folder: Path) -> float:
-    """Processor time of a Python with these arguments, run to its end."""
+def used(arguments: tuple[str, ...], folder: Path) -> resource.struct_rusage:
+    """What a Python with these arguments took, run to its end."""
     process = subprocess.Popen(
         [sys.executable, *arguments], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
-    _, status, used = os.wait4(process.pid, 0)
+    _, status, found = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise SystemExit(f"process: {' '.join(arguments)} ended with {process.returncode}")
-    return used.ru_utime + used.ru_stime
+    return found
+
+
+def seconds(found: resource.struct_rusage) -> float:
+    """Processor time, system included."""
+    return found.ru_utime + found.ru_stime
 
 
 def main(runs: int) -> None:
@@ -50,7 +56,7 @@ def main(runs: int) -> None:
         (Path(folder) / "tiny.toml").write_text(TINY)
         for _ in range(runs):
             for name, arguments in COMMANDS.items():
-                times[name].append(seconds(arguments, Path(folder)))
+                times[name].append(seconds(used(arguments, Path(folder))))
     least = {name: min(taken) for name, taken in times.items()}
     print(f"\nwhole processes, least of {runs}\n{'':48s}{'ms':>12s}{'times the first':>18s}")
     for name, taken in least.items():

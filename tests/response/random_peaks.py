@@ -10,7 +10,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +26,6 @@ if __package__:
     from .in_time import in_time
     from .random_scenes import random_scene
 else:  # run as a program
-    sys.path += [str(Path(__file__).parents[1] / "harmonic_balance")]
     from in_time import in_time
     from random_scenes import random_scene
 

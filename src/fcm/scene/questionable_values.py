@@ -66,9 +66,7 @@ def _angles(top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iter
             yield _of_sweep(one), one.values
 
 
-def _of_contacts(
-    key: str, top: Section, swept: Sequence[SweptKey]
-) -> Iterator[tuple[str, Iterable[float]]]:
+def _of_contacts(key: str, top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iterable[float]]]:
     """The numbers of a key of each contact."""
     contacts = top.data.get("contact")
     for index, one in enumerate(contacts if isinstance(contacts, list | tuple) else ()):
