@@ -173,7 +173,7 @@ def test_a_curve_is_not_complete_while_the_balance_has_a_stable_branch_that_it_h
     without = replace(SHOOTING, start=replace(SHOOTING.start, max_guesses=0))
     monkeypatch.setattr(trace, "level_motions", lambda *_: iter(()))
     paths, missed = explore(OrbitProblem(scene, options=without))
-    assert paths and "from the stable branch of the balance at 1.5794" in missed
+    assert paths and "from the stable branch of harmonic balance at 1.5794" in missed
 
 
 @pytest.mark.slow
