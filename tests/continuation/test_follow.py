@@ -260,6 +260,28 @@ def test_outputs_that_are_rounding_make_no_steps_shorter(step):
     assert np.array_equal(noisy.z, smooth.z)
 
 
+class NearSymmetry(OnSymmetry):
+    """Reported is also what hardly moves, as where a mesh is symmetric to nine digits.
+
+    It grows with x all the time, but for what the corrector leaves.
+    """
+
+    def report(self, z, direction):
+        Planar.report(self, z, direction)
+        self.output[1] = 1e-9 + 1e-10 * z[0] + self.rounding * np.sin(1e7 * z[0])
+        self.growth[1] = 1e-10 * direction[0]
+        return 0
+
+
+@pytest.mark.parametrize("step", [0.2, 0.05])
+def test_what_the_corrector_leaves_of_an_output_that_hardly_moves_makes_no_steps_shorter(step):
+    smooth, noisy = (
+        follow(NearSymmetry(cubic().f, size), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(step))
+        for size in (0.0, 1e-11)
+    )
+    assert np.array_equal(noisy.z, smooth.z)
+
+
 @pytest.mark.parametrize("step", STEPS)
 def test_a_curve_that_leaves_its_range_where_it_entered(step):
     path = follow(circle(), start(3.0 - np.sqrt(3.0), 1.0), (1.0, 5.0), options=FollowOptions(step))

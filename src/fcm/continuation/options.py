@@ -226,6 +226,9 @@ class EventOptions(Options):
         Part of the lesser slope at the ends: a parameter whose slope changes by less goes on evenly.
     doubtful_slope : float
         Part of the lesser slope at the ends: a cubic less steep between them may hide a way back.
+    min_reversal : float
+        Part of the greatest of all outputs so far, by which one goes back within a step: the corrector leaves
+        a tenth of that.
     rounding_step : float
         A step this short tells more of rounding than of a way back.
     peak_tolerance, peak_tolerance_of_many : float
@@ -252,6 +255,7 @@ class EventOptions(Options):
     peak_threshold: cython.double = 0.9
     max_slope_change: cython.double = 0.2
     doubtful_slope: cython.double = 0.25
+    min_reversal: cython.double = 1e-10
     rounding_step: cython.double = 1e-4
     peak_tolerance: cython.double = 1e-11
     peak_tolerance_of_many: cython.double = 5e-7

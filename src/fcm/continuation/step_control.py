@@ -327,7 +327,8 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
     """Length at which the parameter, or an output, may go the other way than here and there; 0 if none does.
 
     There are two folds, or a peak and the least value after it, between then. As far as the cubics through
-    both ends tell; of outputs those near their greatest, and what rounding changes of them is none.
+    both ends tell; of outputs those near their greatest. What rounding changes of them is none, nor what the
+    corrector leaves of one that hardly moves beside the others, as across a plane of symmetry.
     """
     k: cython.Py_ssize_t
     size: cython.double
@@ -336,6 +337,9 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
     if step <= stepper.options.events.rounding_step:
         return 0.0
     at: cython.double = parameter_reversal(stepper)
+    left: cython.double = 0.0
+    for k in range(stepper.problem.outputs):
+        left = max(left, stepper.options.events.min_reversal * greatest[k])
     for k in range(stepper.problem.outputs):
         size = max(stepper.here.output[k], stepper.there.output[k])
         if at == 0.0 and size >= stepper.options.events.peak_threshold * greatest[k]:
@@ -344,7 +348,7 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
                 stepper.here.growth[k] * step,
                 stepper.there.growth[k] * along,
                 # between two values a cubic is 1.5 times as steep as the chord
-                size * (stepper.options.events.min_growth * step + 1.5 * stepper.rounding),
+                size * (stepper.options.events.min_growth * step + 1.5 * stepper.rounding) + left,
                 stepper.options.events.doubtful_slope,
             )
     return at * step
