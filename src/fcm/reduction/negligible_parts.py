@@ -115,7 +115,7 @@ def _different(curves: tuple[Scene, ...]) -> list[Scene]:
 
 
 def _reaches(modal: Modal, direction: FloatArray) -> BoolArray:
-    """Whether each mode moves along a direction, beyond rounding."""
+    """Whether each mode moves along a direction (dof,), or some (dof, direction), beyond rounding."""
     size = np.abs(modal.shapes) @ np.abs(direction)
     reaches: BoolArray = np.abs(modal.shapes @ direction) > REDUCTION.rounding * size
     return reaches
@@ -140,8 +140,7 @@ def _moved(scene: Scene) -> BoolArray:
     along = [one for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0 for one in c.directions[:-1]]
     along += [c.normal for c in scene.contacts if c.k_v > 0.0]
     along += scene.pushes()
-    moved: BoolArray = np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])
-    return moved
+    return np.asarray(_reaches(scene.modal, np.transpose(along)).any(axis=1))
 
 
 def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:

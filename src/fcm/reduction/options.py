@@ -23,7 +23,9 @@ class ReductionOptions(Frozen):
     max_checked: int = 200  # points at which the response is compared with that of all modes
     max_checked_of_curve: int = 8  # points of one curve, besides its peaks
     max_names: int = 6  # of contacts in one sentence
-    min_saving: float = 0.6  # of the modes may remain; otherwise nothing is gained
+    max_remaining: float = 0.6  # of the modes; otherwise nothing is gained
+    # the same of combinations of many directions: more take as long to check as they save
+    max_remaining_of_many: float = 0.4
     min_modes: int = 30  # modes of a structure for which it is worth trying
     # times the range's end: where modes begin to be far above, the first that the tolerance allows is taken
     range_factors: tuple[float, ...] = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)

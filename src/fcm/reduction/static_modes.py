@@ -38,16 +38,17 @@ def with_static_modes(
     modal = scene.modal
     if modal.frequency.size < options.min_modes or tolerance <= 0.0 or not scene.contacts:
         return None
-    most = REDUCTION.min_saving * modal.frequency.size
+    count = modal.frequency.size
     for factor in options.range_factors:
         limit = factor * highest * scene.frequency_range[1]
         high = modal.frequency > limit
-        if modal.frequency.size - int(high.sum()) > most:
+        if count - int(high.sum()) > options.max_remaining * count:
             return None
         choices = list(_choices(scene, high, options))
+        part = options.max_remaining if len(choices) == 1 else options.max_remaining_of_many
         for directions in choices:
             fewer = condensed(modal, directions, high, options)
-            if fewer.frequency.size > most:
+            if fewer.frequency.size > part * count:
                 break
             if _linear_error(scene, replace(scene, modal=fewer)) < options.estimate_margin * tolerance:
                 return fewer, limit
@@ -94,7 +95,7 @@ def _choices(scene: Scene, high: BoolArray, options: ReductionOptions) -> Iterat
     those of the forces and more and more of the combinations along which these modes yield most."""
     contacts, pushes = (np.array(d).T for d in (scene.directions_of_contacts(), scene.pushes()))
     every = contacts.shape[1] + pushes.shape[1]
-    if 2 * every <= options.min_saving * scene.modal.frequency.size - int((~high).sum()):
+    if 2 * every <= options.max_remaining * scene.modal.frequency.size - int((~high).sum()):
         yield np.concatenate((contacts, pushes), axis=1)
         return
     weighted = contacts * np.sqrt(contact_stiffnesses(scene))
