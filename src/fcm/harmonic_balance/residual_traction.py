@@ -76,32 +76,22 @@ TRACTION = TractionOptions()
 
 
 class FixedTractionContact(Law):
-    """A contact; one that is held always sticks, with a mean friction force that is given.
-
-    is_fixed, mean (direction,): whether it is, and that force.
-    """
+    """A contact that always sticks, with a mean friction force (direction,) that is given."""
 
     def __init__(self, law: LineLaw | PlanarLaw) -> None:
         super().__init__(law.width, law.directions, law.margins, law.mu, law.k_u, law.k_v, law.n_0)
-        self.kernel, self.is_fixed, self.mean = law.kernel, False, np.zeros(law.directions - 1)
-        self.force, self.tangent = np.zeros(law.width), np.zeros((law.width, law.width))
+        self.kernel, self.mean = law.kernel, np.zeros(law.directions - 1)
         springs = np.append(np.full(law.directions - 1, law.k_u), law.k_v)
         waves = np.tile(np.repeat(springs, 2), (law.width - law.directions) // (2 * law.directions))
         self.springs = np.concatenate((0.0 * springs[:-1], springs[-1:], waves))
+        self.force, self.tangent = np.zeros(law.width), np.diag(self.springs)
         self.without_margins()
 
     def evaluate(self, x: FloatArray, first: int) -> int:
-        """Forces and tangent."""
-        block = np.ascontiguousarray(np.asarray(x)[first : first + self.width])
-        if self.is_fixed:
-            self.force[:] = self.springs * block
-            self.force[: self.directions - 1] = self.mean
-            self.force[self.directions - 1] += self.n_0 - max(self.n_0, 0.0)
-            self.tangent[:, :] = np.diag(self.springs)
-            return 0
-        self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0)
-        self.force[:], self.tangent[:, :] = self.kernel.forces, self.kernel.jacobian
-        self.force[self.directions - 1] -= max(self.n_0, 0.0)
+        """Forces; the tangent is always that of the springs."""
+        self.force[:] = self.springs * np.asarray(x)[first : first + self.width]
+        self.force[: self.mean.size] = self.mean
+        self.force[self.mean.size] += min(self.n_0, 0.0)
         return 0
 
     def mean_from(self, block: FloatArray, start: FloatArray) -> FloatArray | None:
@@ -118,17 +108,18 @@ class _FixedTractionBalance:
     def __init__(self, system: System, options: TractionOptions) -> None:
         self.system, self.options = system, options
         self.balance: Balance = system.new_balance()
-        self.laws = [FixedTractionContact(law) for law in system.exact_laws(system.harmonics)]  # type: ignore[arg-type]
-        self.balance.laws = list(self.laws)
+        self.free = system.exact_laws(system.harmonics)
+        self.laws = [FixedTractionContact(law) for law in self.free]  # type: ignore[arg-type]
+        self.fix(np.zeros(0, dtype=np.intp), np.zeros((0, 0)))
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)
 
     def fix(self, contacts: npt.NDArray[np.intp], mean: FloatArray) -> None:
         """Hold some contacts, and no others, by mean friction forces (contact, direction)."""
-        for law in self.laws:
-            law.is_fixed = False
+        laws: list[Law] = list(self.free)
         for i, one in zip(contacts.tolist(), mean, strict=True):
-            self.laws[i].is_fixed, self.laws[i].mean = True, np.array(one)
+            self.laws[i].mean, laws[i] = np.array(one), self.laws[i]
+        self.balance.laws = laws
 
     def solved(self, guess: FloatArray, row: FloatArray) -> FloatArray | None:
         """The point in the plane across a row, in scaled coordinates; the tangent is then that there."""
