@@ -257,7 +257,7 @@ class RefinementOptions(Frozen):
         Folds of a branch that are looked at, at most.
     complete_harmonics : int
         Harmonic up to which no single one is left out: stability between folds may hang on it.
-    max_doubtful_seconds : float
+    max_seconds_without_progress : float
         [s] that rounds may take of which nothing tells that they bring the accuracy nearer.
     """
 

@@ -63,7 +63,7 @@ _BALANCES = _BalanceCache()
 
 def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
     """From points of a system to those of its reference; as if it were new: in a sweep the contacts are
-    others. Nobody else has it until it is given back, see `give_back`."""
+    others. Nobody else has it until it is given back, see `keep_for_next`."""
     made = _BALANCES.by_key.pop(_key(system, more), None) if _is_shareable(system) else None
     if made is None:
         made = Prolongation(

@@ -370,8 +370,7 @@ class LabelOptions(Frozen):  # of no kernel
     max_miss, max_newton_step : float
         Parts of its length, by which a step may miss the curve; and by which the first step of Newton's
         method may.
-    min_factor, rejection_factors, max_factor, max_factor_after_rejection : float, (float, float), float,
-    float
+    min_factor, rejection_factors, max_factor, max_factor_after_rejection : float, the second two of them
         Parts of a step that the next is at least; that one in its point is between; that the next is at
         most; and after a shortened one.
     straight_cosine : float
@@ -383,7 +382,7 @@ class LabelOptions(Frozen):  # of no kernel
     reached_distance : float
         A change of label this near is met where no curve is found up to there.
     max_departures : int
-        ExtremumSearch beyond one corner, each ten times as far.
+        Points looked for beyond one corner, each ten times as far.
     departure_factor : float
         Times as far from the corner is the next point, at least.
     reversal_cosine, spike_cosine : float

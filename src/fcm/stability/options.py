@@ -54,7 +54,7 @@ class StructureOptions(Frozen):
         along others it is taken as rigid.
     max_cached : int
         Disturbances; with fewer the last workspace is used again.
-    max_held : int
+    max_entries : int
         Entries of the matrices of points that are held at once, whose eigenvalues are found together.
     max_disturbances : int
         Of the sectors of a ring; with more a point takes seconds, and stability is not told.
@@ -76,7 +76,7 @@ class ConfirmationOptions(Frozen):
 
     Attributes
     ----------
-    doubtful_decay : float
+    safe_decay : float
         Logarithm in a period, which truncation hardly makes a growth.
     decay_ratio : float
         Times what further harmonics add to the displacements, that such a decay also is; light impacts
@@ -139,7 +139,7 @@ class WindowOptions(Frozen):
     ----------
     margin : float
         Part of the differences between three values, by which what they foretell may be too high.
-    doubt_reduction : float
+    margin_reduction : float
         Of it, each time that the way was divided, as differences fall by squares and errors by cubes.
     max_multipliers : int
         With more, two are always about to meet.

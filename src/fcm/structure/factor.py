@@ -1,7 +1,7 @@
 """Factors of sparse symmetric or Hermitian matrices that are positive definite.
 
 By CHOLMOD where its package scikit-sparse is installed, else by fronts where the factor has many entries, by
-SuperLU where it has few. All give the same solutions to rounding; tests/benchmarks/solid.py measures them.
+SuperLU where it has few. All give the same solutions to rounding.
 SuperLU keeps both triangles, and its pivots can be had only by a copy of them.
 """
 
