@@ -8,7 +8,7 @@ import pytest
 from fcm import load_scene
 from fcm.response import trace
 from fcm.response.curve_batches import Work, fits
-from fcm.response.options import RESPONSE, InterruptedOptions
+from fcm.response.options import RESPONSE, SWEEP, InterruptedOptions
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.run import Interrupted
@@ -263,3 +263,12 @@ def test_many_contacts_stopped_at_any_time_leave_the_best_curve_that_there_was(w
         assert np.isfinite([peak.error for peak in curve.peaks.values()]).all()
     else:
         assert "before it came to its end" in curve.reason
+
+
+def test_the_progress_moves_while_the_errors_are_sought(monkeypatch):
+    """Of one harmonic the curve alone is half of the progress; what is shown then never goes back."""
+    monkeypatch.setattr("fcm.response.best_so_far.SWEEP", replace(SWEEP, progress_interval=0.0))
+    shares = []
+    traced_curve(scene("yang1998", 5), Request((1,)), progress=shares.append)
+    between = [share for share in shares if 0.5 < share < 0.75]
+    assert between and shares == sorted(shares) and shares[-1] < 1.0

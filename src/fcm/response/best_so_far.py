@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation.follow import Progress
 from fcm.model.scene import FloatArray
+from fcm.response.options import SWEEP
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
 
@@ -19,12 +21,14 @@ class BestSoFar:
     """Receives every response that has been traced, as `fcm.accuracy.refinement.OnTraced`; found is the
     last, and stable (path,) whether each of its points is, once that is known.
 
-    How often all is traced again nobody knows. So each response takes half of what is left of the progress.
+    How often all is traced again nobody knows. So each response takes half of what is left of the progress,
+    and half of that while it is traced. Of what comes then it is taken that it lasts as long as all before.
     """
 
     def __init__(self, tell: Tell | None, progress: Progress | None = None) -> None:
         self.tell, self.error, self.next = tell, math.nan, 0
-        self.progress, self.left = progress, 1.0
+        self.progress, self.left, self.told, self.share = progress, 1.0, 0.0, 0.0
+        self.begun = self.since = self.shown = time.monotonic()
         self.found: UncheckedResponse | None = None
         self.cut = False  # whether that does not come to its end
         self.stable: list[FloatArray] = []
@@ -38,8 +42,21 @@ class BestSoFar:
 
     def covered(self, share: float) -> None:
         """A response that is traced has come to a share of the range of frequencies."""
+        self.told, self.since = 1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)), time.monotonic()
+        self._show(self.told)
+
+    def poll(self) -> None:
+        """Called now and then: the progress moves also where nobody tells what share is done."""
+        now = time.monotonic()
+        if now - self.shown >= SWEEP.progress_interval:
+            spent, before = now - self.since, self.since - self.begun
+            end = 1.0 - 0.5 * self.left
+            self._show(self.told + (end - self.told) * spent / (spent + before))
+
+    def _show(self, share: float) -> None:
         if self.progress is not None:
-            self.progress(1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)))
+            self.shown, self.share = time.monotonic(), max(self.share, share)
+            self.progress(self.share)
 
     def take_stability(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
         """The same response with its stability, which more harmonics may still confirm."""

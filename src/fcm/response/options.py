@@ -86,6 +86,8 @@ class SweepOptions(Frozen):
         Of more harmonics, after which what is left is said.
     save_interval : float
         [s] after which finished curves are saved before their group is, and no kill can lose them.
+    progress_interval : float
+        [s] after which the progress moves where nobody tells what share is done.
     peaks_only : bool
         Whether to keep peaks, folds and errors of each curve, and not its points.
     """
@@ -95,6 +97,7 @@ class SweepOptions(Frozen):
     traced_share: float = 0.9
     max_rounds: int = 4
     save_interval: float = 1.0
+    progress_interval: float = 1.0
     peaks_only: bool = False
 
 

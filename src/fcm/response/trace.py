@@ -135,7 +135,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
         options=wanted.options.balance,
         other_options=wanted.options.others,
     )
-    system.work.poll = poll or system.work.poll
+    system.work.poll = so_far.poll if poll is None else poll
     by_need = wanted.harmonics is None
     try:
         check_contacts_can_close(system)
