@@ -81,7 +81,7 @@ def main() -> None:
     arguments.add_argument("--line", action="store_true", help="pairs slide on a line")
     given = arguments.parse_args()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    print("pairs\tharmonics\there [s]\tGB\terrors told\tstable told")
+    print("pairs\tharmonics\there [s]\tGB\terrors known\tstability known")
     with tempfile.TemporaryDirectory() as folder:
         for pairs in given.pairs:
             along, across = map(int, pairs.split("x"))

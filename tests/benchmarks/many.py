@@ -30,7 +30,7 @@ FORCES = 1.5, 0.6  # at its end, along and across
 
 
 class Taken(NamedTuple):
-    """Processor time [s], memory [GB], shares of points whose error and stability are told, peak of a dof."""
+    """Processor time [s], memory [GB], shares of points of known error and stability, peak of a dof."""
 
     seconds: float
     memory: float
@@ -95,7 +95,7 @@ def taken(scene: Path, harmonics: str) -> Taken:
 
 
 def strips(given: argparse.Namespace, folder: Path) -> None:
-    print("contacts\tharmonics\there [s]\tGB\terrors told\tstable told\tsampled [s]\tpeaks apart")
+    print("contacts\tharmonics\there [s]\tGB\terrors known\tstability known\tsampled [s]\tpeaks apart")
     for harmonics in given.harmonics:
         times = []
         for contacts in given.contacts:

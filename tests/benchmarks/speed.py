@@ -8,7 +8,7 @@ would be on a machine where that is 10 ns. The multiples carry over to other mac
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -31,10 +31,10 @@ DIFFERENTIATED = 30  # motions whose derivatives are marched, in memory
 Row = tuple[str, Callable[[], object], int]  # what, the call, elements that it handles
 
 
-def block(title: str, rows: list[Row], repeats: int = REPEATS) -> None:
+def block(title: str, rows: list[Row], repeats: int = 0) -> None:
     """Median times per element; the rows take turns, and each is divided by the sines of its turn."""
     times: list[list[tuple[float, float]]] = [[] for _ in rows]
-    for _ in range(repeats):
+    for _ in range(repeats or REPEATS):
         for samples, (_, call, elements) in zip(times, rows, strict=True):
             of_a_sine = sine()
             taken = seconds(call) / elements
@@ -59,15 +59,15 @@ def rectilinear() -> RegularGridInterpolator:
     return RegularGridInterpolator(axes, values, bounds_error=False)
 
 
-def coefficients() -> None:
+def coefficients(many: int = 1_000_000, calls: int = 2000) -> None:
     """Three coefficients of each of many contacts, and of one at a time."""
     table, box = fcm.open_table(), rectilinear()
-    x = contact_points(1_000_000)
+    x = contact_points(many)
     cells = locate(np.stack(x), table.resolution).q.astype(int)
     by_cell = tuple(part[np.lexsort(cells[::-1])] for part in x)
     count, points = x[0].size, np.column_stack(x)
     block(
-        "three coefficients, a million points, a point",
+        f"three coefficients, {many} points, a point",
         [
             ("closed form", lambda: fcm.fourier_coefficients(*x), count),
             ("closed form with derivatives", lambda: fcm.fourier_gradients(*x), count),
@@ -78,7 +78,6 @@ def coefficients() -> None:
         ],
     )
     one = tuple(map(float, (part[0] for part in x)))
-    calls = 2000
     block(
         "three coefficients, one point, a call from Python",
         [
@@ -107,11 +106,11 @@ def periodic(count: int = 2000) -> None:
     block("forces of any periodic motion, a motion", rows)
 
 
-def planar(count: int = 300) -> None:
+def planar(count: int = 300, each: Sequence[int] = (1, 3, 9)) -> None:
     """The kernel in a plane beside that on a line, and beside radial return with an error of 1e-4."""
     rng = np.random.default_rng(2)
     parameters = np.tile([0.6, 1.0, 1.0, 0.5, 0.0, 0.0], (count, 1))  # mu, k_u, k_v, n_0, start
-    for highest in (1, 3, 9):
+    for highest in each:
         harmonics = list(range(1, highest + 1))
         plane, line = PlanarContact(harmonics, harmonics), PeriodicContact(harmonics, harmonics)
         size = np.concatenate(([0.0, 0.0, 0.0], np.repeat(np.arange(1.0, highest + 1.0) ** -2, 6)))
