@@ -1,4 +1,4 @@
-"""Where along a curve it is not told whether a motion is stable."""
+"""Where along a curve it is unknown whether a motion is stable."""
 
 from __future__ import annotations
 

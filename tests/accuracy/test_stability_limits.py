@@ -94,7 +94,7 @@ def test_the_accuracy_holds_for_where_stability_is_lost(bouncing):
     up = exact.orbits.repeats[:5]
     assert up[:4].tolist() == [1.0] * 4 and up[4] != 1.0
     assert 0.742 * (1.0 - 1e-2) < first < 0.757 * (1.0 + 1e-2)
-    assert not curve.short_of and not any(one.sweep == "up" for one in curve.swept().untold)
+    assert not curve.short_of and not any(one.sweep == "up" for one in curve.swept().unknown)
 
 
 @pytest.mark.slow
@@ -104,7 +104,7 @@ def test_stability_is_not_said_to_be_lost_where_that_cannot_be_told(bouncing):
     held = [periodic(bouncing, omega).stable for omega in (0.72, 0.735, 0.742)]
     assert all(held)
     assert not (curve.stable[(curve.frequency > 0.7) & (curve.frequency < 0.742)] == 0.0).any()
-    unknown = [one for one in curve.swept().untold if one.sweep == "up"]
+    unknown = [one for one in curve.swept().unknown if one.sweep == "up"]
     lost = [one.frequency for one in curve.jumps() if one.sweep == "up"]
     assert (
         any(one.start < 0.742 and one.end > 0.757 for one in unknown) or 0.9 * 0.742 < lost[0] < 1.1 * 0.757

@@ -61,7 +61,7 @@ def test_the_exact_motion_is_offered_where_it_is_not_refused(kind):
     scene = SCENES[kind]().in_use()
     said = summary(Response.of(scene, [], "table"))
     said["curves"] = [{"parameters": {}, "may_not_be_unique": 3}]
-    offered = maybe_not_unique(said).endswith("--method exact --at F tells how far the motions range")
+    offered = maybe_not_unique(said).endswith("--method exact --at F computes how far the motions range")
     try:
         trace_exact(scene, [scene.frequency_range[0]])
     except ResponseError:

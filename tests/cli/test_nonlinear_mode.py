@@ -100,7 +100,7 @@ def test_the_picture(fcm, result, tmp_path):
         (["--force-level", 2], "--force-level needs --mode"),
         (
             ["--mode", 1, "--level", "1e-3"],
-            "'1e-3': give both ends, FROM:TO. Without --mode they are factors",
+            '"1e-3": give both ends, FROM:TO. Without --mode they are factors',
         ),
         (["--mode", 0, "--level", "1:2"], "0 is not in the range x>=1"),
     ],

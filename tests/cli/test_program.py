@@ -82,7 +82,7 @@ def test_every_command_exists_and_has_help(fcm, name):
 def test_a_command_that_there_is_not_is_told_by_another_name(fcm, name):
     """Each of a command, and of options, keys or pictures, that there are."""
     done = fcm(name, "scene.toml")
-    assert done.code == 2 and f"No such command '{name}': it is fcm" in done.err
+    assert done.code == 2 and f'No such command "{name}": it is fcm' in done.err
     command, *options = re.findall(r"fcm (\w+(?: modes)?)|(--\w+)|\[+(\w+)\]+", INSTEAD[name])
     helped = fcm(*command[0].split(), "--help").out
     for _, option, table in options:

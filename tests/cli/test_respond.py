@@ -43,7 +43,7 @@ def test_an_accuracy_may_be_in_percent(fcm, text, number):
 def test_what_is_no_accuracy_is_refused_with_one_that_is(fcm, text):
     done = fcm("respond", "yang1998-n5", "--accuracy", text)
     assert done.code == 2
-    assert f"{text!r} is not a relative error between 0 and 1, such as 0.01 or 1%" in " ".join(
+    assert f'"{text}" is not a relative error between 0 and 1, such as 0.01 or 1%' in " ".join(
         done.err.split()
     )
 
@@ -89,8 +89,8 @@ def test_json_is_all_of_standard_output(fcm, scene):
 
 
 def test_a_number_that_does_not_exist_is_null(fcm, scene):
-    untold = changed(peaks={"u": Peak(np.nan, np.nan), "v": Peak(np.nan, np.nan)})
-    done = fcm("respond", scene, "--json", place=untold)
+    unknown = changed(peaks={"u": Peak(np.nan, np.nan), "v": Peak(np.nan, np.nan)})
+    done = fcm("respond", scene, "--json", place=unknown)
     peak = json.loads(done.out)["curves"][0]["peak"]["u"]
     assert peak.pop("greatest_stable")["amplitude"] > 0.0  # that of the points, as the peak may not be stable
     assert peak == {
@@ -102,7 +102,7 @@ def test_a_number_that_does_not_exist_is_null(fcm, scene):
         "at_edge": False,
         "residual_change": None,
     }
-    assert fcm("respond", scene, place=untold).out.splitlines()[1].split()[:2] == ["-", "-"]
+    assert fcm("respond", scene, place=unknown).out.splitlines()[1].split()[:2] == ["-", "-"]
 
 
 def test_files_hold_the_points_that_were_reported(fcm, scene, tmp_path):
@@ -163,8 +163,8 @@ def test_a_shorter_step_gives_more_points(fcm, scene):
         (["-o", "folder.nc"], "it is a folder"),
         (["-o", "a.txt"], "the name has to end in .nc"),
         (["--csv", "a.nc"], "the name has to end in .csv"),
-        (["-o", "no/where/a.nc"], "there is no folder 'no/where'"),
-        (["-o", "scene.toml/a.nc"], "'scene.toml' is a file, and no folder"),
+        (["-o", "no/where/a.nc"], 'there is no folder "no/where"'),
+        (["-o", "scene.toml/a.nc"], '"scene.toml" is a file, and no folder'),
         (["-o", "x" * 300 + ".nc"], "it cannot be written: File name too long"),
         (["-o", "\udcff.nc"], "the name is not valid text"),
         (["--max-step", "0"], "must be greater than 0"),

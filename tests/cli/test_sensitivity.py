@@ -88,10 +88,10 @@ def test_only_of_peaks_of_a_balance(fcm, scene, args):
     assert done.code == 2 and "--sensitivity is of no use with" in done.err
 
 
-@pytest.mark.parametrize(("args", "told"), [((), False), (("--json",), True), (("-o", "a.nc"), True)])
-def test_where_sensitivities_are_told_nowhere_it_is_said(fcm, scene, args, told):
+@pytest.mark.parametrize(("args", "shown"), [((), False), (("--json",), True), (("-o", "a.nc"), True)])
+def test_where_nothing_shows_sensitivities_it_is_said(fcm, scene, args, shown):
     done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, *args)
-    assert done.code == 0 and ("the sensitivities are told nowhere" not in done.err) == told
+    assert done.code == 0 and ("the sensitivities are in no table" not in done.err) == shown
 
 
 def test_a_hidden_degree_of_freedom_has_none(fcm, scene):

@@ -19,7 +19,7 @@ def fitted(off, damping=None, off_damping=0.0):
     one = np.ones(1)
     return Fitted(
         keys=("contact.c.mu",), begin=one, values=one, error=0.1 * one, interval=np.array([[0.8, 1.2]]),
-        confidence=0.95, poor=0.1, correlation=np.eye(1), without_effect=0.0 * one, untold=0.0 * one,
+        confidence=0.95, poor=0.1, correlation=np.eye(1), without_effect=0.0 * one, undetermined=0.0 * one,
         at_bound=0.0 * one, alike=(), data=[FittedData(data, residual, error, 0)], starts=[], harmonics=(1,),
     )  # fmt: skip
 
@@ -56,17 +56,17 @@ def test_numbers_that_are_hardly_told_are_said_once_and_their_product():
         values=two,
         error=np.array([1.5, 3e4]),
         without_effect=0.0 * two,
-        untold=1.0 + 0.0 * two,
+        undetermined=1.0 + 0.0 * two,
         at_bound=0.0 * two,
         alike=((0, 1, 1.0),),
     )
     assert hardly.problems() == [
         "contact.c.mu and contact.c.n_0 are hardly determined by these data: their standard errors are 150 "
         "% and many times as large",
-        "contact.c.mu and contact.c.n_0 cannot be told apart: these data determine "
+        "contact.c.mu and contact.c.n_0 cannot be distinguished: these data determine "
         "contact.c.mu * contact.c.n_0 alone",
     ]
-    (said,) = replace(hardly, untold=np.array([1.0, 0.0]), alike=()).problems()
+    (said,) = replace(hardly, undetermined=np.array([1.0, 0.0]), alike=()).problems()
     assert said == "contact.c.mu is hardly determined by these data: its standard error is 150 %"
 
 

@@ -115,7 +115,7 @@ def continuation(figure):
 
 
 def errors(figure):
-    """The errors told of peaks beside the true ones, of the ten preloads of the paper's oscillator."""
+    """The estimated errors of peaks beside the true ones, of the ten preloads of the paper's oscillator."""
     axes, scene = figure.subplots(), fcm.load_scene("yang1998")
     best = fcm.respond(scene, harmonics=21).peak_amplitude.sel(dof="u").values
     for harmonics, marker, colour in ((1, "o", ORANGE), (3, "s", BLUE)):
@@ -128,7 +128,7 @@ def errors(figure):
     line = np.array([1e-5, 0.2])
     axes.plot(line, line, "k-", lw=0.6)
     axes.fill_between(line, 0.5 * line, 2.0 * line, color="0.9", lw=0)
-    axes.set(xscale="log", yscale="log", xlabel="true error of a peak", ylabel="error told")
+    axes.set(xscale="log", yscale="log", xlabel="true error of a peak", ylabel="estimated error of a peak")
     axes.legend()
 
 

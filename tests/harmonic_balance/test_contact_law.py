@@ -187,7 +187,7 @@ class Wrong(fcm.ContactLaw):
 @pytest.mark.parametrize(
     ("law", "said"),
     [
-        (Wrong(lambda x: x[0], lambda dx: dx), "the law Wrong of the contact 'joint': forces of shape"),
+        (Wrong(lambda x: x[0], lambda dx: dx), 'the law Wrong of the contact "joint": forces of shape'),
         (Wrong(lambda x: x, lambda dx: dx[0]), "changes of shape"),
         (Wrong(lambda x: x / 0.0 if x.any() else x, lambda dx: dx), "is not a finite number"),
     ],
@@ -209,7 +209,7 @@ class Doubled(Cubic):
 def test_changes_that_are_not_those_of_the_forces_are_told_before_anything_is_solved(numbers):
     contact = DATA["contact"][0] | numbers
     scene = scene_from_dict(DATA | {"contact": [contact]}, "own.toml").with_laws({"joint": Doubled(1.0, 0.1)})
-    said = r"the law Doubled of the contact 'joint': its changes are off by 1 from central differences"
+    said = r'the law Doubled of the contact "joint": its changes are off by 1 from central differences'
     with pytest.raises(ContactLawError, match=said):
         fcm.respond(scene, "closed-form")
     for law in (Cubic(1.0, 0.1), Friction(0.4, 1.0, 0.5, 2.0), Friction(0.4, 1.0, 0.5, 2.0, 0.3)):
@@ -218,7 +218,7 @@ def test_changes_that_are_not_those_of_the_forces_are_told_before_anything_is_so
 
 def test_contacts_that_cannot_have_it():
     scene = scene_from_dict(DATA, "own.toml")
-    with pytest.raises(ValueError, match="no contact is called 'joints'; there are 'joint'"):
+    with pytest.raises(ValueError, match='no contact is called "joints"; there are "joint"'):
         scene.with_laws({"joints": Cubic(1.0, 0.0)})
     with pytest.raises(ValueError, match=r"no fcm\.ContactLaw"):
         scene.with_laws({"joint": lambda x: x})

@@ -45,7 +45,7 @@ def test_where_stability_changes_the_point_belongs_to_neither_side_and_the_jump_
     sides = np.delete(curve.frequency, at)
     np.testing.assert_array_equal(_stable_from_above(scene, sides), sides < curve.frequency[at])
     swept = curve.swept()
-    assert swept.jumps[0].frequency == curve.frequency[at] and swept.untold == []
+    assert swept.jumps[0].frequency == curve.frequency[at] and swept.unknown == []
 
 
 def _stable_from_above(scene, frequencies):

@@ -45,7 +45,7 @@ def test_triangles_point_where_the_sweep_went(unit):
 
 def test_names_stay_within_the_frame_where_legends_above_and_below_take_room():
     curves = [
-        curve(n_0, stable=FREQUENCY < 1.3, untold=FREQUENCY > 1.8, truncation_error=0.5 * (FREQUENCY - 1.0))
+        curve(n_0, stable=FREQUENCY < 1.3, unknown=FREQUENCY > 1.8, truncation_error=0.5 * (FREQUENCY - 1.0))
         for n_0 in (1.0, 4.0)
     ]
     figure = draw_response(

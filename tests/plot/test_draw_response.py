@@ -143,10 +143,10 @@ def test_unstable_parts_are_dashed_and_join_the_stable_ones():
 
 
 def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so():
-    stable, untold = np.ones((2, 201), bool)
-    stable[80:90], untold[:] = False, False
-    untold[120:140] = True
-    figure = draw_response(response(resonance(9.0, 1.2, 5.0, stable=stable, untold=untold)))
+    stable, unknown = np.ones((2, 201), bool)
+    stable[80:90], unknown[:] = False, False
+    unknown[120:140] = True
+    figure = draw_response(response(resonance(9.0, 1.2, 5.0, stable=stable, unknown=unknown)))
     solid, dashed, dotted = figure.axes[0].lines
     assert np.isnan(solid.get_ydata()).sum() == 30 and np.isfinite(dashed.get_ydata()).sum() == 12
     assert np.flatnonzero(np.isfinite(dotted.get_ydata())).tolist() == list(range(119, 141))
@@ -335,7 +335,7 @@ def test_the_numbers_that_a_fit_found_stand_beside_what_was_measured():
     assert [text.get_text() for text in legend.get_texts()] == [
         "measured",
         "contact.shroud.mu = 0.3012 ± 0.0042",
-        "contact.shroud.n_0 = 9, scatter not told",
+        "contact.shroud.n_0 = 9, standard error unknown",
     ]
 
 

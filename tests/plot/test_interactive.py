@@ -124,8 +124,8 @@ def test_the_branch_of_a_point_is_told_where_there_are_several(tmp_path):
     gap = np.array([1.0, 2.0, np.nan, 1.0, 2.0])
     height = np.array([[1.0], [2.0], [np.nan], [3.0], [4.0]])
     stable = np.array([True, True, True, False, False])
-    untold = np.zeros(5, dtype=bool)
-    curve = DrawnCurve({}, gap, height, stable, untold, frozenset(), None, np.full(5, 0.01))
+    unknown = np.zeros(5, dtype=bool)
+    curve = DrawnCurve({}, gap, height, stable, unknown, frozenset(), None, np.full(5, 0.01))
     response_page(DrawnResponse(("u",), "rad/s", (curve,)), None, None, tmp_path / "a.html")
     text = (tmp_path / "a.html").read_text(encoding="utf-8")
     assert '"stable, branch 1"' in text and '"unstable, branch 2"' in text and '"1.0e-02"' in text

@@ -56,7 +56,7 @@ def test_what_is_not_told_is_not_stable(path):
     with netCDF4.Dataset(path, "a") as data:
         data["stable"][1, 0] = NAN
     first, second = read_response(path).curves
-    assert first.untold.tolist() == [False] * 3 and second.untold.tolist() == [True, False]
+    assert first.unknown.tolist() == [False] * 3 and second.unknown.tolist() == [True, False]
 
 
 def test_its_unstable_part_is_drawn_dashed(path):

@@ -23,7 +23,9 @@ from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.shooting.initial_orbits import solution_at
 
-SAID = r"the k_u of contact (\w+) is .*\. Try (\S+), nearly rigid; half of that tells how nearly"
+SAID = (
+    r"the k_u of contact (\w+) is .*\. Try (\S+), nearly rigid, and half of that to see how much it matters"
+)
 FRICTION = 0.5  # over the amplitude of the force
 
 

@@ -33,7 +33,7 @@ STUDY = Recorded(
     "Random scenes", "make study", "study.txt",
     "Two hundred scenes of one to four contacts and two to twelve modes, stiffness ratios from 1e-3 to 1e6: "
     "how many are complete with three step limits and agree, and how true peaks and errors are with the "
-    "accuracy 1e-2. Alone: no exact motion is beside the peak. Untold: the method cannot tell an error. 2x: "
+    "accuracy 1e-2. Alone: no exact motion is beside the peak. Unknown: no error is estimated. 2x: "
     "estimates within a factor of two; low3, high3: those off by more than three. Last, what exact curves of "
     "24 scenes of seven modes and more take that hardly anything damps.",
 )  # fmt: skip

@@ -113,7 +113,7 @@ def main(count: int = 200, at_once: int = 2) -> None:
 def report(found: Sequence[Peak]) -> None:
     """Print how true peaks and their errors are."""
     print(f"estimates are compared where the error or the estimate is above {SMALLEST:g}")
-    print("contacts  peaks  alone  within    median    9 in 10 untold  compared in 2x  low3 high3")
+    print("contacts  peaks  alone  within    median    9 in 10 unknown  compared in 2x  low3 high3")
     for contacts in sorted({peak.contacts for peak in found}):
         print(f"{contacts:8d} {shares([peak for peak in found if peak.contacts == contacts])}")
     print(f"     all {shares(found)}")

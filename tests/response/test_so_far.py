@@ -54,7 +54,7 @@ def test_the_last_of_several_is_kept_and_each_is_told():
         traced_curve(one, FINE, tell=stops)
     (curve,) = stopped.value.results
     assert len(curve.harmonics) > 3
-    assert stops.told[0] == "1 harmonic, error not told yet; now its errors"
+    assert stops.told[0] == "1 harmonic, error not estimated yet; now its errors"
     assert stops.told[1].startswith("1 harmonic, error 6")
     assert all("; now " in text for text in stops.told)
 
@@ -119,7 +119,7 @@ def test_before_the_errors_the_curve_of_given_harmonics_is_kept():
     with pytest.raises(Interrupted) as stopped:
         traced_curve(scene("yang1998", 5), Request((1,)), tell=stops)
     (curve,) = stopped.value.results
-    assert stops.told == ["1 harmonic, error not told yet; now its errors"]
+    assert stops.told == ["1 harmonic, error not estimated yet; now its errors"]
     assert curve.harmonics == (1,) and "before its stability was known" in curve.reason
     assert curve.peaks["u"].amplitude == pytest.approx(15.831, abs=1e-3)
 

@@ -77,7 +77,7 @@ def test_the_greatest_stable_motion_is_told_where_the_peak_is_none():
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
-    path = tmp_path_factory.mktemp("untold") / "scene.toml"
+    path = tmp_path_factory.mktemp("unknown") / "scene.toml"
     path.write_text(SCENE)
     return path
 
@@ -94,7 +94,7 @@ def test_the_motion_jumps_where_it_is_said_that_it_may(scene, curve):
     loaded = package.load_scene(scene)
     (exact,) = trace_exact(loaded, tuple(np.linspace(1.06, 1.16, 11))).curves
     (true,) = (jump for jump in exact.jumps() if jump.sweep == "up")
-    first = next(one for one in curve.swept().untold if one.sweep == "up")
+    first = next(one for one in curve.swept().unknown if one.sweep == "up")
     assert first.start < true.frequency < first.end
     assert next(jump.frequency for jump in curve.jumps() if jump.sweep == "up") > 1.5 * true.frequency
 
@@ -130,14 +130,14 @@ def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
     for one, said in ((without_points(curve), lambda c: c.condensed.swept), (alone, lambda c: c.swept())):
         (kept,) = unpacked(pickle.dumps([one]), KINDS)
         met, found = (
-            ([w.start for w in of.untold], [jump.frequency for jump in of.jumps])
+            ([w.start for w in of.unknown], [jump.frequency for jump in of.jumps])
             for of in (said(one), said(kept))
         )
         assert any(met) and met == found
 
 
 def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):
-    for one in curve.swept().untold:
+    for one in curve.swept().unknown:
         (at,) = np.flatnonzero(curve.frequency == one.start)
         beside = curve.stable[[at - 1, at + 1]]
         assert curve.stable[at] == 1.0 and np.isnan(beside).any()
@@ -146,13 +146,13 @@ def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):
 
 def test_summary_and_file_say_the_same(fcm, scene, tmp_path, curve):
     (printed,) = json.loads(fcm("respond", str(scene), "--json", "-o", "a.nc").out)["curves"]
-    found = [(one["sweep"], one["from"], one["to"]) for one in printed["stability_untold"]]
-    assert found == [(one.sweep, one.start, one.end) for one in curve.swept().untold]
+    found = [(one["sweep"], one["from"], one["to"]) for one in printed["stability_unknown"]]
+    assert found == [(one.sweep, one.start, one.end) for one in curve.swept().unknown]
     with netCDF4.Dataset(tmp_path / "a.nc") as file:
         (kept,) = json.loads(file.summary)["curves"]
         assert file["peak_stable"][:].tolist() == [[0.0] * 4]
     assert [peak["stable"] for peak in printed["peak"].values()] == [False] * 4
-    assert kept["stability_untold"] == printed["stability_untold"]
+    assert kept["stability_unknown"] == printed["stability_unknown"]
 
 
 @pytest.mark.parametrize("unknown", [(), (1, 2), (5, 6), (0,), (4, 5)])
@@ -171,14 +171,14 @@ def test_upwards_a_sweep_is_in_doubt_on_what_it_passes_alone(unknown):
     }
     found = swept(w, a, stable)
     assert [jump.frequency for jump in found.jumps if jump.sweep == "up"] == [3.0]
-    ups = [one for one in found.untold if one.sweep == "up"]
+    ups = [one for one in found.unknown if one.sweep == "up"]
     assert [(one.start, one.end, one.before[0]) for one in ups] == expected[unknown]
 
 
 def test_all_that_is_known_to_be_unstable_is_no_doubt():
     w = np.array([1.0, 2.0, 3.0])
     found = swept(w, w[:, None], np.zeros(3))
-    assert found.jumps == found.untold == []
+    assert found.jumps == found.unknown == []
 
 
 @pytest.mark.parametrize("begin", range(8))
@@ -233,4 +233,4 @@ def test_a_sweep_comes_to_a_change_of_stability_at_a_point_that_is_there_twice(s
     frequency = np.array([1.0, 1.5, 2.0, 2.0, 2.5, 3.0])[::side]
     stable = np.array([0.0, 0.0, beyond, 1.0, 1.0, 1.0])[::side]
     found = swept(frequency, frequency[:, None], stable)
-    assert [(one.sweep, one.frequency) for one in found.jumps] == [("down", 2.0)] and not found.untold
+    assert [(one.sweep, one.frequency) for one in found.jumps] == [("down", 2.0)] and not found.unknown

@@ -76,7 +76,7 @@ def test_sides_that_coincide_are_told_by_the_elements(tmp_path):
     turned = cells.replace("200", "300").replace("201", "200").replace("300", "201")
     scene = read(tmp_path, text=deck(first, second, tip + turned))
     assert weights(scene, scene.contacts[0].normal)["1x"] == pytest.approx(-0.6)
-    assert "which side is which is not told by gaps nor by elements" in refused(tmp_path, gap=0.0)
+    assert "which side is which is unknown: neither gaps nor elements" in refused(tmp_path, gap=0.0)
 
 
 def test_a_given_normal_is_taken_and_asked_about(tmp_path):
@@ -129,7 +129,7 @@ def test_nodes_that_touch_the_ground_press_out_of_their_elements(tmp_path):
         assert found == pytest.approx({"4x": 0.6 * sign, "4y": 0.8 * sign})
         assert [one.n_0 for one in scene.contacts] == pytest.approx([0.5] * 12)
     text = refused(tmp_path, {"nodes": data})
-    assert "which side is which is not told by the elements of the mesh" in text
+    assert "which side is which is unknown: the elements of the mesh" in text
 
 
 def test_totals_are_shared_by_areas_of_the_pairs(tmp_path):

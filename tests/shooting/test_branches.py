@@ -336,8 +336,8 @@ def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do():
     curve = curve_of(of(1e12), options=ResponseOptions(exact=ExactOptions(stiff_seconds=1e-9)))
     said = re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "
-        r"as stiff as the structure there, so that .*\. Try (\S+), nearly rigid; "
-        r"half of that tells how nearly",
+        r"as stiff as the structure there, so that .*\. Try (\S+), nearly rigid, and "
+        r"half of that to see how much it matters",
         curve.reason,
     )
     assert said and not curve.complete and not curve.points

@@ -162,7 +162,7 @@ def test_what_cannot_be_asked_for():
     for wrong in ([], [0.0], [-1.0], [np.nan], [1.0, np.inf]):
         with pytest.raises(ResponseError, match="positive"):
             trace_exact(scene, at=wrong)
-    with pytest.raises(ResponseError, match="need the method 'exact'"):
+    with pytest.raises(ResponseError, match='need the method "exact"'):
         fcm.respond(scene, "table", at=[1.0])
     with pytest.raises(ResponseError, match="table, closed-form, exact"):
         fcm.respond(scene, "magic")

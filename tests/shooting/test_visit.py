@@ -74,7 +74,8 @@ def test_of_a_contact_too_stiff_to_visit_it_is_said_what_would_do():
     ).curves
     assert re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact \S+ is \S+ times as "
-        r"stiff as the structure there, so that .*\. Try \S+, nearly rigid; half of that tells how nearly",
+        r"stiff as the structure there, so that .*\. Try \S+, nearly rigid, "
+        r"and half of that to see how much it matters",
         curve.reason,
     )
     (slow,) = trace_exact(yang(), [1.0], options=within(1e-9)).curves

@@ -229,11 +229,8 @@ def test_where_the_pair_has_no_neighbour_none_is_sought(monkeypatch):
     assert looked and not any(omega < 11.45 for omega in looked)
     np.testing.assert_array_equal(left.stable, sought.stable)
     every = stability(system, path, without_neighbour=np.ones(len(path.z), dtype=bool))
-    untold = np.isnan(every.stable) & ~np.isnan(sought.stable)
-    assert (
-        untold.any()
-        and (every.stable[~untold] == sought.stable[~untold])[~np.isnan(sought.stable[~untold])].all()
-    )
+    lost = np.isnan(every.stable) & ~np.isnan(sought.stable)
+    assert lost.any() and (every.stable[~lost] == sought.stable[~lost])[~np.isnan(sought.stable[~lost])].all()
 
 
 def test_three_harmonics_tell_the_stability_beside_the_fold_at_which_the_upper_branch_ends():

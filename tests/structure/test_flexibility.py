@@ -267,4 +267,4 @@ def test_a_scene_says_what_is_kept_and_how_far_it_is_off(tmp_path):
 def test_a_range_beyond_the_modes_is_said(tmp_path):
     one = scene(tmp_path, modes=1)
     assert any("within the range that are not kept" in note for note in one.notes)
-    assert any("how far it is off cannot be told" in note for note in one.notes)
+    assert any("how far it is off is unknown" in note for note in one.notes)

@@ -13,7 +13,7 @@ from fcm.response.track import track
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 
-from ..response.test_untold import SCENE
+from ..response.test_unknown_stability import SCENE
 
 OPTIMUM = '[optimum]\nvary = ["contact.c0.n_0"]\nbounds = [[-1.8, -1.6]]\nminimise = "peak.d0"\n'
 NEAR = 0.02  # relative, by which an amplitude of so few harmonics may differ from the true one

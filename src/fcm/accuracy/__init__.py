@@ -1,2 +1,2 @@
-"""How wrong a curve of a balance is, told by its embedded pair, and as many harmonics as an accuracy
+"""How wrong a curve of a balance is, estimated by its embedded pair, and as many harmonics as an accuracy
 takes."""

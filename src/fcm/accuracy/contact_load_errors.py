@@ -1,4 +1,4 @@
-"""How wrong it is what the contacts bear along a curve of a balance: told by its embedded pair."""
+"""How wrong it is what the contacts bear along a curve of a balance: estimated by its embedded pair."""
 
 from __future__ import annotations
 

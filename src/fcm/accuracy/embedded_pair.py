@@ -1,4 +1,4 @@
-r"""How wrong a curve of a balance is, told by its embedded pair: the curve and that of a reference with
+r"""How wrong a curve of a balance is, estimated by its embedded pair: the curve and that of a reference with
 more harmonics.
 
 As of an embedded pair of Runge-Kutta formulas the difference of both is the error of the lower,
@@ -98,7 +98,7 @@ def errors_along(
     """Errors of the points of a path of a system's balance; quantities is what is reported along it, if
     known.
 
-    Where the reference's own branch does not come to a frequency nothing is told, see `with_nearest`.
+    Where the reference's own branch does not come to a frequency nothing is known, see `with_nearest`.
     """
     quantities = quantities or reported_quantities(system, path)
     contacts = ContactRecord.at(system, path.z)
@@ -184,7 +184,7 @@ def _same_error(
 
 
 def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> Errors:
-    """Errors of a path of which none is told; quantities is what is reported along it."""
+    """Errors of a path of which none is known; quantities is what is reported along it."""
     contacts, nan = ContactRecord.at(system, path.z), np.nan
     none, unseen = np.full_like(quantities.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
     contact_loads = np.full_like(contacts.contact_loads, nan)
@@ -328,7 +328,7 @@ def _set_errors_of_peaks(
     followed: list[FollowedStretch],
     met: Indices,
 ) -> tuple[FloatArray, Mask]:
-    """Greatest amplitudes (dof,) of the reference, and whether their errors are told.
+    """Greatest amplitudes (dof,) of the reference, and whether their errors are known.
 
     error (point, dof), in units of the reference's curve, has then at the greatest amplitudes by how much
     these differ: of a peak in height, at an end of the path at the same frequency. What a reference with

@@ -75,7 +75,7 @@ class PairOptions(Frozen):
         Part of that, that following the reference one way may take before others are followed,
     level_fraction : float
         and part of what is left of it, that the level of the forces may take at one frequency, times
-        the part of the points of which nothing is told yet.
+        the part of the points of which nothing is known yet.
     interval_factor : int
         `point_interval` over the next one, at which motions are tried that may lead to the reference.
     probes, min_found : int, float
@@ -100,9 +100,9 @@ class PairOptions(Frozen):
         amplitudes and frequency, up to which a fold elsewhere is that of the curve.
     peak_spacing : float
         Part of the length of a curve: of the greatest amplitudes of degrees of freedom that lie so closely
-        together one tells for all what the harmonics do that are left out, and of tops and folds which.
+        together one shows for all what the harmonics do that are left out, and of tops and folds which.
     reference_error : float
-        Part of a displacement, by which the reference itself is off: no error at a point is told to be less.
+        Part of a displacement, by which the reference itself is off: no estimated error at a point is less.
     second_factor : int
         Times the reference's harmonics those of its own reference are, which is looked for at peaks and where
         the reference is not to be believed,
@@ -112,7 +112,7 @@ class PairOptions(Frozen):
         and with no more unknowns than this,
     feedback_factor : float
         Times what harmonics do without feedback, what they do: where that of those that the reference lacks
-        is more than the error that it tells, what it is off by itself is looked for,
+        is more than the error that it gives, what it is off by itself is looked for,
     max_spectra, max_uncertain : int
         at so many points of a curve at most, of so many at which the harmonics that it lacks are known.
     peak_offsets : tuple of int
@@ -258,7 +258,7 @@ class RefinementOptions(Frozen):
     complete_harmonics : int
         Harmonic up to which no single one is left out: stability between folds may hang on it.
     max_seconds_without_progress : float
-        [s] that rounds may take of which nothing tells that they bring the accuracy nearer.
+        [s] that rounds may take of which nothing shows that they bring the accuracy nearer.
     """
 
     max_rounds: int = 8
@@ -278,7 +278,7 @@ REFINEMENT = RefinementOptions()
 
 
 class ValidityOptions(Frozen):
-    """Up to which errors the stability of solutions is told.
+    """Up to which errors the stability of solutions is known.
 
     Attributes
     ----------
@@ -311,7 +311,7 @@ class StabilityLimitOptions(Frozen):
     first_distance : float
         from these on.
     tolerance : float
-        Part of the way between two points, to which it is found: an error is told to a few parts of itself,
+        Part of the way between two points, to which it is found: an error is known to a few parts of itself,
     relative_tolerance : float
         or to this part of itself, and of what it may be,
     max_evaluations : int

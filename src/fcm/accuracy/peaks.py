@@ -1,4 +1,4 @@
-"""The greatest amplitudes of the reference of a curve, and where they cannot be told."""
+"""The greatest amplitudes of the reference of a curve, and where they are unknown."""
 
 from __future__ import annotations
 

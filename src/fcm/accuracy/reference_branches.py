@@ -123,7 +123,7 @@ class _Search:
 
     @property
     def unknown_fraction(self) -> float:
-        """Part of the points of the paths from the first on of which nothing is told yet."""
+        """Part of the points of the paths from the first on of which nothing is known yet."""
         size = np.concatenate([one.size for one in self.unknown[self.first :]])
         return float(np.isfinite(size).mean()) if size.size else 0.0
 
@@ -155,7 +155,7 @@ class _Search:
                 break
 
     def _places(self, interval: int) -> Iterator[tuple[int, int]]:
-        """Paths and points on them, of the smallest motions of which nothing is told yet."""
+        """Paths and points on them, of the smallest motions of which nothing is known yet."""
         for one in self.unknown:
             one.tried[:] = False
         while self.budget.seconds > 0.0:

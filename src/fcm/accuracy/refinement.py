@@ -84,7 +84,7 @@ class RefinedResponse(UncheckedResponse):
 
     @property
     def agrees(self) -> bool:
-        """Whether the pair does: it is accurate, or folds alone cannot be told, which more do not change."""
+        """Whether the pair does: it is accurate, or folds alone are unknown, which more do not change."""
         unknown = np.isnan(self.peak[self.dofs_of_interest]).any()
         return self.reached or (self.max_known_error <= self.accuracy and not unknown)
 
@@ -235,7 +235,7 @@ def with_errors(
 
 
 def without_errors(outline: UncheckedResponse) -> RefinedResponse:
-    """A response of whose errors none is told."""
+    """A response of whose errors none is known."""
     system, response, quantities = outline.system, outline.traced, outline.quantities
     every = zip(response.branches.paths, quantities, strict=True)
     errors = tuple(unknown_errors(system, *one) for one in every)

@@ -38,7 +38,7 @@ from fcm.model.scene import FloatArray
 class LevelSolutions(Frozen):
     """Solutions at one frequency with some harmonics, z (unknown + 1,), and whether their level was followed
     to its end, or back to its beginning; how far it is to be followed with more harmonics, infinite if that
-    is not told; and where it turned.
+    is unknown; and where it turned.
     """
 
     omega: float

@@ -51,7 +51,7 @@ class FoldOptions(Frozen):
     circle_points: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
     max_steps: int = 400  # steps of a curve
     max_retreats: int = 4  # of a curve by a step after which no fold was found, to take a shorter one
-    report_interval: int = 16  # steps after which it is told what they took
+    report_interval: int = 16  # steps after which it is reported what they took
     curve_tolerance: float = 0.3  # of a step: a known fold this near to a curve is on it
     work_fraction: float = 0.5  # of the work before, that all curves may take,
     min_seconds: float = 1.0  # and seconds of work that they may in any case
@@ -159,7 +159,7 @@ class LevelCurveOptions(Frozen):
         Relative difference of the levels from which both go back, up to which they are at one corner. Then no
         other step goes on.
     few_harmonics : int
-        Harmonics whose curve tells those of more how far they are to be followed,
+        Harmonics whose curve shows those of more how far they are to be followed,
     few_unknowns : int
         or as many as make this many unknowns.
     reliable_harmonics : int

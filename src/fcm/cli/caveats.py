@@ -278,17 +278,17 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
     followed = [*_completed(summary), *summary.get("tracked", {}).get("curves", ())]
     shown = shown_dofs(summary) if summary["curves"] and "peak" in summary["curves"][0] else []
-    untold = [
+    one_of_many = [
         curve for curve in followed if curve.get("may_not_be_unique") and not _range_is_known(curve, shown)
     ]
-    count = sum(curve["may_not_be_unique"] for curve in untold)
+    count = sum(curve["may_not_be_unique"] for curve in one_of_many)
     if not count:
         return ""
     how, of_levels = _how(summary), any("level_folds" in curve for curve in summary["curves"])
     points = f"{count} point{'s' * (count > 1)}"
     tells = "By how much amplitudes may differ was not estimated"
     if how:
-        tells += f": {how}{', at the level 1,' if of_levels else ''} tells how far the motions range"
+        tells += f": {how}{', at the level 1,' if of_levels else ''} computes how far the motions range"
     elif any("mode" in curve for curve in summary["curves"]):
         tells += ": a run without --mode estimates it at peaks"
     return f"at {points} the motion may be one of many. {tells}"
@@ -329,7 +329,7 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     if share == "0":
         return f"{_KEEPS}: {where}it changes no peak"
     how = _how(summary)
-    tells = f". {how} tells how far the motions range" if how else ""
+    tells = f". {how} computes how far the motions range" if how else ""
     return (
         f"{_KEEPS}: {where}it may change a peak by up to {share} of it, estimated. That is an uncertainty "
         f"of the peak{tells}"

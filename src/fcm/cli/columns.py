@@ -11,8 +11,8 @@ from fcm.frozen import Frozen
 
 UNSTABLE = "!"  # beside a peak where the motion is not stable
 DOES_NOT_STAY = "unstable: with these harmonics the motion is not stable there, and leaves this peak"
-UNKNOWN = "?"  # beside that of which it is not told whether it is stable
-STABILITY_UNKNOWN = "stability is unknown there: more harmonics may tell"
+UNKNOWN = "?"  # beside that of which it is unknown whether it is stable
+STABILITY_UNKNOWN = "stability is unknown there: more harmonics may show it"
 STABILITY_NOT_YET_KNOWN = "stability is unknown there: the run was interrupted before"
 
 

@@ -24,7 +24,7 @@ from fcm.cli.columns import (
     stopped_early,
     swept,
 )
-from fcm.cli.jump_table import is_seen, jump_table, resolution_of, stable_table, untold_table
+from fcm.cli.jump_table import is_seen, jump_table, resolution_of, stable_table, unknown_stability_table
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
 
@@ -32,18 +32,18 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, but for rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_UNTOLD = (
+_UNKNOWN = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
-    "More --harmonics, or --accuracy, may tell it"
+    "More --harmonics, or --accuracy, may give it"
 )
 _THERE = "~"  # beside an error at the frequency of a peak, where that of the peak is not known
 _OF_THERE = (
     f"{_THERE} the error of the motion at that frequency. Of the peak it is unknown: with more harmonics "
-    "none is near, or a higher one is elsewhere. More --harmonics, or --accuracy, may tell it"
+    "none is near, or a higher one is elsewhere. More --harmonics, or --accuracy, may give it"
 )
 _OF_LEVELS = (
     "- unknown error: what more harmonics would change could not be estimated at this peak. "
-    "More --harmonics may tell it"
+    "More --harmonics may give it"
 )
 _BEYOND = (
     f"{BEYOND} the error is more than the peak, so that these harmonics do not suffice. Give more by "
@@ -75,7 +75,7 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     tables = [
         stable_table(curves, names, moving, unit),
         jump_table(curves, names, moving, unit, resolution_of(summary)),
-        untold_table(curves, names, moving, unit),
+        unknown_stability_table(curves, names, moving, unit),
     ]
     parts += filter(None, tables)
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
@@ -136,7 +136,7 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     jumps = {
         f"jump {sweep} at {unit}": one
         for sweep, one in found["jumps"].items()
-        if one["share"] or one["untold"]
+        if one["share"] or one["unknown"]
     }
     rows = []
     for dof in dofs if found["peak"] else ():
@@ -156,24 +156,24 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     if not rows:
         return head
     percents = next(iter(found["jumps"].values()))["frequency"]
-    untold = "\nunknown: stability is not known, and a sweep may jump"
+    unknown = "\nunknown: stability is not known, and a sweep may jump"
     return (
         f"{head}\n"
         + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
-        + (untold if any(one["untold"] for one in jumps.values()) else "")
+        + (unknown if any(one["unknown"] for one in jumps.values()) else "")
     )
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
     """How many of the peaks are unstable, or may be."""
-    shares = ((peak["unstable"], "unstable"), (peak["untold"], "of unknown stability"))
+    shares = ((peak["unstable"], "unstable"), (peak["unknown"], "of unknown stability"))
     return ", ".join(f"{100.0 * share:.0f} % {what}" for share, what in shares if share)
 
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
     """Of how many curves the percentiles of a jump are, and of how many it is not known."""
-    untold = f", unknown of {100.0 * jump['untold']:.0f} %" if jump["untold"] else ""
-    return f"of {100.0 * jump['share']:.0f} % of the curves{untold}"
+    unknown = f", unknown of {100.0 * jump['unknown']:.0f} %" if jump["unknown"] else ""
+    return f"of {100.0 * jump['share']:.0f} % of the curves{unknown}"
 
 
 def _minimised(summary: Mapping[str, Any]) -> list[str]:
@@ -263,16 +263,18 @@ def _curves(
     each = [*((curve["peak"].get(dof) or {}) for curve in curves for dof in dofs), *lower]
     if any((one.get("error") or 0.0) > 1.0 for one in each):
         lines.append(_BEYOND)
-    if any(_untold(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"):
+    if any(
+        _unknown_error(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"
+    ):
         there = [
             "error_at_frequency" in curve["peak"][dof]
             for curve in curves
             for dof in dofs
-            if _untold(curve, dof)
+            if _unknown_error(curve, dof)
         ]
         lines += [_OF_THERE] if any(there) else []
         if not all(there):
-            lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
+            lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNKNOWN)
     return "\n".join(lines)
 
 
@@ -319,7 +321,7 @@ def _mark_of(peak: Mapping[str, Any]) -> str:
     return UNKNOWN if peak["stable"] is None else UNSTABLE
 
 
-def _untold(curve: Curve, dof: str) -> bool:
+def _unknown_error(curve: Curve, dof: str) -> bool:
     """Whether the error of a peak of a balance is not known."""
     peak = curve["peak"].get(dof) or {}
     return "harmonics" in curve and bool(peak.get("amplitude")) and peak.get("error") is None
@@ -409,7 +411,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     if summary.get("method") == "table" and table and not summary.get("directions"):
         errors.append(f"{table:.1e} of the table, not of the points")
     if harmonic is not None:
-        untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
+        unknown = any(_unknown_error(curve, dof) for curve in curves for dof in curve["peak"])
         shown = shown_dofs(summary)  # of which the table has the peaks
         peaks, lower, others = [], [0.0], []
         for curve in curves:
@@ -419,8 +421,8 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
             several = (one for dof in shown for one in curve.get("peaks", {}).get(dof, ()))
             lower += [one["error"] for one in several if one.get("error")]
             others += [one["error"] * one["amplitude"] / greatest for one in told.values()]
-        harmonic = max([harmonic, *others])  # also where what lies around is not told
-        if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
+        harmonic = max([harmonic, *others])  # also where what lies around is unknown
+        if harmonic > 0.0 or not unknown:  # the 0 of a motion at rest says nothing of peaks
             of_all = f"{harmonic:.1e}"
             if peaks:
                 alone = _amount(max(peaks))
@@ -432,7 +434,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
                 of_all = alone
                 if max(peaks) < harmonic:
                     of_all = f"{of_peaks} and {of_any}{_where(summary, harmonic)}"
-            but = ", and of some peaks unknown" if untold else ""
+            but = ", and of some peaks unknown" if unknown else ""
             errors.append(f"{of_all}, by the harmonics left out{but}")
         if places := [at for one in _peaks_of(curves, shown) if (at := one.get("frequency_error"))]:
             errors.append(f"{max(places):.1e} of the frequencies of the greatest peaks")
@@ -467,7 +469,7 @@ def _amount(error: float) -> str:
 
 
 def _where(summary: Mapping[str, Any], error: float) -> str:
-    """At which frequency an error of a curve is as large; empty where that is not told."""
+    """At which frequency an error of a curve is as large; empty where that is unknown."""
     at = [one.get("truncation_error_at") for one in summary["curves"] if one.get("truncation_error") == error]
     return f", most at {at[0]:.6g} {summary['frequency_unit']}" if at and at[0] is not None else ""
 

@@ -159,7 +159,7 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
         f"changes an amplitude by up to {100.0 * spread:.0f} % (family_least to family_greatest). [start] "
         "friction chooses one"
     )
-    partly = sum(int((one.family_complete == 0.0).sum()) - _untold(one) for one in families)
+    partly = sum(int((one.family_complete == 0.0).sum()) - _unknown(one) for one in families)
     if partly:
         yield (
             f"at {partly} of them it may change more: not every residual friction was reached "
@@ -177,7 +177,7 @@ def _spread(orbits: Orbits) -> float:
 
 
 def _uncertain(found: Sequence[Orbits]) -> Iterator[str]:
-    count = sum(map(_untold, found))
+    count = sum(map(_unknown, found))
     if count:
         yield (
             f"points that may not be unique: {count}. A contact never slips there, and not every residual "
@@ -185,7 +185,7 @@ def _uncertain(found: Sequence[Orbits]) -> Iterator[str]:
         )
 
 
-def _untold(orbits: Orbits) -> int:
+def _unknown(orbits: Orbits) -> int:
     """Points of which no other motion was found, but not every residual friction was tried."""
     import numpy as np
 

@@ -107,7 +107,7 @@ def _searches(found: Mapping[str, Any]) -> str:
 
 
 def caveats(result: Mapping[str, Any]) -> list[str]:
-    """What of the numbers is not told, and what would tell it."""
+    """Which numbers are undetermined, and what would determine them."""
     found = result.get("fitted")
     return [] if found is None else [*found["problems"], *found["advice"]]
 

@@ -1,5 +1,5 @@
 """Tables of jumps, where a slow sweep of the frequency leaves a curve's stable part; and of where that is not
-known, as it is not told whether the motion is stable."""
+known, as it is unknown whether the motion is stable."""
 
 from __future__ import annotations
 
@@ -112,12 +112,14 @@ def _stays(one: Mapping[str, Any] | None) -> list[str]:
     )
 
 
-def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
-    """A line for each way of a sweep on which it is not told whether the motion is stable; empty if none.
+def unknown_stability_table(
+    curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str
+) -> str:
+    """A line for each way of a sweep on which it is unknown whether the motion is stable; empty if none.
 
     Narrow windows are counted.
     """
-    every = [one for curve in curves for one in curve.get("stability_untold", ())]
+    every = [one for curve in curves for one in curve.get("stability_unknown", ())]
     narrow = sum(map(_is_narrow, every))
 
     def rows(curve: Mapping[str, Any]) -> list[Row]:
@@ -128,7 +130,7 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
                 [number(one["from"]), number(one["to"])],
                 [[number(one["before"].get(dof))] for dof in dofs],
             )
-            for one in curve.get("stability_untold", ())
+            for one in curve.get("stability_unknown", ())
             if not _is_narrow(one)
         ]
 
@@ -140,7 +142,7 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
         return said if narrow else ""
     table = DofTable([*names, f"from {unit}", "to"], dofs, ["{} there"], ["sweep"], cells)
-    said = "between these frequencies stability is unknown, and a sweep may jump; more harmonics may tell:"
+    said = "between these frequencies stability is unknown, and a sweep may jump; more harmonics may show it:"
     more = f"\nand in {narrow} more {windows}" if narrow else ""
     return f"{said}\n{table.text(last=1)}{more}"
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from fcm.cli.double_quotes import double_quotes
 from fcm.cli.guard import guarded
 from fcm.cli.options import add_verbosity
 
@@ -54,5 +55,10 @@ class LazyGroup(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl([(name, line) for name, (_, line) in self._lazy.items()])
 
+    def make_context(self, *args: Any, **kwargs: Any) -> click.Context:
+        with double_quotes():
+            return super().make_context(*args, **kwargs)
+
     def invoke(self, ctx: click.Context) -> Any:
-        return guarded(super().invoke, ctx)
+        with double_quotes():
+            return guarded(super().invoke, ctx)

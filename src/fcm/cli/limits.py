@@ -27,10 +27,10 @@ class RemarkOptions(Frozen):
     first_line: float = 20.0  # [s] after which progress is said where it cannot be drawn
     bar: int = 24  # characters of the progress bar
     long_run: float = 60.0  # [s] a run from which on its time is said
-    # [s] after which curves tell how long others take: before, what is read and loaded once counts too
-    time_told: float = 5.0
-    memory: float = 500e6  # [byte] of results from which on they are told
-    # [s] of a curve, of which is told before it is begun: of many short ones the first tells
+    # [s] after which curves show how long others take: before, what is read and loaded once counts too
+    time_shown: float = 5.0
+    memory: float = 500e6  # [byte] of results from which on their size is said
+    # [s] of a curve, which is said before it is begun: of many short ones the first shows it
     long_curve: float = 60.0
     many_points: int = 30_000  # some seconds, and files of 10 MB and more
     response_share: float = (

@@ -59,7 +59,7 @@ class Messages:
         """
         now, remarks = self.settings.clock(), self.settings.remarks
         self._share = min(max(fraction, self._share), 1.0)
-        if self._share * self._curves >= 1.0 and now - self._begun >= remarks.time_told:
+        if self._share * self._curves >= 1.0 and now - self._begun >= remarks.time_shown:
             self._say_time(now - self._begun)
         if self.verbosity < 0:
             return

@@ -125,16 +125,16 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
     from fcm.response.visible_dofs import check_solvable
     from fcm.scene import load_scene
     from fcm.scene.options import MESSAGES
-    from fcm.scene.size_notices import Told
+    from fcm.scene.size_notices import SizeNotices
 
     def before(scene: Scene, count: int) -> None:
         if not asked.compare:
             check_room(messages, _with_step(scene.in_use(), asked), count, asked)
 
     settings = messages.settings
-    told = Told(messages.info, before, settings.memory, settings.reading or MESSAGES)
+    notices = SizeNotices(messages.info, before, settings.memory, settings.reading or MESSAGES)
     every_row = asked.export is not None
-    whole = load_scene(name, largest_file=asked.largest_file, every_row=every_row, told=told)
+    whole = load_scene(name, largest_file=asked.largest_file, every_row=every_row, notices=notices)
     exporting = export.exporting(messages, whole, asked)
     scene = whole.in_use()
     check_solvable(scene)

@@ -27,10 +27,10 @@ def check_options(wanted: bool, method: str, level: object, mode: int | None, pe
         )
 
 
-def added(messages: Messages, response: Response, scene: Scene, told: bool) -> None:
+def added(messages: Messages, response: Response, scene: Scene, shown: bool) -> None:
     """Give the curves of a response the sensitivities of their peaks; interrupted, no time is left for it.
 
-    Tables have none, so it is said where they are told nowhere.
+    Tables have none, so it is said where nothing has them.
     """
     from fcm.response.sensitivity import add_sensitivities, remarks, without_sensitivities
 
@@ -41,5 +41,5 @@ def added(messages: Messages, response: Response, scene: Scene, told: bool) -> N
     messages.clear()
     for remark in remarks(response, scene):
         messages.info(remark)
-    if not told:
-        messages.warning("the sensitivities are told nowhere: -o FILE has them, and --json")
+    if not shown:
+        messages.warning("the sensitivities are in no table: -o FILE writes them, and --json")

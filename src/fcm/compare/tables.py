@@ -12,7 +12,7 @@ Rows = list[list[str]]  # the first is the header
 Summary = Mapping[str, Any]
 NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
 HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
-MARKS = {True: "", False: "!", None: "?"}  # beside a peak: the motion there is stable, is not, is not told
+MARKS = {True: "", False: "!", None: "?"}  # beside a peak: the motion there is stable, is not, is unknown
 SAID = {"!": "! unstable: the motion does not stay at this peak", "?": "? stability is unknown there"}
 DIGITS = 6  # of amplitudes and frequencies
 

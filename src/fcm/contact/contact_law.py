@@ -25,7 +25,7 @@ class ContactLaw(ABC):
     ----------
     samples : int
         Instants of a cycle at least [-]; more for the highest harmonic that is asked for. What a law does
-        faster than that folds back onto the harmonics of the balance, and no error tells of it.
+        faster than that folds back onto the harmonics of the balance, and no error shows it.
 
     Notes
     -----

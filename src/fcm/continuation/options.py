@@ -156,7 +156,7 @@ class StepOptions(Options):
     min_cubic_cosine : float
         Of the angle by which it turned in a step, beyond which that is no cubic any more.
     any_turn_step : float
-        A shorter step may turn by any angle below a right angle: there is a corner that nothing tells of.
+        A shorter step may turn by any angle below a right angle: there is a corner that nothing shows.
     max_branch_distance : float
         Branches as near as this meet: there a step may change the orientation of the curve. From 6e-8 to
         4e-7 the tests tell no difference; with less rounding beside a branch point hides it.
@@ -230,7 +230,7 @@ class EventOptions(Options):
         Part of the greatest of all outputs so far, by which one goes back within a step: the corrector leaves
         a tenth of that.
     rounding_step : float
-        A step this short tells more of rounding than of a way back.
+        A step this short shows more of rounding than of a way back.
     peak_tolerance, peak_tolerance_of_many : float
         Part of an output, to which a peak is known where points are costly; and where each of many outputs
         has its own, at a point each. A smaller part of the greatest output is rounding, and has no peak.

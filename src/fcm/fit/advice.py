@@ -1,4 +1,4 @@
-"""Which measurement would tell what the data do not: that which leaves the least of its standard errors."""
+"""Which measurement would determine what the data do not: that which leaves the least standard errors."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def advice(
     harmonics: tuple[int, ...],
     options: FitOptions = FIT,
 ) -> list[Advice]:
-    """For each number that is not told the response that would tell it best; none where none would."""
+    """For each undetermined number the response that would determine it best; none where none would."""
     responses = [one for one in fitted.data if one.damping is None]
     if not responses or not doubtful:
         return []

@@ -1,4 +1,4 @@
-r"""What a fit tells: numbers, their standard errors and intervals, correlations, and what is not told.
+r"""What a fit finds: numbers, their standard errors and intervals, correlations, and what is undetermined.
 
 With the residuals r of N components in units of their errors, and their rates J by the k unknowns, the
 covariance of the unknowns is
@@ -26,8 +26,8 @@ class Estimate(Frozen):
     """The numbers with which the residuals are least.
 
     values, error: (number,), the standard error in the number's unit; interval: (number, 2); correlation:
-    (number, number), NaN beside a number without effect; without_effect, untold: (number,) whether; alike:
-    pairs that are not told apart, with the exponents of the combination that is.
+    (number, number), NaN beside one without effect; without_effect, undetermined: (number,) whether; alike:
+    pairs that are not distinguished, with the exponents of the combination that is.
     """
 
     values: FloatArray
@@ -35,7 +35,7 @@ class Estimate(Frozen):
     interval: FloatArray
     correlation: FloatArray
     without_effect: FloatArray
-    untold: FloatArray
+    undetermined: FloatArray
     at_bound: FloatArray
     alike: tuple[tuple[int, int, float], ...]
 
@@ -79,7 +79,7 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
         interval=ends,
         correlation=correlation,
         without_effect=without,
-        untold=((relative > options.max_standard_error) & (without == 0.0)).astype(float),
+        undetermined=((relative > options.max_standard_error) & (without == 0.0)).astype(float),
         at_bound=(close[0] | close[1]).astype(float),
         alike=alike,
     )

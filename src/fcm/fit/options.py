@@ -1,4 +1,4 @@
-"""What decides how numbers are fitted: errors taken for granted, starts, and when a number is not told."""
+"""What decides how numbers are fitted: errors taken for granted, starts, when one is undetermined."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class FitOptions(Frozen):
     max_levels, level_step : of the forces that are traced where every point has its own: at most so many,
         and no nearer to one another than by this ratio.
     min_effect : rate in units of the errors, by a factor e of a number, below which it has none.
-    max_standard_error : standard error of a number, relative, from which it is not told.
-    max_correlation : from which two numbers may not be told apart.
-    sure_standard_error : standard error of a number, relative, up to which it is told whatever it is
+    max_standard_error : standard error of a number, relative, from which it is undetermined.
+    max_correlation : from which two numbers may not be distinguishable.
+    sure_standard_error : standard error of a number, relative, up to which it is determined whatever it is
         correlated with.
     poor_misfit : misfit of data, relative, from which the model does not meet them.
     confidence : of the intervals.

@@ -51,7 +51,7 @@ def with_precise_fundamental(
     Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
     Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
     between two of these have the greater rounding of both. quick: the points stay as they are, and those
-    marked (point,), whose errors are told, are looked at like those of many contacts.
+    marked (point,), whose errors are known, are looked at like those of many contacts.
     """
     options, rounding = system.options.digits, np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)

@@ -16,6 +16,7 @@ from fcm.contact.contact_law import ContactLaw, ContactLawError
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.quoting import quoted
 from fcm.structure.layout import Layout
 
 
@@ -107,7 +108,7 @@ class SampledLaw(Law):
     @property
     def description(self) -> str:
         """Which law it is, in a sentence."""
-        return f"the law {type(self.own).__name__} of the contact {self.name!r}"
+        return f"the law {type(self.own).__name__} of the contact {quoted(self.name)}"
 
 
 def check_own_laws(scene: Scene) -> None:

@@ -41,7 +41,7 @@ def too_stiff(system: System, moves: bool = False) -> str:
         why = f"a period may have {np.sqrt(ratio):.0e} vibrations on it, each with slip of its own"
     return (
         f"; the {key} of contact {contact.name} is {ratio:.0e} times as stiff as the structure there, so "
-        f"that {why}. Try {instead:.0e}, nearly rigid; half of that tells how nearly"
+        f"that {why}. Try {instead:.0e}, nearly rigid, and half of that to see how much it matters"
     )
 
 

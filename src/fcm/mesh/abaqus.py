@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fcm.mesh.mesh import Mesh, MeshError
+from fcm.quoting import quoted
 
 _SHAPES = {  # the name of an element, of which letters for its formulation may follow
     "C3D4": ("tetra", 4), "C3D10": ("tetra10", 10), "C3D8": ("hexahedron", 8), "C3D20": ("hexahedron20", 20),
@@ -93,7 +94,7 @@ def _blocks(
         if keyword == "INCLUDE":
             inner = path.parent / options.get("INPUT", "")
             if not inner.is_file():
-                raise MeshError(f"{where}: includes {inner.name!r}, which is not there")
+                raise MeshError(f"{where}: includes {quoted(inner.name)}, which is not there")
             yield from _blocks(inner, (*within, path.resolve()))
             keyword = ""
     if keyword:
@@ -107,7 +108,7 @@ def _nodes(deck: _Deck, options: dict[str, str], where: str, rows: list[list[str
             node, xyz = int(row[0]), [float(word) if word else 0.0 for word in row[1:4]]
         except ValueError:
             raise MeshError(
-                f"{where}: *NODE has the line {','.join(row)!r}: a node has a number and coordinates"
+                f"{where}: *NODE has the line {quoted(','.join(row))}: a node has a number and coordinates"
             ) from None
         if node in deck.xyz:
             raise MeshError(f"{where}: node {node} is given a second time")

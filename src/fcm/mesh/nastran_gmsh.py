@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fcm.mesh.mesh import FloatArray, Mesh, MeshError
+from fcm.quoting import quoted
 
 _EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")  # 1.5-3 of Nastran is 1.5e-3
 
@@ -42,7 +43,9 @@ def read_nastran(path: Path) -> Mesh:
         except (ValueError, IndexError) as error:
             if isinstance(error, MeshError):
                 raise
-            raise MeshError(f"line {number + 1}: {line.strip()!r} is no GRID that can be read") from None
+            raise MeshError(
+                f"line {number + 1}: {quoted(line.strip())} is no GRID that can be read"
+            ) from None
     return _with_cells(path, nodes, xyz, "nastran")
 
 
@@ -105,7 +108,7 @@ def _with_cells(path: Path, nodes: list[int], xyz: list[list[float]], kind: str)
     own: FloatArray = np.array(xyz, dtype=np.float64).reshape(-1, 3)
     read = _read(path, kind)
     if read.points.shape != own.shape or not np.array_equal(read.points, own):
-        raise MeshError("the numbers of its nodes cannot be told: meshio reads other nodes")
+        raise MeshError("the numbers of its nodes are unknown: meshio reads other nodes")
     cells = tuple((str(one.type), np.asarray(one.data, dtype=np.intp)) for one in read.cells)
     return Mesh(tuple(nodes), own, cells)
 

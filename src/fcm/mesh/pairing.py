@@ -22,7 +22,7 @@ class PairingOptions(Frozen):
     normal_tolerance
         Component of a unit normal that is rounding.
     side_tolerance
-        Distance along the normal, relative to the extent of the points, from which a side is told.
+        Distance along the normal, relative to the extent of the points, from which a side is known.
     """
 
     line_tolerance: float = 1e-6
@@ -198,7 +198,7 @@ def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int], options: PairingOpti
     places = np.array([mesh.place[node] for node in nodes])
     inner = _middle(mesh, places)
     out = 0.0 if inner is None else float((mesh.xyz[places].mean(axis=0) - inner) @ plane.normal)
-    return _with_side(plane, out, "the elements of the mesh", "out of the structure", options)
+    return _with_side(plane, out, "the elements of the mesh do not show it", "out of the structure", options)
 
 
 def turned(
@@ -209,22 +209,22 @@ def turned(
     Raises
     ------
     MeshError
-        If nothing tells the sides.
+        If nothing shows the sides.
     """
-    told = side(mesh, pairs, plane.normal)
-    what = "gaps nor by elements of the mesh"
-    return _with_side(plane, told, what, "from the first set to the second", options)
+    along = side(mesh, pairs, plane.normal)
+    what = "neither gaps nor elements of the mesh show it"
+    return _with_side(plane, along, what, "from the first set to the second", options)
 
 
-def _with_side(plane: Plane, told: float, what: str, way: str, options: PairingOptions) -> Plane:
-    """The plane whose normal points where something is told to lie along it; MeshError if nothing is."""
-    if abs(told) <= options.side_tolerance * plane.size:
+def _with_side(plane: Plane, along: float, what: str, way: str, options: PairingOptions) -> Plane:
+    """The plane whose normal points where something lies along it; MeshError if nothing does."""
+    if abs(along) <= options.side_tolerance * plane.size:
         raise MeshError(
-            f"which side is which is not told by {what}. Give the normal, as "
+            f"which side is which is unknown: {what}. Give the normal, as "
             f"{{ x = {plane.normal[0]:.6g}, y = {plane.normal[1]:.6g}, z = {plane.normal[2]:.6g} }} "
             f"or its opposite: it points {way}"
         )
-    if told > 0.0:
+    if along > 0.0:
         return plane
     return Plane(-plane.normal, plane.first, -plane.second, plane.centre, plane.off, plane.size)
 

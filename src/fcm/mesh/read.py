@@ -11,6 +11,7 @@ import numpy as np
 from fcm.mesh.abaqus import read_abaqus
 from fcm.mesh.mesh import Mesh, MeshError
 from fcm.mesh.nastran_gmsh import read_gmsh, read_nastran
+from fcm.quoting import quoted
 
 COLUMNS = ("node", "x", "y", "z")
 
@@ -42,7 +43,7 @@ def read_coordinates(path: Path) -> Mesh:
             nodes.append(int(node))
             xyz.append([float(word) for word in where])
         except ValueError:
-            faults.append(f"line {number}: {line.strip()!r} is not a node and three coordinates")
+            faults.append(f"line {number}: {quoted(line.strip())} is not a node and three coordinates")
     if faults:
         raise MeshError(*faults[:5])
     return Mesh(tuple(nodes), np.array(xyz, dtype=np.float64).reshape(-1, 3))

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from fcm.contact.contact_law import ContactLaw
 from fcm.frozen import Frozen
 from fcm.model.ring import Ring, with_own
+from fcm.quoting import quoted
 from fcm.units import UNIT
 
 if TYPE_CHECKING:
@@ -316,12 +317,18 @@ class Scene(Frozen):
         names = [one.name for one in self.contacts]
         for name, law in laws.items():
             if name not in names:
-                raise ValueError(f"no contact is called {name!r}; there are {', '.join(map(repr, names))}")
+                raise ValueError(
+                    f"no contact is called {quoted(name)}; there are {', '.join(map(quoted, names))}"
+                )
             if not isinstance(law, ContactLaw):
-                raise ValueError(f"the law of {name!r} is a {type(law).__name__}, and no fcm.ContactLaw")
+                raise ValueError(
+                    f"the law of {quoted(name)} is a {type(law).__name__}, and no fcm.ContactLaw"
+                )
             swept = [key for curve in self.curves for key in curve.parameters]
             if any(key.startswith((f"contact.{name}.", "contact.*.")) for key in swept):
-                raise ValueError(f"numbers of the contact {name!r} are swept, which its own law has not")
+                raise ValueError(
+                    f"numbers of the contact {quoted(name)} are swept, which its own law has not"
+                )
         if self.ring is not None and laws:
             raise ValueError("a contact of a ring of sectors cannot have a law of its own")
         return replace(self._with_laws(laws), curves=tuple(one._with_laws(laws) for one in self.curves))

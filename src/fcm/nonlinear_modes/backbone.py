@@ -194,7 +194,7 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
     what the contacts bear with these, (point, contact, 4).
 
     Relative, of the damping to the greatest of the mode; NaN where there is no such motion, and of many
-    unknowns at the points where it is not told. By the options of the mode, if no others are given.
+    unknowns at the points where it is unknown. By the options of the mode, if no others are given.
     """
     system, old = mode.system, mode.problem
     options = options or old.options
@@ -222,7 +222,7 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
 
 
 def _truncation_points(mode: Mode, unknowns: int, options: TruncationOptions) -> npt.NDArray[np.intp]:
-    """The points at which the error is told that so many unknowns tell."""
+    """The points at which the error is known that so many unknowns tell."""
     points = len(mode.path.z)
     if unknowns < options.many_unknowns:
         return np.arange(points)

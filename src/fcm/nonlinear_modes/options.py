@@ -108,12 +108,12 @@ class RoundingOptions(Frozen):
 
 
 class TruncationOptions(Frozen):
-    """At which points of a mode the error by the harmonics left out is told.
+    """At which points of a mode the error by the harmonics left out is estimated.
 
     Attributes
     ----------
     many_unknowns : int
-        Unknowns with twice as many harmonics, from which on it is not told at all of them but at some, evenly
+        Unknowns with twice as many harmonics, from which on it is estimated at some of them, evenly
         spread, of which the last is one:
     min_points : int
         at so many of them or more,

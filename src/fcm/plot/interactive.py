@@ -198,8 +198,8 @@ def _parts(curves: Sequence[DrawnCurve]) -> Iterator[tuple[DrawnCurve, str, Bool
     for curve in curves:
         there = np.isfinite(curve.frequency)
         unstable = np.zeros_like(there) if curve.stable is None else ~curve.stable
-        untold = np.zeros_like(there) if curve.untold is None else curve.untold
-        every = zip(STATES, (~unstable & ~untold, unstable & ~untold, untold), strict=True)
+        unknown = np.zeros_like(there) if curve.unknown is None else curve.unknown
+        every = zip(STATES, (~unstable & ~unknown, unstable & ~unknown, unknown), strict=True)
         found = [(state, rows & there) for state, rows in every if (rows & there).any()]
         for number, (state, rows) in enumerate(found):
             yield curve, state, rows, number == 0

@@ -19,6 +19,7 @@ from fcm.plot.pairs import direction_name, plane_view
 from fcm.plot.read import LEVEL, FloatArray, curves_there, floats, on_curve, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
+from fcm.quoting import quoted
 from fcm.results.contact_states import STATES, contact_states
 
 if TYPE_CHECKING:
@@ -250,10 +251,12 @@ def read_places(path: Path, contacts: Sequence[str]) -> FloatArray:
             if len(words) != 3 or not (np.isfinite(x) and np.isfinite(y)):
                 raise ValueError
         except (ValueError, IndexError):
-            wrong.append(f"line {number}: {line.strip()!r} is not a name and two numbers, as in: p1 0.0 0.5")
+            wrong.append(
+                f"line {number}: {quoted(line.strip())} is not a name and two numbers, as in: p1 0.0 0.5"
+            )
             continue
         if name not in contacts:
-            wrong.append(f"line {number}: the response has no contact {name!r}")
+            wrong.append(f"line {number}: the response has no contact {quoted(name)}")
         elif name in places:
             wrong.append(f"line {number}: {name} has a line already")
         places[name] = (x, y)

@@ -47,12 +47,12 @@ class MeasuredBackbone(Frozen):
 
 
 class FittedNumber(Frozen):
-    """A number of the scene that a fit found, and its standard error; NaN where that is not told.
+    """A number of the scene that a fit found, and its standard error; NaN where that is unknown.
 
     >>> print(FittedNumber("contact.lap.mu", 0.30123, 0.0042))
     contact.lap.mu = 0.3012 ± 0.0042
     >>> print(FittedNumber("contact.lap.k_u", 2.0e9, float("nan")))
-    contact.lap.k_u = 2e+09, scatter not told
+    contact.lap.k_u = 2e+09, standard error unknown
     """
 
     key: str
@@ -60,7 +60,7 @@ class FittedNumber(Frozen):
     error: float
 
     def __str__(self) -> str:
-        scatter = f" ± {self.error:.2g}" if np.isfinite(self.error) else ", scatter not told"
+        scatter = f" ± {self.error:.2g}" if np.isfinite(self.error) else ", standard error unknown"
         return f"{self.key} = {self.value:.4g}{scatter}"
 
 

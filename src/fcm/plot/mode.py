@@ -247,7 +247,7 @@ def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
     known = np.concatenate([mode.error[mode.error > 0.0] for mode in modes])
     if known.size:
         points = f"{known.size} point{'s' * (known.size > 1)}"
-        said = f"error by the harmonics left out: at most {float(known.max()):.2g}, told at {points}"
+        said = f"error by the harmonics left out: at most {float(known.max()):.2g}, estimated at {points}"
         axes.set_title(said, loc="right", fontsize=LAYOUT.small_text)
 
 

@@ -48,8 +48,8 @@ class DrawnCurve(Frozen):
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) in the file's unit, or the level of the forces
     amplitude: FloatArray  # (point, dof)
-    stable: BoolArray | None = None  # (point,) where that is not told, too
-    untold: BoolArray | None = None  # (point,) where it is not
+    stable: BoolArray | None = None  # (point,) where that is unknown, too
+    unknown: BoolArray | None = None  # (point,) where it is not
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
     table_error: FloatArray | None = None  # (point,) relative, before the correction
     truncation_error: FloatArray | None = None  # (point,) relative

@@ -44,7 +44,7 @@ _DASHES: LineStyle = (0, (3.0, 1.6))
 # what is said of both kinds of faded stretches
 _FADED = f"may err by more than {100 * LAYOUT.doubtful_error:g} %, or by an unknown amount"
 _NOT_STABLE = "unstable"  # what is dashed
-_UNTOLD = "stability unknown"  # what is dotted
+_UNKNOWN = "stability unknown"  # what is dotted
 _HOLLOW = "a point, unstable or of unknown stability"  # what is a hollow dot
 _UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
 
@@ -59,7 +59,7 @@ def draw_response(
     window: Window | None = None,
 ) -> Figure:
     """The figure of one degree of freedom (by default see `leading_column`); unstable parts are dashed, those
-    of which that is not told dotted.
+    of which that is unknown dotted.
 
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
     motion are drawn over the curves, and a backbone: nonlinear modes. A window is the part of the axis drawn.
@@ -129,7 +129,7 @@ def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
 
 def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Line2D:
     """A solid line where the curve is stable or the file knows of no stability, a dashed one where it is
-    unstable, a dotted one where that is not told.
+    unstable, a dotted one where that is unknown.
 
     Faded is what may err by more than a fifth, or by what is not known. A point without neighbours, as one
     of peaks alone, is a dot, hollow unless it is stable.
@@ -137,7 +137,7 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Lin
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
     told, dashed = split(amplitude, unstable)
-    solid, dotted = split(told, np.zeros_like(unstable) if curve.untold is None else curve.untold)
+    solid, dotted = split(told, np.zeros_like(unstable) if curve.unknown is None else curve.unknown)
     trusted, faded = split(solid, doubtful(curve))
     (line,) = axes.plot(curve.frequency, trusted, linewidth=width)
     others = [(faded, _LINE, LAYOUT.doubtful_opacity)]
@@ -180,8 +180,8 @@ def _notes(axes: Axes, curves: list[DrawnCurve], column: int, colour: str, width
         notes[_FADED] = Line2D([], [], color=colour, linewidth=width, alpha=LAYOUT.doubtful_opacity)
     if any(curve.stable is not None and _seen(axes, curve, column, ~curve.stable) for curve in curves):
         notes[_NOT_STABLE] = Line2D([], [], color=colour, linewidth=width, linestyle=_DASHES)
-    if any(curve.untold is not None and _seen(axes, curve, column, curve.untold) for curve in curves):
-        notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=DOTS)
+    if any(curve.unknown is not None and _seen(axes, curve, column, curve.unknown) for curve in curves):
+        notes[_UNKNOWN] = Line2D([], [], color=colour, linewidth=width, linestyle=DOTS)
     if any((_alone(curve, column) & _not_stable(curve)).any() for curve in curves):
         notes[_HOLLOW] = Line2D([], [], color=colour, linestyle="none", marker=".", markerfacecolor="none")
     return notes
@@ -200,9 +200,9 @@ def _seen(axes: Axes, curve: DrawnCurve, column: int, which: BoolArray) -> bool:
 
 
 def _not_stable(curve: DrawnCurve) -> BoolArray:
-    """Where a curve is unstable, or that is not told."""
+    """Where a curve is unstable, or that is unknown."""
     found = np.zeros(len(curve.frequency), np.bool_)
-    for here in (None if curve.stable is None else ~curve.stable, curve.untold):
+    for here in (None if curve.stable is None else ~curve.stable, curve.unknown):
         found = found if here is None else found | here
     return found
 

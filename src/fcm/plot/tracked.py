@@ -54,7 +54,7 @@ class DrawnTrack(Frozen):
     amplitude: FloatArray  # (point, dof)
     turn: FloatArray  # (point,) 1 where the number turns back
     trough: FloatArray  # (point,) 1 where a peak is none
-    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is not told
+    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is unknown
     swept: tuple[float, ...] = ()  # values of the curve of the scene that it belongs to
 
 
@@ -257,7 +257,7 @@ def _name_swept(figure: Figure, drawn: DrawnTracking, colours: Mapping[tuple[flo
 
 
 def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None) -> None:
-    """Solid where the motion is stable, dashed where it is not, dotted where that is not told."""
+    """Solid where the motion is stable, dashed where it is not, dotted where that is unknown."""
     stable = track.stable == 1.0
     axes.plot(track.number, np.where(stable, y, np.nan), color=colour, linewidth=1.1, label=label)
     for there, style in ((track.stable == 0.0, "--"), (np.isnan(track.stable), ":")):

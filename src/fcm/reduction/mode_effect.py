@@ -14,7 +14,7 @@ from fcm.time_domain.errors import SimulationError
 
 
 def effect(response: Response, lighter: ReducedScenes) -> float:
-    """Greatest change of an amplitude, relative to the greatest of the point; inf where it cannot be told."""
+    """Greatest change of an amplitude, relative to the greatest of the point; inf where it is unknown."""
     numbers = np.unique(np.linspace(0, len(response.curves) - 1, REDUCTION.max_curves).astype(int))
     each = (_of_curve(response.curves[k], lighter.exact[k]) for k in numbers)
     return max(each, default=0.0)

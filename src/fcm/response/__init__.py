@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from fcm.model.scene import Scene
+from fcm.quoting import quoted
 from fcm.response.request import ResponseError
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS
@@ -42,7 +43,7 @@ def respond(
     scene : Scene
         From `fcm.load_scene`.
     method : {"table", "closed-form", "exact"}
-        Harmonic balance in closed form, of which "table" also tells how far the solutions of a table are
+        Harmonic balance in closed form, of which "table" also shows how far the solutions of a table are
         from there; or the exact periodic solutions, by shooting.
     at : sequence of float, optional
         With "exact": frequencies in the scene's unit, visited by an upward and then a downward sweep.
@@ -97,7 +98,7 @@ def respond(
             raise ResponseError(f"max_step {fault}")
         scene = scene.with_step(max_step)
     if sensitivity and method == "exact":
-        raise ResponseError("sensitivities are of the peaks of harmonic balance; the method is 'exact'")
+        raise ResponseError('sensitivities are of the peaks of harmonic balance; the method is "exact"')
     if sensitivity:
         check_no_ring(scene, "sensitivities")
         refuse_own_laws(scene, "a sensitivity")
@@ -125,9 +126,9 @@ def _curves(
     execution: Execution,
 ) -> Response:
     if method not in (*METHODS, "exact"):
-        raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
+        raise ResponseError(f"method {quoted(method)} is not one of {', '.join((*METHODS, 'exact'))}")
     if at is not None and method != "exact":
-        raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
+        raise ResponseError(f'frequencies to visit need the method "exact"; the method is {quoted(method)}')
     if scene.fit is not None:
         return _fit(scene, method, asked)
     if scene.optimum is not None:
@@ -136,7 +137,7 @@ def _curves(
         return Response.without_curves(scene)
     if method == "exact":
         if asked["harmonics"] is not None or asked["accuracy"] is not None:
-            raise ResponseError("harmonics and accuracy are of no use with the method 'exact'")
+            raise ResponseError('harmonics and accuracy are of no use with the method "exact"')
         from fcm.response.exact import trace_exact
         from fcm.response.options import RESPONSE
 
@@ -148,7 +149,7 @@ def _fit(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
     from fcm.response.fit import fit
 
     if method == "exact":
-        raise ResponseError("the method 'exact' is of no use with [fit]")
+        raise ResponseError('the method "exact" is of no use with [fit]')
     return fit(scene, method, **asked)
 
 
@@ -156,6 +157,6 @@ def _optimum(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
     from fcm.response.optimum import optimise
 
     if method == "exact" or scene.schedule:
-        what = "the method 'exact'" if method == "exact" else "[[schedule]]"
+        what = 'the method "exact"' if method == "exact" else "[[schedule]]"
         raise ResponseError(f"{what} is of no use with [optimum]")
     return optimise(scene, method, **asked)

@@ -8,8 +8,10 @@ import numpy as np
 
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.stability_limits import StabilityLimit
+from fcm.model.scene import InTime, in_time
 from fcm.response.options import SENTENCES
 from fcm.scene.errors import counted
+from fcm.scene.options import LIMITS
 from fcm.units import in_unit
 
 
@@ -27,21 +29,45 @@ def shortfall(
     return _of_stability(found, off) if off else ""
 
 
+def remedy(harmonics: Sequence[int], *, exact: bool = False) -> str:
+    """What helps where a curve with these harmonics falls short, and none that would do more are named.
+
+    exact: whether the exact motion can be computed instead.
+
+    >>> remedy((1, 2, 3), exact=True)
+    'Errors that are printed hold; for smaller ones try --harmonics 6 or --method exact'
+    >>> remedy(range(1, 51))
+    'Errors that are printed hold; 50 harmonics are the most, so ask for a greater --accuracy'
+    """
+    ways = []
+    if (most := harmonics[-1]) < LIMITS.harmonics:
+        ways.append(f"--harmonics {min(2 * most, LIMITS.harmonics)}")
+    if exact:
+        ways.append("--method exact")
+    if not ways:
+        return f"Errors that are printed hold; {most} harmonics are the most, so ask for a greater --accuracy"
+    return f"Errors that are printed hold; for smaller ones try {' or '.join(ways)}"
+
+
+def _remedy(found: RefinedResponse) -> str:
+    return remedy(found.system.harmonics, exact=in_time(found.system.scene) is InTime.COMPUTED)
+
+
 def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
     """Too large errors of peaks and folds, and how long it takes with more harmonics."""
     folds, said = found.folds, _with_harmonics(found)
     unknown = np.count_nonzero(np.isnan(folds))
     if np.isnan(found.max_error) and np.isnan(found.peak[found.dofs_of_interest]).any():
-        said += f" the errors of some peaks cannot be told{_dofs_short(found, accuracy)}"
+        said += f" the errors of some peaks are unknown{_dofs_short(found, accuracy)}"
     elif unknown and found.max_known_error <= accuracy:
-        said += f" the errors of {unknown} of {folds.size} folds cannot be told"
+        said += f" the errors of {unknown} of {folds.size} folds are unknown"
     elif unknown:
         said += f" an estimated error of {found.max_known_error:.1e} remains{_dofs_short(found, accuracy)}"
-        said += f", and that of {unknown} of {folds.size} folds cannot be told"
+        said += f"; the errors of {unknown} of {folds.size} folds are unknown"
     else:
         said += f" an estimated error of {found.max_error:.1e} remains{_dofs_short(found, accuracy)}"
     if not found.further:
-        return said
+        return f"{said}. {_remedy(found)}"
     more = found.further
     which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
     if found.begun:
@@ -85,10 +111,13 @@ def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
 def _of_stability(found: RefinedResponse, off: Sequence[StabilityLimit]) -> str:
     """Frequencies at which stability is lost that are too far off: the worst of them."""
     worst = max(off, key=lambda one: 0.0 if np.isnan(one.error) else one.error)
-    error = "cannot be told" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
+    error = "is unknown" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
     unit = found.system.scene.frequency_unit
     at = f"{in_unit(worst.frequency, unit):.6g} {unit}"
-    return f"{_with_harmonics(found)} the error of the frequency at which stability is lost, {at}, {error}"
+    return (
+        f"{_with_harmonics(found)} the error of the frequency at which stability is lost, {at}, {error}. "
+        f"{_remedy(found)}"
+    )
 
 
 def _with_harmonics(found: RefinedResponse) -> str:

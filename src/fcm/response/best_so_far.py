@@ -76,7 +76,7 @@ class BestSoFar:
     def _harmonics_reached(self) -> str:
         assert self.found is not None
         has = counted(len(self.found.system.harmonics), "harmonic")
-        return f"{has}, {'error not told yet' if math.isnan(self.error) else f'error {self.error:.1e}'}"
+        return f"{has}, {'error not estimated yet' if math.isnan(self.error) else f'error {self.error:.1e}'}"
 
     def reason(self) -> str:
         """Why the curve is not complete, and what is missing."""

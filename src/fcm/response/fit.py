@@ -276,7 +276,7 @@ def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -
         poor=FIT.poor_misfit,
         correlation=told.correlation,
         without_effect=told.without_effect,
-        untold=told.untold,
+        undetermined=told.undetermined,
         at_bound=told.at_bound,
         alike=told.alike,
         data=[
@@ -305,7 +305,7 @@ def _errors(data: Measured) -> FloatArray:
 
 def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tuple[int, ...]) -> list[str]:
     """Sentences on what to measure."""
-    doubtful = set(np.flatnonzero(told.without_effect + told.untold).tolist())
+    doubtful = set(np.flatnonzero(told.without_effect + told.undetermined).tolist())
     doubtful |= {k for i, j, _ in told.alike for k in (i, j)}
     every = advice(parameters, found, sorted(doubtful), harmonics)
     said = [

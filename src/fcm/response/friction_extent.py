@@ -94,7 +94,7 @@ def _told(
 
 
 def _family(scene: Scene, point: OrbitRecord, whole: FloatArray, k: int, search: Search) -> Family | None:
-    """The family of a point; None if it has none, or, with 0 for the whole, if it cannot be told."""
+    """The family of a point; None if it has none, or, with 0 for the whole, if it is unknown."""
     alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
     if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip
         return None

@@ -28,7 +28,8 @@ from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_
 from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray, Scene
+from fcm.model.scene import FloatArray, InTime, Scene, in_time
+from fcm.response.accuracy_shortfall import remedy
 from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import holds_unknown, no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
@@ -62,7 +63,7 @@ def trace_levels(
     The curve begins at rest and is followed through its folds until the level has left the span for good;
     with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
     motions at the level 1 takes; without either as the scene says. The errors are what the harmonics left out
-    would change at the same level, NaN where that cannot be told, as beside folds. What is finished goes to
+    would change at the same level, NaN where that is unknown, as beside folds. What is finished goes to
     the checkpoint, and what that holds of it is not followed again.
 
     Raises
@@ -151,17 +152,19 @@ def _level_curve(
         and not (worst := _worst(curve, scene)) <= request.accuracy
     ):
         what = (
-            "the errors of some peaks cannot be told"
+            "the errors of some peaks are unknown"
             if np.isnan(worst)
             else f"an estimated error of {worst:.1e} remains"
         )
-        curve.short_of = f"with {counted(len(system.harmonics), 'harmonic')} {what}"
+        count = counted(len(system.harmonics), "harmonic")
+        computed = in_time(scene) is InTime.COMPUTED
+        curve.short_of = f"with {count} {what}. {remedy(system.harmonics, exact=computed)}"
     curve.seconds = time.perf_counter() - begin
     return curve
 
 
 def _worst(curve: Curve, scene: Scene) -> float:
-    """The greatest error of the peaks, and of those motions at the level 1 of which it is told; NaN where
+    """The greatest error of the peaks, and of those motions at the level 1 of which it is known; NaN where
     that of a peak is not. What hardly moves is not asked for."""
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)

@@ -28,6 +28,7 @@ from fcm.nonlinear_modes.forced_response import (
     resonances,
     resonant_level,
 )
+from fcm.response.accuracy_shortfall import remedy
 from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
@@ -155,7 +156,9 @@ def _curve(scene: Scene, asked: ModeRequest, request: Request, tell: Tell) -> Cu
     curve = _recorded(mode, asked, error, theirs)
     if request.harmonics is None and curve.complete and not _worst(error) <= request.accuracy:
         these = counted(len(mode.system.harmonics), "harmonic")
-        curve.short_of = f"with {these} an estimated error of {_worst(error):.1e} remains"
+        curve.short_of = (
+            f"with {these} an estimated error of {_worst(error):.1e} remains. {remedy(mode.system.harmonics)}"
+        )
     if asked.motion_at is not None and curve.mode is not None:
         curve.mode.motions = tuple(_motions(mode, asked.motion_at, asked.levels))
     if stopped:

@@ -62,7 +62,7 @@ def peaks_only(
     branches = ResponseOptions(others=shooting.balance.others)
     balanced = traced_curve(scene, Request(None, INPUT_LIMITS.accuracy, options=branches), poll)
     swept = balanced.swept()
-    if not balanced.complete or swept.untold or not _at_folds(swept, balanced):
+    if not balanced.complete or swept.unknown or not _at_folds(swept, balanced):
         return None
     problem, folds = OrbitProblem(scene), dict[float, OrbitRecord]()
     guesses = list(_guesses(scene, balanced))
@@ -122,7 +122,7 @@ def _one_harmonic_suffices(single: Curve) -> bool:
     """
     near = all(peak.error <= EXACT_CURVES.max_peak_error for peak in single.peaks.values())
     swept = single.swept()
-    told = bool(single.folds) or not swept.untold  # beside folds more harmonics tell
+    told = bool(single.folds) or not swept.unknown  # beside folds more harmonics tell
     return single.complete and near and told and _at_folds(swept, single)
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Optimum, Scene
+from fcm.response.accuracy_shortfall import remedy
 from fcm.response.least_peak import Found, PeakTask, still, with_values
 from fcm.response.nearly_least import nearly_least
 from fcm.response.options import OPTIMUM, ResponseOptions
@@ -114,9 +115,9 @@ def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
 
 def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Response:
     """What an interruption leaves of the search for optima: those so far, and no response with them."""
-    untold = [(np.nan,) * len(one.active) for one in tracking.optima]
+    unknown = [(np.nan,) * len(one.active) for one in tracking.optima]
     tracking.optima = [
-        replace(one, stable=none, residual=none) for one, none in zip(tracking.optima, untold, strict=True)
+        replace(one, stable=none, residual=none) for one, none in zip(tracking.optima, unknown, strict=True)
     ]
     tracking.interrupted = True
     finished = sum(one.kind != INCOMPLETE for one in tracking.optima)
@@ -178,7 +179,7 @@ def _with_error(found: Optimal, curve: Curve) -> Optimal:
 
 
 def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
-    """What is told of the peak of a degree of freedom at a frequency.
+    """What is known of the peak of a degree of freedom at a frequency.
 
     That need not be its greatest amplitude, which may be at an end of the range. NaN where it is not known.
     """
@@ -195,17 +196,18 @@ def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
 
 
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:
-    """Of the accuracy that was asked for, where more harmonics would take too long or tell no more."""
+    """Of the accuracy that was asked for, where more harmonics would take too long or change nothing."""
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         exact = one.error <= accuracy
         if curve.complete and not (exact and one.end_error <= accuracy):
             off = one.end_error if exact else one.error
-            error = "cannot be told" if np.isnan(off) else f"is estimated as {off:.1e}"
+            error = "is unknown" if np.isnan(off) else f"is estimated as {off:.1e}"
             of = "the number at which a higher peak ends" if exact else "the least peak"
             curve.short_of = f"{_with(one.harmonics)} the error of {of} {error}"
             if one.fewer is not None:
                 at = ", ".join(f"{key} = {value:.6g}" for key, value in one.fewer.values.items())
                 curve.short_of += f"; {_with(one.fewer.harmonics)} it is {one.fewer.value:.6g} at {at}"
+            curve.short_of += f". {remedy(one.harmonics)}"
 
 
 def _with(harmonics: tuple[int, ...]) -> str:

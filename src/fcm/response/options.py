@@ -1,4 +1,4 @@
-"""The tolerances and limits with which responses are calculated and told of."""
+"""The tolerances and limits with which responses are calculated and reported."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class InputLimits(Frozen):
     max_amplitude_ratio : float
         Greatest ratio of the ends of a span of amplitudes.
     min_relative_width : float
-        Relative width of a span: of a narrower one not even the first steps can be told from rounding.
+        Relative width of a span: of a narrower one not even the first steps are more than rounding.
     """
 
     accuracy: float = 1e-2
@@ -300,7 +300,7 @@ class OptimumOptions(Frozen):
     max_dofs : int
         Degrees of freedom, up to which a curve is followed by all: their peaks are points of it.
     nearly : float
-        Share above the least peak, up to which it is told for which numbers.
+        Share above the least peak, up to which it is reported for which numbers.
     search : SearchOptions
         How the least over a range of one number is found.
     """

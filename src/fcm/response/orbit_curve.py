@@ -126,8 +126,8 @@ def _curve(
     error = np.array([np.nan if p is None or p.repeats == 0 else 0.0 for p in points])
     stable = error + [p is not None and p.stable for p in points]
     at_top = stability_at_top(amplitude, stable).tolist()
-    untold = undetermined(scene, regime) & ~told
-    residual = _residual(amplitude, others, untold)
+    unseen = undetermined(scene, regime) & ~told
+    residual = _residual(amplitude, others, unseen)
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     cycle = _contact_loads(points, empty)
     curve = replace(
@@ -146,7 +146,7 @@ def _curve(
         error=np.repeat(error[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
-        undetermined=int(untold.sum()),
+        undetermined=int(unseen.sum()),
         peaks={
             d: _peak(amplitude[:, i], frequency, error, at_top[i], residual[:, i])
             for i, d in enumerate(empty.peaks)
@@ -220,11 +220,11 @@ def _short(states: str) -> str:
     return states if len(states) <= SENTENCES.max_states else states[: SENTENCES.max_states - 3] + "..."
 
 
-def _residual(amplitude: FloatArray, others: FrictionExtent, untold: npt.NDArray[np.bool_]) -> FloatArray:
-    """By how much residual friction changes each amplitude (point, dof), relative; NaN where not told."""
+def _residual(amplitude: FloatArray, others: FrictionExtent, unseen: npt.NDArray[np.bool_]) -> FloatArray:
+    """By how much residual friction changes each amplitude (point, dof), relative; NaN where unknown."""
     up, down = others.greatest - amplitude, amplitude - others.least
     change = np.maximum(up, down) / np.where(amplitude > 0.0, amplitude, 1.0)
-    unknown = untold | (np.isfinite(others.greatest).any(axis=1) & (others.whole != 1.0))
+    unknown = unseen | (np.isfinite(others.greatest).any(axis=1) & (others.whole != 1.0))
     return np.where(unknown[:, None], np.nan, np.where(np.isnan(change), 0.0, np.maximum(change, 0.0)))
 
 

@@ -23,8 +23,8 @@ class ResponseError(ValueError):
 class Request(Frozen):
     """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
 
-    With one harmonic and a table it is told how far the table's own solutions are from the points, which are
-    solutions with the closed form; unless they are not to be corrected: then they are the table's.
+    With one harmonic and a table it is reported how far the table's own solutions are from the points, which
+    are solutions with the closed form; unless they are not to be corrected: then they are the table's.
     """
 
     harmonics: tuple[int, ...] | None = (1,)

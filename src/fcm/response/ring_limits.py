@@ -55,7 +55,7 @@ def refuse_own_laws(scene: Scene, what: str) -> None:
         names = [quoted(one.name) for one in scene.contacts if one.law is not None]
         raise ResponseError(
             f"{scene.name}: contact {names[0]}: {what} needs more than the forces over a cycle that its own "
-            "law gives. Response curves of harmonic balance do not (method 'closed-form')"
+            'law gives. Response curves of harmonic balance do not (method "closed-form")'
         )
 
 

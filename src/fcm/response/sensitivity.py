@@ -21,7 +21,7 @@ WITHOUT = f"{INTERRUPTED} before its sensitivities were known"
 REMARKS = {
     Kind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
     Kind.EDGE: "at an end of the range: the derivative of the amplitude there",
-    Kind.UNKNOWN: "cannot be told",
+    Kind.UNKNOWN: "unknown",
 }
 
 

@@ -10,6 +10,7 @@ from functools import cache, partial
 
 from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.model.scene import Scene
+from fcm.quoting import quoted
 from fcm.reduction import sentences
 from fcm.reduction.negligible_parts import ReducedScenes, unreduced, without_negligible_parts
 from fcm.reduction.options import REDUCTION
@@ -77,7 +78,7 @@ def trace(
     table = None if isinstance(method, str) else method
     name = method if isinstance(method, str) else "table"
     if name not in METHODS:
-        raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
+        raise ResponseError(f"method {quoted(name)} is not one of {', '.join(METHODS)}")
     if not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()

@@ -12,6 +12,8 @@ import numpy as np
 
 from fcm.accuracy.refinement import refined_response
 from fcm.model.scene import Scene
+from fcm.quoting import quoted
+from fcm.response.accuracy_shortfall import remedy
 from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
@@ -95,7 +97,7 @@ def track(
         If no curve is finished then.
     """
     if what not in WHAT:
-        raise ResponseError(f"track {what!r} is not one of {', '.join(WHAT)}")
+        raise ResponseError(f"track {quoted(what)} is not one of {', '.join(WHAT)}")
     number = number_of(scene, over)
     _check(scene, number, span)
     begin = time.perf_counter()
@@ -180,9 +182,10 @@ def _short_of(tracking: Tracking, accuracy: float) -> str:
     if not off:
         return ""
     error, number = max(off, key=lambda one: np.inf if np.isnan(one[0]) else one[0])
-    what = "the error cannot be told" if np.isnan(error) else f"an estimated error of {error:.1e} remains"
+    what = "the error is unknown" if np.isnan(error) else f"an estimated error of {error:.1e} remains"
     count = counted(len(tracking.harmonics), "harmonic")
-    return f"with {count} {what} at {tracking.key} = {number:.6g}"
+    helps = remedy(tracking.harmonics)
+    return f"with {count} {what} at {tracking.key} = {number:.6g}. {helps}"
 
 
 def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:

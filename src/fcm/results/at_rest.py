@@ -75,7 +75,7 @@ def _swept(swept: FrequencySweep, rest: BoolArray) -> FrequencySweep:
     jumps = [
         replace(one, before=_still(one.before, rest), after=_still(one.after, rest)) for one in swept.jumps
     ]
-    return FrequencySweep(jumps, [replace(one, before=_still(one.before, rest)) for one in swept.untold])
+    return FrequencySweep(jumps, [replace(one, before=_still(one.before, rest)) for one in swept.unknown])
 
 
 def _still(values: npt.NDArray[Any], rest: BoolArray) -> npt.NDArray[Any]:

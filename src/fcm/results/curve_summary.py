@@ -80,8 +80,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.level is not None:
         out["level_folds"] = curve.level_folds
     out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
-    if swept.untold and not _unjudged(curve):
-        out["stability_untold"] = [_untold(one, dofs, unit) for one in swept.untold]
+    if swept.unknown and not _unjudged(curve):
+        out["stability_unknown"] = [_unknown(one, dofs, unit) for one in swept.unknown]
     out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
     if np.isfinite(condensed.truncation_error_at):
         out["truncation_error_at"] = float(in_unit(condensed.truncation_error_at, unit))
@@ -109,7 +109,7 @@ def _jump(jump: Jump, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
     }
 
 
-def _untold(one: UnknownStability, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
+def _unknown(one: UnknownStability, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
     return {
         "sweep": one.sweep,
         "from": float(in_unit(one.start, unit)),

@@ -132,14 +132,14 @@ class Fitted:
     poor: float  # misfit of data, relative, from which the model does not meet them
     correlation: FloatArray  # (number, number)
     without_effect: FloatArray  # (number,) 1 where the data do not change with it
-    untold: FloatArray  # (number,) 1 where its standard error is as large as itself, nearly
+    undetermined: FloatArray  # (number,) 1 where its standard error is as large as itself, nearly
     at_bound: FloatArray  # (number,) 1 where a bound keeps it
     alike: tuple[tuple[int, int, float], ...]  # pairs told as one: i, j, p of i times j to the power p
     data: list[FittedData]
     starts: list[FittedStart]
     harmonics: tuple[int, ...]
     advice: list[str] = field(default_factory=list)  # measurements that would tell more
-    many: float = 10.0  # times a number: a standard error beyond is not told in percent
+    many: float = 10.0  # times a number: a standard error beyond is not given in percent
     final: bool = True  # whether the search for the numbers is at its end
     settled: bool = True  # whether it ended at a minimum
     interrupted: bool = False
@@ -161,7 +161,9 @@ class Fitted:
                 said.append(
                     f"{key} lies at its bound, and would fit the data better beyond: give wider bounds"
                 )
-        if hardly := [k for k in range(len(self.keys)) if self.untold[k] and not self.without_effect[k]]:
+        if hardly := [
+            k for k in range(len(self.keys)) if self.undetermined[k] and not self.without_effect[k]
+        ]:
             each, error = ("is", "its standard error is") if len(hardly) == 1 else _EACH
             errors = " and ".join(self._relative(k) for k in hardly)
             said.append(
@@ -171,7 +173,7 @@ class Fitted:
         for i, j, power in self.alike:
             one, other = self.keys[i], self.keys[j]
             said.append(
-                f"{one} and {other} cannot be told apart: these data determine {_told(one, other, power)} "
+                f"{one} and {other} cannot be distinguished: these data determine {_told(one, other, power)} "
                 "alone"
             )
         for part in self.data:
@@ -207,7 +209,7 @@ class Fitted:
                 "interval": self.interval[k].tolist(),
                 "start": float(self.begin[k]),
                 "without_effect": bool(self.without_effect[k]),
-                "untold": bool(self.untold[k] or self.without_effect[k]),
+                "undetermined": bool(self.undetermined[k] or self.without_effect[k]),
                 "at_bound": bool(self.at_bound[k]),
             }
             for k, key in enumerate(self.keys)
@@ -216,7 +218,7 @@ class Fitted:
             "numbers": numbers,
             "confidence": self.confidence,
             "correlation": self.correlation.tolist(),
-            "not_told_apart": [[self.keys[i], self.keys[j], power] for i, j, power in self.alike],
+            "indistinguishable": [[self.keys[i], self.keys[j], power] for i, j, power in self.alike],
             "data": [one.summary() for one in self.data],
             "starts": [
                 {

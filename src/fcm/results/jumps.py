@@ -38,7 +38,7 @@ class FrequencySweep(Frozen):
     """What a slow upward, then a slow downward sweep meets."""
 
     jumps: list[Jump]
-    untold: list[UnknownStability]
+    unknown: list[UnknownStability]
 
     def without_flips(self, options: JumpOptions = RESULTS.jumps) -> FrequencySweep:
         """Without those at which the period doubles: the motion goes on with hardly another amplitude."""
@@ -54,7 +54,7 @@ class FrequencySweep(Frozen):
     def at(self, shown: BoolArray) -> FrequencySweep:
         """At some of the degrees of freedom."""
         jumps = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
-        return FrequencySweep(jumps, [replace(one, before=one.before[shown]) for one in self.untold])
+        return FrequencySweep(jumps, [replace(one, before=one.before[shown]) for one in self.unknown])
 
 
 def swept(
@@ -70,7 +70,7 @@ def swept(
 
     >>> w = np.array([1.0, 2.0, 3.0, 2.5, 2.0, 3.0, 4.0])
     >>> found = swept(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], np.ones(7))
-    >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found.jumps], found.untold
+    >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found.jumps], found.unknown
     ([('up', 3.0, [5.0]), ('down', 2.0, [2.0])], [])
     >>> w = np.array([1.0, 2.0, 3.0, np.nan, 2.5, 3.0])  # a stable branch leaves one that is not beyond
     >>> swept(w, np.array([[1.0, 1.0, 1.0, np.nan, 1.0, 2.0]]).T, np.array([1, 1, 0, np.nan, 1, 1])).jumps
@@ -79,7 +79,7 @@ def swept(
     >>> swept(w, w[:, None], np.ones(4)).jumps
     []
     >>> found = swept(w, w[:, None], np.array([1.0, np.nan, np.nan, 1.0]))
-    >>> [(one.sweep, one.start, one.end) for one in found.untold]
+    >>> [(one.sweep, one.start, one.end) for one in found.unknown]
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
     frequency, amplitude, stable = _once(frequency, amplitude, stable, options)
@@ -164,7 +164,7 @@ def _sweep(
         walked = _walked(at, onwards)
         visited.update(walked)
         if uncertain_at:
-            _note_untold(sweep, (frequency, amplitude, unknown), walked, start, told, found)
+            _note_unknown(sweep, (frequency, amplitude, unknown), walked, start, told, found)
         at = walked[-1]
         here, before = float(frequency[at]), amplitude[at]
         if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
@@ -197,7 +197,7 @@ def _walked(at: int, onwards: list[float]) -> list[int]:
         walked.append(at)
 
 
-def _note_untold(
+def _note_unknown(
     sweep: str,
     curve: tuple[FloatArray, FloatArray, BoolArray],
     walked: list[int],
@@ -205,7 +205,7 @@ def _note_untold(
     told: bool,
     found: FrequencySweep,
 ) -> None:
-    """Note the ways on which stability is not told, of a walk that begins before its first point."""
+    """Note the ways on which stability is unknown, of a walk that begins before its first point."""
     frequency, amplitude, there = curve
     unknown = np.array([not told, *there[walked].tolist()])
     if not unknown.any():
@@ -217,7 +217,7 @@ def _note_untold(
         k = walked[max(first - 2, 0)]
         begin, before = start if first < 2 else (float(frequency[k]), amplitude[k])
         if begin != frequency[last]:
-            found.untold.append(UnknownStability(sweep, begin, float(frequency[last]), before))
+            found.unknown.append(UnknownStability(sweep, begin, float(frequency[last]), before))
 
 
 def _others(onwards: FloatArray, usable: BoolArray, at: int) -> npt.NDArray[np.intp]:

@@ -1,4 +1,4 @@
-"""Tolerances and limits of what is told of curves: jumps of slow sweeps, percentiles of random draws."""
+"""Tolerances and limits of what is reported of curves: jumps of slow sweeps, percentiles of random draws."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class JumpOptions(Frozen):
 
 
 class DrawOptions(Frozen):
-    """What is told of random draws.
+    """What is reported of random draws.
 
     Attributes
     ----------
@@ -58,12 +58,12 @@ class FileOptions(Frozen):
 
 
 class PeakOptions(Frozen):
-    """Which local maxima of a curve are peaks that are told beside the highest.
+    """Which local maxima of a curve are peaks that are listed beside the highest.
 
     Attributes
     ----------
     least_share : float
-        Of the highest amplitude of the degree of freedom: lower ones are not told.
+        Of the highest amplitude of the degree of freedom: lower ones are not listed.
     least_prominence : float
         Relative to its height: what rises by less above the curve on either side is a ripple.
     """
@@ -73,7 +73,7 @@ class PeakOptions(Frozen):
 
 
 class ResultOptions(Frozen):
-    """What is told of curves.
+    """What is reported of curves.
 
     Attributes
     ----------

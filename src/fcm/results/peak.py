@@ -37,5 +37,5 @@ def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
     told = (there & (stable == 1.0)[:, None]).any(axis=0)
     if told.all():
         return np.ones(told.size)
-    untold = (there & np.isnan(stable)[:, None]).any(axis=0) | np.isnan(top)
-    return np.where(told, 1.0, np.where(untold, np.nan, 0.0))
+    unknown = (there & np.isnan(stable)[:, None]).any(axis=0) | np.isnan(top)
+    return np.where(told, 1.0, np.where(unknown, np.nan, 0.0))

@@ -82,9 +82,7 @@ class Curve:
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
-    undetermined: int = (
-        0  # points at which a contact never slips and another may feel it, if that is not told
-    )
+    undetermined: int = 0  # points at which a contact never slips and another may feel it, if that is unknown
     condensed: CondensedCurve | None = (
         None  # if that is known; in the place of most points, where only peaks and folds were asked for
     )

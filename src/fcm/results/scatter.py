@@ -25,7 +25,7 @@ class Scatter(Frozen):
     """Of the curves that differ in drawn numbers alone; incomplete curves do not count.
 
     Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves
-    that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is not told,
+    that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is unknown,
     that is not known: the share of such curves, too.
     """
 
@@ -35,9 +35,9 @@ class Scatter(Frozen):
     frequency: FloatArray  # (percent, dof)
     jump: FloatArray  # (percent, sweep); NaN where no curve jumps
     jumping: FloatArray  # (sweep,)
-    untold: FloatArray  # (sweep,)
+    unknown: FloatArray  # (sweep,)
     peak_unstable: FloatArray  # (dof,) share of the curves whose peak is not stable
-    peak_untold: FloatArray  # (dof,) share of those of whose peak that is not known
+    peak_unknown: FloatArray  # (dof,) share of those of whose peak that is not known
 
 
 def scatter(response: Response) -> list[Scatter]:
@@ -87,11 +87,11 @@ def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_toler
     condensed, ahead = curve.condensed or condense(curve), 1.0 if sweep == "up" else -1.0
     met, begin = condensed.swept, condensed.ends[0 if sweep == "up" else 1]
     jumps = [ahead * one.frequency for one in met.jumps if one.sweep == sweep and one.frequency != begin]
-    untold = [ahead * one.start for one in met.untold if one.sweep == sweep]
+    unknown = [ahead * one.start for one in met.unknown if one.sweep == sweep]
     first = min(jumps, default=NONE)
     if first == NONE:
-        return np.nan if untold else NONE
-    known = first - min(untold, default=first) <= near * abs(first)
+        return np.nan if unknown else NONE
+    known = first - min(unknown, default=first) <= near * abs(first)
     return ahead * first if known else np.nan
 
 
@@ -120,7 +120,7 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
                 "amplitude": by_percent(one.peak[:, d]),
                 "frequency": by_percent(frequency[:, d]),
                 "unstable": float(one.peak_unstable[d]),
-                "untold": float(one.peak_untold[d]),
+                "unknown": float(one.peak_unknown[d]),
             }
             for d, dof in enumerate(dofs)
             if one.curves
@@ -128,7 +128,7 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
         "jumps": {
             sweep: {
                 "share": float(one.jumping[i]),
-                "untold": float(one.untold[i]),
+                "unknown": float(one.unknown[i]),
                 "frequency": by_percent(jump[:, i]),
             }
             for i, sweep in enumerate(SWEEPS)

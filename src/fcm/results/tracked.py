@@ -14,7 +14,7 @@ from fcm.units import in_unit
 
 
 class TrackedError(Frozen):
-    """What the harmonics left out would change at a point of a curve, estimated; NaN where it cannot be told.
+    """What the harmonics left out would change at a point of a curve, estimated; NaN where it is unknown.
 
     relative is of the amplitude of a peak, else of the frequency; number, at a turn alone, is by how much
     the number would be another there.
@@ -37,7 +37,7 @@ class TrackedCurve(Frozen):
     corner: npt.NDArray[np.str_]  # (point,) where the point is a corner of the response: of what
     turn: npt.NDArray[np.bool_]  # (point,) where the number turns back
     trough: npt.NDArray[np.bool_]  # (point,) of a peak that is none, but a least amplitude
-    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that cannot be told
+    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is unknown
     closings: tuple[tuple[int, str], ...]  # points where it turns, and what they are
     complete: bool
     reason: str
@@ -79,7 +79,7 @@ class TrackedCurve(Frozen):
 
     def _stability(self, unit: str) -> dict[str, Any]:
         """Stretches of the curve on which the motion is not stable, or not known to be; troughs apart."""
-        fields = {"not_stable": self.stable == 0.0, "stability_untold": np.isnan(self.stable)}
+        fields = {"not_stable": self.stable == 0.0, "stability_unknown": np.isnan(self.stable)}
         out = {}
         for name, where in fields.items():
             edges = np.flatnonzero(np.diff(where & ~self.trough, prepend=False, append=False))

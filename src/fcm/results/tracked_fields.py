@@ -89,11 +89,11 @@ def _errors(tracking: Tracking, unit: dict[str, str]) -> dict[str, Field]:
     dims, by = ("track", "tracked"), "by the harmonics left out"
     about_relative = f"estimated relative error of the {of} {by}, at ends, turns, extremes"
     about_number = f"estimated error of {tracking.key} {by}, at turns"
-    about_known = "1 where the error was estimated, 0 where it was tried and cannot be told"
+    about_known = "1 where the error was estimated, 0 where that was tried without success"
     return {
         "tracked_error": Field(dims, relative, {"long_name": about_relative, "units": "1"}),
         "tracked_number_error": Field(dims, number, {"long_name": about_number} | unit),
-        "tracked_error_told": Field(dims, known, {"long_name": about_known}),
+        "tracked_error_known": Field(dims, known, {"long_name": about_known}),
     }
 
 

@@ -16,6 +16,7 @@ from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from typing import Any
 
+from fcm.quoting import quoted
 from fcm.run.executor_place import ExecutorPlace, Refused, identity, other_fcm, there
 from fcm.run.options import RUN, RunOptions
 from fcm.run.places import Factory, NotComputed, PlaceClosed
@@ -84,7 +85,7 @@ def _client(address: str, options: RunOptions) -> Any:
             else _first_line(error)
         )
     raise ClusterError(
-        f"no dask scheduler answers at {address!r} ({fault}); it is started with: dask scheduler"
+        f"no dask scheduler answers at {quoted(address)} ({fault}); it is started with: dask scheduler"
     ) from None
 
 

@@ -223,7 +223,7 @@ def _mistuned_otherwise(draft: Parts, parts: Parts) -> bool:
 
 def _draft(scene: Scene) -> Draft:
     if not isinstance(scene.draft, Draft):
-        raise ValueError(f"the scene {scene.name!r} was not read from a file or a dict")
+        raise ValueError(f"the scene {quoted(scene.name)} was not read from a file or a dict")
     return scene.draft
 
 

@@ -105,9 +105,9 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
             f"{int(count * LIMITS.draws_seconds / seconds)} at most, or another distribution",
         )
         return None
-    told = table.mistakes.told
-    if seconds > told.options.seconds_of_draws:
-        told.say(f"{table.path}: {long}")
+    notices = table.mistakes.notices
+    if seconds > notices.options.seconds_of_draws:
+        notices.say(f"{table.path}: {long}")
     return found
 
 

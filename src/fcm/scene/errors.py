@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Sequence
 
+from fcm import quoting
 from fcm.scene.options import MESSAGES
-from fcm.scene.size_notices import Told
+from fcm.scene.size_notices import SizeNotices
 
 _NUMBER = re.compile(r"[0-9]{1,18}")  # of a node, at the beginning of a name
 
@@ -43,10 +43,10 @@ class Mistakes:
     fcm.scene.errors.SceneError: fan.toml: contact[0].ku: unknown key; did you mean "k_u"?
     """
 
-    def __init__(self, source: str, told: Told | None = None) -> None:
+    def __init__(self, source: str, notices: SizeNotices | None = None) -> None:
         """Of a file; what takes long to read is said at once, where there is someone to say it to."""
         self.source = source
-        self.told = told or Told()
+        self.notices = notices or SizeNotices()
         self.count = 0
         self._lines: list[str] = []
 
@@ -124,10 +124,7 @@ def choices(names: Iterable[str], most: int = 12) -> str:
 
 def quoted(text: object, longest: int = MESSAGES.longest_value) -> str:
     """Text in double quotes, on one line, without control characters and not too long."""
-    line = text if isinstance(text, str) else shown(text)
-    if len(line) > longest:
-        line = line[:longest] + "..."
-    return json.dumps(line, ensure_ascii=not line.isprintable())
+    return quoting.quoted(text if isinstance(text, str) else shown(text), longest)
 
 
 def several(names: Sequence[str], most: int = MESSAGES.groups) -> str:

@@ -135,7 +135,7 @@ TABLES: dict[str, dict[str, Key]] = {
     "contact.nodes": {
         "sets": Key("of two sides, or one that touches the ground: sets of the mesh, or files of nodes",
                     'list such as ["LEFT", "RIGHT"]', "pairs"),
-        "pairs": Key("of nodes; the mesh tells how far they are apart", ".csv file", "sets"),
+        "pairs": Key("of nodes; the mesh shows how far they are apart", ".csv file", "sets"),
         "mesh": Key("where the nodes are", ".inp, .bdf, .msh, or .csv with node,x,y,z"),
         "tolerance": Key("how far partners may be apart", POSITIVE, "of one set, and of a file, none"),
     },

@@ -82,8 +82,8 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
     """Whether memory holds what the flexibility along directions takes; else it is noted."""
     taken = float(LIMITS.bytes_of_direction * directions * rows)
     said = f"its flexibility along {directions} directions of contacts and forces, at {rows} rows, takes"
-    told = top.mistakes.told
-    if taken > (free := told.memory()):
+    notices = top.mistakes.notices
+    if taken > (free := notices.memory()):
         top.wrong(
             "structure",
             f"{said} {resources.size(taken)} of memory, "
@@ -91,8 +91,8 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
             "first, as by Craig and Bampton, or give fewer contacts",
         )
         return False
-    if taken > told.options.memory:
-        told.say(f"structure: {said} about {resources.size(taken)} of memory")
+    if taken > notices.options.memory:
+        notices.say(f"structure: {said} about {resources.size(taken)} of memory")
     return True
 
 

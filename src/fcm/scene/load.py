@@ -61,7 +61,7 @@ from fcm.scene.rigid_places import notes_of_places
 from fcm.scene.schedule import note_of_start, read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
-from fcm.scene.size_notices import Told
+from fcm.scene.size_notices import SizeNotices
 from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.toml import read_toml
 
@@ -99,14 +99,14 @@ def load_scene(
     largest_file: int = FILES.largest,
     every_row: bool = False,
     solved: bool = True,
-    told: Told | None = None,
+    notices: SizeNotices | None = None,
 ) -> Scene:
     """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
 
     A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked. Of matrices the
     scene has the rows that something is attached to or that are reported, or `every_row`. Where it is not to
     be solved, it may be without [response] and [[force]]. Of draws and curves that take long or much room is
-    told before they are made.
+    announced before they are made.
 
     >>> scene = load_scene("yang1998")
     >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
@@ -122,7 +122,7 @@ def load_scene(
         largest_file=largest_file,
         every_row=every_row,
         solved=solved,
-        told=told,
+        notices=notices,
     )
     return replace(scene, files=(path, *scene.files))
 
@@ -135,7 +135,7 @@ def scene_from_dict(
     largest_file: int = FILES.largest,
     every_row: bool = False,
     solved: bool = True,
-    told: Told | None = None,
+    notices: SizeNotices | None = None,
 ) -> Scene:
     """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
 
@@ -147,7 +147,7 @@ def scene_from_dict(
     >>> scene_from_dict(data).frequency_range
     (0.5, 1.5)
     """
-    mistakes = Mistakes(name, told)
+    mistakes = Mistakes(name, notices)
     top = Section(data, "", mistakes)
     if not data:
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
@@ -157,7 +157,7 @@ def scene_from_dict(
     fields = _read(top, files, _Reading(every_row, solved))
     mistakes.raise_if_any()
     try:
-        scene = _made(name, fields, told)
+        scene = _made(name, fields, notices)
     except MistuningError as error:
         mistakes.add(MISTUNING, str(error))
         mistakes.raise_if_any()
@@ -223,7 +223,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     }
 
 
-def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
+def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None) -> Scene:
     """The scene of what was read without a mistake, with its curves and all that is to be said of it."""
     draft: Draft = fields["draft"]
     modal, ring = modes_of(draft.parts, fields["frequency_unit"])
@@ -237,8 +237,8 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
         loads=tuple(map(load_of, draft.parts["load"])),
         **fields,
     )
-    if told is not None:
-        told.curves(scene, curves_of(draft.swept))
+    if notices is not None:
+        notices.curves(scene, curves_of(draft.swept))
     curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))
     scene = replace(scene, curves=curves)
     return replace(

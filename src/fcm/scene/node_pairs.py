@@ -50,7 +50,7 @@ def read_pairs(section: Section, files: Files) -> PairTable:
     if section.data.get("normal") == FITTED:
         section.wrong(
             "normal",
-            "cannot be fitted to a file of pairs, whose sides its places do not tell. Give a direction, or "
+            "cannot be fitted to a file of pairs, whose places do not show the sides. Give a direction, or "
             "nodes = { pairs = , mesh = }",
         )
     interface = Interface(section.data.get("name", ""), table.places, table.places)

@@ -32,9 +32,9 @@ class MessageOptions(Frozen):
     groups: int = 3  # of contacts in one sentence
     stuck_modes: int = 3  # whose frequencies are said, while all contacts stick
     damping_left_out: float = 1e-4  # relative change of the response by damping that is left out
-    # [byte] that directions of contacts take in a large structure: from here on it is told
+    # [byte] that directions of contacts take in a large structure: from here on it is said
     memory: float = 2e9
-    seconds_of_draws: float = 5.0  # [s] from which on it is told before numbers are drawn
+    seconds_of_draws: float = 5.0  # [s] from which on it is said before numbers are drawn
     start_rounding: float = 1e-9  # of the limit of the contact's force, by which a start may be off unsaid
     # times the range's end: modes ought to reach there, or their flexibility be kept
     range_above: float = 2.0

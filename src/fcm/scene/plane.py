@@ -59,7 +59,7 @@ def check_plane(contact: Contact, dofs: Sequence[str], mistakes: Mistakes, where
         return
     name = f"the tangential directions of contact {quoted(contact.name)}"
     if axis_key(one) == axis_key(other):
-        mistakes.add(where, f"{name} are one: no displacement tells them apart; give {TWO}")
+        mistakes.add(where, f"{name} are one: no displacement distinguishes them; give {TWO}")
         return
     turns = [[is_rotation(dofs[int(d)]) for d in np.flatnonzero(direction)] for direction in (one, other)]
     if all(turns[0]) != all(turns[1]):

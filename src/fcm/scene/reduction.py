@@ -135,7 +135,7 @@ def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: fl
     if not (count > LIMITS.outputs and any(aside)):
         return []
     most = lost + aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
-    off = f"are off by at most {_upwards(most)}" if np.isfinite(most) else "are off by what cannot be told"
+    off = f"are off by at most {_upwards(most)}" if np.isfinite(most) else "are off by an unknown amount"
     return [
         f"structure: the {count} outputs are more than {LIMITS.outputs}, so that their own flexibility is "
         f"not kept: receptances from contacts and forces to them {off}"
@@ -149,8 +149,8 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
     if unclear := max(one.unclear for one in parts):
         said.append(
             f"structure: its stiffness was written with {digits} digits. Modes below {100 * unclear:.2g} % "
-            "of the first elastic frequency cannot be told from rigid-body modes, and are taken for such. "
-            "Write it with more digits"
+            "of the first elastic frequency cannot be distinguished from rigid-body modes, and are taken for "
+            "such. Write it with more digits"
         )
     if off > max(MESSAGES.damping_left_out * float(ratios.min(initial=1.0)), TOLERANCES.undamped):
         why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"
@@ -178,7 +178,7 @@ def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
         f"{', all that there are' if every else ''}, and the flexibility of {of} as {counted(added, 'mode')}"
     )
     if not np.isfinite(found.bound):
-        return f"{text}; how far it is off cannot be told"
+        return f"{text}; how far it is off is unknown"
     return f"{text}. {how_far_off(matrices, found.bound, found.damping, damping.lost)}"
 
 

@@ -131,7 +131,7 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
         lost = max(one.damping.lost for one in diameters)
         text += f", and the flexibility of the others. {how_far_off(matrices, bound, damping, lost)}"
     else:
-        text += ", and the flexibility of the others; how far it is off cannot be told"
+        text += ", and the flexibility of the others; how far it is off is unknown"
     notes = [text]
     for what, which in (
         ("has rigid-body modes, of frequency 0", [one.found.rigid for one in diameters]),

@@ -1,4 +1,4 @@
-"""Who is told what takes long or much room, before it is made."""
+"""Notices of what takes long or much room, before it is made."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _ignored(*_: object) -> None:
     """Nobody hears of it."""
 
 
-class Told(Frozen):
+class SizeNotices(Frozen):
     """What hears of a scene while it is read.
 
     Attributes

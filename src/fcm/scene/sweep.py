@@ -85,7 +85,7 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[SweptKey
     count = curves_of(swept)
     if count > LIMITS.curves:
         section.wrong("", f"asks for {count} curves; there can be {LIMITS.curves}")
-    elif count * LIMITS.bytes_of_curve > (free := section.mistakes.told.memory()):
+    elif count * LIMITS.bytes_of_curve > (free := section.mistakes.notices.memory()):
         section.wrong(
             "",
             f"asks for {count} curves, which take {resources.size(count * LIMITS.bytes_of_curve)} of memory "

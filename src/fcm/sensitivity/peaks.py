@@ -21,6 +21,7 @@ import numpy as np
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
+from fcm.quoting import quoted
 from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
@@ -29,7 +30,7 @@ from fcm.sensitivity.peak import Kind, Peak, moved_by
 
 
 class Sensitivities(Frozen):
-    """Of the peaks of one curve; NaN where they cannot be told."""
+    """Of the peaks of one curve; NaN where they are unknown."""
 
     numbers: tuple[str, ...]  # key paths
     values: FloatArray  # (number,)
@@ -72,7 +73,7 @@ def settled(scene: Scene) -> Scene:
     """The scene of one curve as if nothing had been swept: its values are those of the curve."""
     draft = scene.draft
     if not isinstance(draft, Draft):
-        raise ValueError(f"the scene {scene.name!r} was not read from a file or a dict")
+        raise ValueError(f"the scene {quoted(scene.name)} was not read from a file or a dict")
     return replace(scene, draft=draft.fixed(scene), parameters={})
 
 

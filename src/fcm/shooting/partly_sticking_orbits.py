@@ -222,7 +222,7 @@ def _released(
 
 
 def _with_family(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> PartlyStickingOrbit | None:
-    """The motion with its family; None if that cannot be told."""
+    """The motion with its family; None if that is unknown."""
     system, state = System(orbit.scene, orbit.frequency), orbit.state
     x = np.concatenate((state.q, state.velocity, state.friction))
     try:

@@ -121,7 +121,7 @@ class PathClassification:
         return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]
 
     def same_on_both_sides(self, a: float, b: float) -> bool:
-        """Whether what is told on both sides of the untold way that a or b ends is the same."""
+        """Whether what is told on both sides of the unknown way that a or b ends is the same."""
         k = bisect_left(self._places, a)
         before = next((t for t in reversed(self._places[: k + 1]) if self._is_known(t)), None)
         after = next((t for t in self._places[k + 1 :] if self._is_known(t)), None)

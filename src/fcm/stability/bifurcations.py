@@ -34,7 +34,7 @@ __all__ = ["Bifurcation", "InsertedPoint", "MultiplierCrossing", "Stability", "s
 
 
 class Stability(Frozen):
-    """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it cannot be told."""
+    """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it is unknown."""
 
     stable: FloatArray
     crossings: tuple[MultiplierCrossing, ...]
@@ -182,7 +182,7 @@ class _BifurcationSearch:
         return None if length is None else self.classified.find(length, sufficient=(one.stable,))
 
     def _window_edge(self, a: float, b: float) -> float | None:
-        """A place between one that is told and one that is not: this may be the edge of a window."""
+        """A place between one that is known and one that is not: this may be the edge of a window."""
         classified = self.classified
         apart = self.options.windows.edge_distance < b - a <= 1.0
         if classified.grows(a) == classified.grows(b) or not apart or not classified.same_on_both_sides(a, b):
@@ -228,15 +228,15 @@ class _BifurcationSearch:
             ways = [half for a, middle, b in bent for half in ((a, middle), (middle, b))]
 
     def _may_differ(self, a: int, b: int) -> bool:
-        """Whether anything between two points may be told otherwise than at both; with many contacts nothing
-        is told between two of which it is not."""
+        """Whether anything between two points may be otherwise than at both; with many contacts nothing
+        is known between two of which it is not."""
         one, other = self.classified[a], self.classified[b]
         if self.many and math.isnan(one.stable) and math.isnan(other.stable):
             return False
         return not (one.is_linear and other.is_linear)
 
     def _crossings(self, places: list[float]) -> Iterator[MultiplierCrossing]:
-        """Where the growth changes sign between places that are told, and what is not told between them."""
+        """Where the growth changes sign between places that are known, and what is unknown between them."""
         known = [t for t in places if not math.isnan(self.classified[t].growth)]
         if len({self.classified.grows(t) for t in known}) < 2:
             return

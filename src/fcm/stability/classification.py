@@ -21,7 +21,7 @@ class Bifurcation(Enum):
 class Classification(NamedTuple):
     """Of one solution."""
 
-    stable: float  # 1, 0, or nan where it cannot be told
+    stable: float  # 1, 0, or nan where it is unknown
     growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
     kind: Bifurcation  # of what grows most
     angle_to_flip: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small

@@ -5,7 +5,7 @@ the pair of the curve does not tell how much that is, or it is much, the motion 
 balanced itself, at the same frequency. If that is near, stable, and hardly another by the harmonics beyond
 those, the solution is what it is taken for.
 
-Where the error is told and great, the motion with further harmonics is far, and no Newton method leads there
+Where the error is known and great, the motion with further harmonics is far, and no Newton method leads there
 from the solution. But what told the error does, a motion with more harmonics at that frequency; or the curve
 of these motions, from beside the solutions next to it.
 """

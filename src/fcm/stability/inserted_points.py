@@ -40,7 +40,7 @@ class InsertedPoint(Frozen):
 
 
 class MultiplierCrossing(InsertedPoint):
-    """A point of the curve at which stability changes without a fold, of which it is not told: a disturbance
+    """A point of the curve at which stability changes without a fold, of which it is unknown: a disturbance
     neither grows nor dies out there, but by what more harmonics make of that."""
 
     stable: float = math.nan

@@ -57,7 +57,7 @@ class StructureOptions(Frozen):
     max_entries : int
         Entries of the matrices of points that are held at once, whose eigenvalues are found together.
     max_disturbances : int
-        Of the sectors of a ring; with more a point takes seconds, and stability is not told.
+        Of the sectors of a ring; with more a point takes seconds, and stability is unknown.
     """
 
     many_modes: int = 24
@@ -242,10 +242,10 @@ class PlanarStabilityOptions(Frozen):
     out that end where a slipping contact opens, or begin where it closes. max_step: step [rad]. min_factor,
     max_factor, safety: limits of the ratio of two steps, and what it is multiplied by. max_retry_factor: the
     same limit of a step that is taken again, shorter. min_step: [rad]; where none as short will do, stability
-    is not told.
+    is unknown.
 
     max_disturbances, most_of_many: disturbances that are followed, of few and of many contacts; with more,
-    stability is not told. initial_panels: of slip that are recorded for a contact at first. event_tolerance:
+    stability is unknown. initial_panels: of slip that are recorded for a contact at first. event_tolerance:
     [rad] between events that are one, as those of contacts that mirror one another are; multipliers err by
     about as much. min_gap: [rad] between events, from where on a period may begin between them.
     """

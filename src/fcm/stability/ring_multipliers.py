@@ -32,7 +32,7 @@ MAX_NAMED = 8  # diameters in a sentence
 
 
 def stability_unknown(system: System, highest: float, options: StabilityOptions = STABILITY) -> str:
-    """Why the stability of a system's waves cannot be told; empty if it can."""
+    """Why the stability of a system's waves is unknown; empty if it is known."""
     ring = system.scene.ring
     assert ring is not None
     missing = sorted(set(ring.lacking(range(ring.period)).values()))

@@ -46,7 +46,7 @@ class FactorOptions(Frozen):
 class NotPositiveError(ValueError):
     """A matrix that is not positive definite, with the number of its negative eigenvalues.
 
-    The number is None where it cannot be told, and 0 of a singular matrix.
+    The number is None where it is unknown, and 0 of a singular matrix.
     """
 
     def __init__(self, negative: int | None) -> None:

@@ -39,13 +39,13 @@ class ReceptanceOptions(Frozen):
 
 
 class RetainedModeOptions(Frozen):
-    """Which modes of a structure are kept, and what is told of them."""
+    """Which modes of a structure are kept, and what is reported of them."""
 
     min_modes: int = 10  # modes that are kept at least, where none are asked for
     frequency_factor: float = 3.0  # times the highest frequency of interest: modes up to there are kept
     # of other displacements whose rounding is looked at: it is greatest beside what moves little
     max_stiff_displacements: int = 50
-    max_products: int = 10_000_000  # other rows times rows: each takes a solution, and more are not told of
+    max_products: int = 10_000_000  # other rows times rows: each takes a solution, and more are not reported
     full_size: int = 30  # rows up to which all modes are kept
     # times the shift: a first elastic mode that is so much farther has lost five digits
     max_shift_ratio: float = 1e5
@@ -61,7 +61,7 @@ class RetainedModeOptions(Frozen):
 
 
 class RigidBodyOptions(Frozen):
-    """What tells rigid-body modes from elastic ones."""
+    """What distinguishes rigid-body modes from elastic ones."""
 
     # of the next frequency: so low are rigid-body modes that come out of an eigensolver
     rigid_ratio: float = 1e-3

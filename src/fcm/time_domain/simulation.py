@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.model.scene import FloatArray, InTime, Phase, Scene, in_time
+from fcm.quoting import quoted
 from fcm.time_domain.contact_states import Codes
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.errors import CycleError, SimulationError
@@ -163,7 +164,7 @@ def _marched(system: System, march: March, options: TimeOptions = TIME) -> Segme
         elif stopped == Stopped.UNDECIDED:
             letters = "".join(LETTERS[code] for code in np.asarray(march.states)[0])
             raise CycleError(
-                f"the contacts' states cannot be told apart at {_at(system)}, now {letters!r}; "
+                f"the contacts' states cannot be distinguished at {_at(system)}, now {quoted(letters)}; "
                 "change a parameter of the contacts slightly"
             )
         elif stopped == Stopped.LONG:

@@ -15,7 +15,7 @@ from fcm.tracking.tracked_point import TrackingSetup
 
 
 class EndingPeak(NamedTuple):
-    """error: relative, of the number at which it ends, NaN where that cannot be told; beside: a number where
+    """error: relative, of the number at which it ends, NaN where that is unknown; beside: a number where
     it still is."""
 
     error: float

@@ -28,7 +28,7 @@ class TruncationError(NamedTuple):
     """By more harmonics: relative of a peak's amplitude, else of the frequency; of the number at a turn."""
 
     relative: float
-    number: float  # 0 where the number is given; NaN both where it cannot be told
+    number: float  # 0 where the number is given; NaN both where it is unknown
 
 
 UNKNOWN = TruncationError(np.nan, np.nan)
@@ -51,7 +51,7 @@ class _RefinedPoint:
 
 
 def error_points(track: SpecialPointCurve) -> dict[int, str]:
-    """Points at which the error is told, with what they are."""
+    """Points at which the error is known, with what they are."""
     ends = [] if Ending.CLOSED in track.endings else [0, len(track.points) - 1]
     marks = [*((i, "end") for i in dict.fromkeys(ends)), *((i, kind) for i, kind in track.turns())]
     if track.condition.kind is Kind.PEAK and track.greatest.any():

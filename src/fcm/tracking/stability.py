@@ -19,7 +19,7 @@ Seen = tuple[TrackedPoint, float]  # a point, and what is said of it
 
 
 def stability_along(setup: TrackingSetup, track: SpecialPointCurve) -> tuple[SpecialPointCurve, FloatArray]:
-    """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it cannot be told.
+    """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it is unknown.
 
     As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
     curve is that with two more points wherever this changes, one on either side.

@@ -1,0 +1,16 @@
+"""Text in messages: in double quotes, as in the files that it is of."""
+
+from __future__ import annotations
+
+import json
+
+
+def quoted(text: str, longest: int = 60) -> str:
+    """In double quotes, on one line, without control characters, and of so many characters at most.
+
+    >>> print(quoted("GRID"), quoted("a" * 9, 3))
+    "GRID" "aaa..."
+    """
+    if len(text) > longest:
+        text = text[:longest] + "..."
+    return json.dumps(text, ensure_ascii=not text.isprintable())
