@@ -41,10 +41,24 @@ cdef extern from *:
         fcm_subtract(a, a + size, a + 2 * size, a + 3 * size,
                      u, u + size, u + 2 * size, u + 3 * size, by, columns - 4);
     }
+
+    /* Four rows a, from column n on, less four rows u below times what a has in the columns from k on. */
+    static inline void fcm_four_less_upper(double *a, const double *u, ptrdiff_t size, ptrdiff_t k, ptrdiff_t n)
+    {
+        double by[16];
+        for (int r = 0; r < 4; r++)
+            for (int c = 0; c < 4; c++) by[4 * r + c] = a[r * size + k + c];
+        a += n, u += n;
+        fcm_subtract(a, a + size, a + 2 * size, a + 3 * size,
+                     u, u + size, u + 2 * size, u + 3 * size, by, size - n);
+    }
     """
     void four_less_four "fcm_four_less_four"(double *, const double *, Py_ssize_t, Py_ssize_t) noexcept nogil
+    void four_less_upper "fcm_four_less_upper"(
+        double *, const double *, Py_ssize_t, Py_ssize_t, Py_ssize_t) noexcept nogil
 
 cdef double eliminate(double[:, ::1], int[::1]) noexcept
+cdef bint condense(double[:, ::1], int[::1]) noexcept
 cdef void substitute(double[:, ::1], int[::1], double[::1]) noexcept
 
 cdef class Solver:

@@ -7,6 +7,8 @@ The elimination is that of Gauss with pivots along rows, which suits stiff conta
 its lower and its unit upper triangle, in place. From a row those above it are taken four at a time: a number
 is then loaded and stored once for all. Of many rows four are treated together, by what C compiles for
 registers of any width, see the .pxd; every number is the same either way.
+
+Of more rows than pivots, and more columns, the elimination leaves the others condensed, see `condense`.
 """
 
 from __future__ import annotations
@@ -71,8 +73,14 @@ class Solver:
 @cython.cfunc
 @cython.exceptval(check=False)
 def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.double:
-    """The sign of the determinant, 0 if the matrix is singular or not finite; swapped (n,): the columns."""
-    n: cython.Py_ssize_t = a.shape[0]
+    """The sign of the determinant, 0 if the matrix is singular or not finite; swapped (n,): the columns.
+
+    Of a with further rows and columns only the first n have pivots.
+    """
+    n: cython.Py_ssize_t = swapped.shape[0]
+    rows: cython.Py_ssize_t = a.shape[0]
+    columns: cython.Py_ssize_t = a.shape[1]
+    above: cython.Py_ssize_t
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -81,27 +89,30 @@ def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.doub
     r: cython.double
     s: cython.double
     sign: cython.double = 1.0
-    for i in range(n):
+    for i in range(rows):
+        above = min(i, n)
         k = 0
-        if cython.compiled and n >= BLOCKED_ROWS:
-            k = i - i % 4 if i - i % 4 + 4 <= n else 0
-            if 0 < k == i:
-                _four_rows(a, i)
-        while k + 4 <= i:
+        if cython.compiled and columns >= BLOCKED_ROWS and i - i % 4 + 4 <= rows:
+            k = min(i - i % 4, n - n % 4)
+            if i % 4 == 0:
+                _four_rows(a, i, k)
+        while k + 4 <= above:
             p = a[i, k]
             q = a[i, k + 1] - p * a[k, k + 1]
             r = a[i, k + 2] - p * a[k, k + 2] - q * a[k + 1, k + 2]
             s = a[i, k + 3] - p * a[k, k + 3] - q * a[k + 1, k + 3] - r * a[k + 2, k + 3]
             a[i, k + 1], a[i, k + 2], a[i, k + 3] = q, r, s
-            for j in range(k + 4, n):
+            for j in range(k + 4, columns):
                 a[i, j] = a[i, j] - p * a[k, j] - q * a[k + 1, j] - r * a[k + 2, j] - s * a[k + 3, j]
             k += 4
-        while k < i:
+        while k < above:
             p = a[i, k]
-            for j in range(k + 1, n):
+            for j in range(k + 1, columns):
                 a[i, j] -= p * a[k, j]
             k += 1
-        most: cython.double = _greatest(a, i)
+        if i >= n:
+            continue
+        most: cython.double = _greatest(a, i, n)
         if not (0.0 < most <= 1e300):
             return 0.0
         j = i
@@ -113,9 +124,74 @@ def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.doub
             _swap(a, i, j)
         if a[i, i] < 0.0:
             sign = -sign
-        for j in range(i + 1, n):
+        for j in range(i + 1, columns):
             a[i, j] /= a[i, i]
     return sign
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def condense(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.bint:
+    """Of rows [M R], with M (n, n), and [L D] below, R becomes M^-1 R, and D becomes D - L M^-1 R.
+
+    False if M is singular or not finite; swapped (n,).
+    """
+    n: cython.Py_ssize_t = swapped.shape[0]
+    if not cython.compiled:
+        try:
+            found = np.linalg.solve(a[:n, :n], a[:n, n:])
+        except np.linalg.LinAlgError:
+            return False
+        a[n:, n:] -= a[n:, :n] @ found
+        a[:n, n:] = found
+        return bool(np.isfinite(found).all())
+    if n > 0 and eliminate(a, swapped) == 0.0:
+        return False
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    columns: cython.Py_ssize_t = a.shape[1]
+    for i in range(n - 1, -1, -1):
+        if i >= n - n % 4:
+            _less_below(a, i, i + 1, n)
+        elif i % 4 == 3:
+            _four_less_below(a, i - 3, n)
+    for i in range(n - 1, -1, -1):
+        if swapped[i] != i:
+            for j in range(n, columns):
+                a[i, j], a[swapped[i], j] = a[swapped[i], j], a[i, j]
+    return True
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _less_below(
+    a: cython.double[:, ::1], i: cython.Py_ssize_t, first: cython.Py_ssize_t, n: cython.Py_ssize_t
+) -> cython.void:
+    """The right sides of row i less those of the rows from the first to the n-th, by the triangle."""
+    j: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    for k in range(first, n):
+        by: cython.double = a[i, k]
+        for j in range(n, a.shape[1]):
+            a[i, j] -= by * a[k, j]
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _four_less_below(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.void:
+    """The same of row i and the next three."""
+    k: cython.Py_ssize_t = i + 4
+    r: cython.Py_ssize_t
+    width: cython.Py_ssize_t = a.shape[1]
+    while k + 4 <= n:
+        rows, below = cython.address(a[i, 0]), cython.address(a[k, 0])
+        four_less_upper(rows, below, width, k, n)  # type: ignore[name-defined]  # noqa: F821
+        k += 4
+    for r in range(i + 3, i - 1, -1):
+        _less_below(a, r, k, n)
+        _less_below(a, r, r + 1, i + 4)
 
 
 @cython.cfunc
@@ -192,24 +268,24 @@ def _four(
 @cython.cfunc
 @cython.inline
 @cython.exceptval(check=False)
-def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.void:
-    """Row i and the next three less the i above, which are a multiple of four; where it is compiled."""
-    n: cython.Py_ssize_t = a.shape[0]
+def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t, count: cython.Py_ssize_t) -> cython.void:
+    """Row i and the next three less the first so many, which are a multiple of four; where it is compiled."""
+    columns: cython.Py_ssize_t = a.shape[1]
     k: cython.Py_ssize_t
-    for k in range(0, i, 4):
+    for k in range(0, count, 4):
         row, above = cython.address(a[i, k]), cython.address(a[k, k])
-        four_less_four(row, above, n, n - k)  # type: ignore[name-defined]  # noqa: F821
+        four_less_four(row, above, columns, columns - k)  # type: ignore[name-defined]  # noqa: F821
 
 
 @cython.cfunc
 @cython.inline
 @cython.exceptval(check=False)
-def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.double:
-    """Of a row, from the diagonal on, the greatest size: four at a time, that do not wait for one another.
+def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.double:
+    """Of a row up to n, from the diagonal on, the greatest size: four at a time, that do not wait for one
+    another.
 
     What is no number is passed over here, and makes its column none in all rows below: the last has 0.
     """
-    n: cython.Py_ssize_t = a.shape[0]
     j: cython.Py_ssize_t = i
     p: cython.double = 0.0
     q: cython.double = 0.0

@@ -18,26 +18,39 @@ the structure, until another one opens or closes:
 
     d = (R^-1 P^T + (R^-1 S)_o T (R^-1 P^T)_o) q + (R^-1 S + (R^-1 S)_o T (R^-1 S)_o) g
 
-What depends on one angle alone is found at each point by itself: e . du - dr of the contacts that slip, of
-(q, s). Then q of s at all points, as modes are few; what is left of a step are equations of s, one unknown
-for each contact that slips and point.
+What depends on one angle alone is found at each point by itself, by (q, s): e . du - dr of the contacts that
+slip, what their s feels, and the forces on the modes. With these a step of the length h leaves equations of
+p = q' and s at all its points; A and D are the rule's matrices, q_0, p_0 and s_0 at the beginning:
+
+    q = q_0 + h A p,    p = p_0 + h A (forces - K q - C p),    r (D s + d s_0) + h lambda s = what s feels
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import fabs
 
 from fcm.contact.plane.radau import radau
-from fcm.stability.planar_monodromy import VariationalSteps
-from fcm.stability.state_sequence import PlanarSequence, states
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
+    from cython.cimports.fcm.continuation.dense_solver import condense
+    from cython.cimports.fcm.stability.planar_monodromy import VariationalSteps
+    from cython.cimports.fcm.stability.state_sequence import PlanarSequence
+else:
+    from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
+    from fcm.continuation.dense_solver import condense
+    from fcm.stability.planar_monodromy import VariationalSteps
+    from fcm.stability.state_sequence import PlanarSequence
 
 FloatArray = npt.NDArray[np.float64]
-STICK, SLIP, SEPARATION = states()
 
 
+@cython.cclass
 class ManyPlanarMonodromy(VariationalSteps):
     """Of many contacts: of those that never move nothing is followed.
 
@@ -63,44 +76,53 @@ class ManyPlanarMonodromy(VariationalSteps):
         self.poll, self.options = poll, sequence.options
         options = self.options
         VariationalSteps.__init__(self, sequence, options.stages_of_many, options.tolerance_of_many)
+        self.coefficient_floor = options.coefficient_floor
         self.shapes, self.natural, self.damping = shapes[~far], natural[~far], damping[~far]
         self.all_soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
-        self.rule = radau(self.stages)
-        self.butcher = A = np.linalg.inv(self.rule.slopes[1:, 1:])
-        self.twice = A[:, None, :] * A.T[None]  # A A = twice summed over the last
+        self.modes = len(self.natural)
+        rule = radau(self.stages)
+        self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
+        self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
+        self.slipping = self.columns = 0
+        self.arranged = False
 
-    def begin(self, omega: float) -> bool:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def begin(self, omega: cython.double) -> cython.bint:
         """Take a frequency, and the disturbances to be followed; false if they are too many."""
         count, state = np.asarray(self.sequence.count), np.asarray(self.sequence.state)
         self.moving = np.flatnonzero((count > 1) | (state[:, 0] == SLIP))
         self.number = np.full(count.size, -1)
         self.number[self.moving] = np.arange(self.moving.size)
-        m, held = self.natural.size, np.asarray(self.held)[self.moving]
-        columns = 2 * m + int(held.sum())
+        held = np.asarray(self.held)[self.moving]
+        columns = 2 * self.modes + int(held.sum())
         if columns > self.options.most_of_many:
             return False
         self._structure(omega)
+        m, self.columns = self.modes, columns
         self.q, self.p = np.eye(m, columns), np.eye(m, columns, m)
+        self.q_new, self.p_new = np.zeros((2, m, columns))
         # (contact, number, disturbance), and the forces g (contact, direction, disturbance) of closed ones
-        self.memory, self.g = (np.zeros((self.moving.size, n, columns)) for n in (2, 3))
+        memory, g = np.zeros((self.moving.size, 2, columns)), np.zeros((self.moving.size, 3, columns))
         self.remembered = [(k, i) for k, n in enumerate(held.tolist()) for i in range(n)]
         for column, (k, i) in enumerate(self.remembered, 2 * m):
-            self.memory[k, i, column] = 1.0
+            memory[k, i, column] = 1.0
         sticks = np.asarray(self.state)[self.moving] == STICK
-        self.g[sticks, :2] = self.k_u[sticks, None, None] * self.memory[sticks]
+        g[sticks, :2] = self.k_u[sticks, None, None] * memory[sticks]
+        self.memory, self.g = memory, g
         self.arranged = False
         return True
 
     def _structure(self, omega: float) -> None:
         """That with the springs: what moving contacts see of the modes, and of one another's forces."""
-        contact, m = np.asarray(self.sequence.contact), self.natural.size
+        contact, m = np.asarray(self.sequence.contact), self.modes
         rubs = contact[:, 0] * contact[:, 1] > 0.0
         opened = (np.asarray(self.sequence.count) == 1) & (np.asarray(self.state) == SEPARATION)
         springs = np.stack((contact[:, 1] * rubs, contact[:, 1] * rubs, contact[:, 2]), axis=1)
         springs[opened] = 0.0
         self.k_u, self.springs = springs[self.moving, 0], springs[self.moving]
-        self.ratio = np.where(rubs, contact[:, 0] * contact[:, 2] / np.where(rubs, contact[:, 1], 1.0), 0.0)
-        self.ratio, every = self.ratio[self.moving], springs.ravel()
+        self.ratios = np.where(rubs, contact[:, 0] * contact[:, 2] / np.where(rubs, contact[:, 1], 1.0), 0.0)
+        self.ratios, every = self.ratios[self.moving], springs.ravel()
         ports = _ports(self.moving)
         seen: FloatArray = self.shapes.T
         soft: FloatArray = self.all_soft[:, ports]
@@ -123,167 +145,332 @@ class ManyPlanarMonodromy(VariationalSteps):
             freed = np.eye(ports.size) - soft[np.ix_(ports, ports)] * springs
             both = np.concatenate((seen[ports], soft[ports]), axis=1)
             force = springs[:, None] * np.asarray(np.linalg.solve(freed, both), dtype=np.float64)
-            m = self.natural.size
+            m = self.modes
             K = K - seen[ports].T @ force[:, :m] / self.omega**2
             seen, soft = seen + soft[:, ports] @ force[:, :m], soft + soft[:, ports] @ force[:, m:]
         self.K, self.seen, self.soft = K, seen, soft
         self.push = self.seen.T / self.omega**2
 
+    @cython.ccall
     def disturbances(self) -> FloatArray:
         """The rows (q, q', memory) now."""
-        kept = np.array([self.memory[k, i] for k, i in self.remembered]).reshape(-1, self.q.shape[1])
+        kept = np.array([self.memory[k, i] for k, i in self.remembered]).reshape(-1, self.columns)
         return np.concatenate((self.q, self.p, kept))
 
     def _arrange(self) -> None:
         """Which contacts slip, are open, and stick, and what those do to one another."""
         self.poll()
-        state, columns = np.asarray(self.state)[self.moving], self.q.shape[1]
-        self.slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
+        state, columns, m, s = np.asarray(self.state)[self.moving], self.columns, self.modes, self.stages
+        slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
         opened = np.flatnonzero(state == SEPARATION)
         if not np.array_equal(opened, self.open):
             self._open(opened)
-        n = self.slips.size
-        slide, rest = _ports(self.slips), _ports(sticks, 2)
+        n = self.slipping = slips.size
+        self.slips, self.sliders = slips.astype(np.intc), self.moving[slips].astype(np.intc)
+        self.ratio, self.stiff = self.ratios[slips], self.k_u[slips]
+        slide, rest = _ports(slips), _ports(sticks, 2)
         # what the memory of those that stick pushes on the modes, and moves the others by
-        still = self.g[sticks, :2].reshape(rest.size, columns)
+        still = np.asarray(self.g)[sticks, :2].reshape(rest.size, columns)
         self.held_push = self.push[:, rest] @ still
         moved = self.soft[slide[:, None], rest] @ still
         by = np.concatenate((self.seen[slide], moved), axis=1)
         # of contacts that slip, by their directions: (direction, contact, what by)
-        self.by = by.reshape(n, 3, by.shape[1]).transpose(1, 0, 2).copy()
+        self.seen_by = by.reshape(n, 3, by.shape[1]).transpose(1, 0, 2).copy()
+        k_u = np.asarray(self.stiff)
         soft = self.soft[slide[:, None], slide].reshape(n, 3, n, 3)
-        self.of_slips = soft[..., :2].transpose(1, 3, 0, 2).copy()
-        self.pushes = self.push[:, slide].reshape(self.natural.size, n, 3)[..., :2].transpose(2, 0, 1).copy()
+        self.of_slips = (soft[..., :2] * k_u[:, None]).transpose(1, 3, 0, 2).copy()
+        pushes = self.push[:, slide].reshape(m, n, 3)[..., :2] * k_u[:, None]
+        self.pushes = pushes.transpose(2, 0, 1).copy()
+        self.e_x, self.e_y, self.pressed, self.kept = np.zeros((4, s, n))
+        self.sees, self.relaxing = np.zeros((2, s, n, 3)), np.zeros((n, s, s))
+        self.by, self.force = np.zeros((s, 2 * n + m, 2 * n + m + columns)), np.zeros((s, m, columns))
+        self.whole = np.zeros((s * (m + n), s * (m + n) + columns))
+        self.swapped, self.swapped_slips = np.zeros(s * (m + n), dtype=np.intc), np.zeros(n, dtype=np.intc)
         self.arranged = True
 
-    def _slip(self, theta: float, h: float) -> None:
-        """Of the contacts that slip, at the nodes: directions, what s feels, and how it answers to that."""
-        s, rule, n = self.stages, self.rule, self.slips.size
-        angles = theta + h * rule.nodes
-        found = [self.sequence.slip_at(c, angles) for c in self.moving[self.slips].tolist()]
-        e, rate, r = np.split(np.array(found).reshape(n, s, 6).transpose(1, 0, 2), (2, 5), axis=2)
-        r = r[..., 0]
-        r = np.maximum(r, 1e-12 * np.abs(r).max(initial=0.0)).T
-        rate = h * rate
-        aside = np.stack((-e[..., 1], e[..., 0]), axis=-1)
-        across = (aside * rate[..., :2]).sum(axis=-1)
-        push = np.maximum((e * rate[..., :2]).sum(axis=-1) - rate[..., 2], 0.0)
-        ratio = self.ratio[self.slips]
-        along = np.concatenate((e, np.broadcast_to(-ratio[:, None], (s, n, 1))), axis=-1)
-        tangential = push[..., None] * aside - across[..., None] * e
-        feels = np.concatenate((tangential, (across * ratio)[..., None]), axis=-1)
-        self.sees = np.stack((along, feels))  # (2, s, contact, direction)
-        fresh = np.asarray(self.fresh)[self.moving[self.slips], None, None] > 0
-        self.relaxing = r[..., None] * np.where(fresh, rule.inner, rule.slopes[1:, 1:])
-        self.relaxing[:, range(s), range(s)] += push.T
-        self.kept = np.where(fresh[..., 0], 0.0, -r * rule.slopes[1:, 0]).T
-        self.e, self.aside = e, aside
-
-    def _at_each_node(self) -> tuple[FloatArray, FloatArray]:
-        """By (q, s, each disturbance), at each node: what s feels, and the forces on the modes.
-
-        `at_end`: e . du - dr at the last.
-        """
-        m, n = self.natural.size, self.slips.size
-        k_u = self.k_u[self.slips, None]
-        along, aside = ((k_u * e).transpose(2, 0, 1)[..., None, :] for e in (self.e, self.aside))
-        # of both rows of a contact, e . du - dr and what s feels: (2, s, slip, what by)
-        by: FloatArray = sum(self.sees[..., d, None] * self.by[d] for d in range(3))
-        half = [sum(self.sees[..., d, None] * self.of_slips[d, j] for d in range(3)) for j in range(2)]
-        by_gamma, by_s = (half[0] * force[0] + half[1] * force[1] for force in (along, aside))
-        right = np.concatenate((by[..., :m], by_s, by[..., m:]), axis=-1)
-        found = np.linalg.solve(np.eye(n) - by_gamma[0], right[0])
-        self.at_end = found[-1]
-        on_gamma, on_s = (self.pushes[0] * force[0] + self.pushes[1] * force[1] for force in (along, aside))
-        pushed = on_gamma @ found
-        pushed[..., m : m + n] += on_s
-        pushed[..., m + n :] += self.held_push
-        return right[1] + by_gamma[1] @ found, pushed
-
-    def step(self, theta: float, h: float) -> float:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def step(self, theta: cython.double, h: cython.double) -> cython.double:
         """A step from an angle on; what it leaves out beside a disturbance, infinity where it is singular."""
         if not self.arranged:
             self._arrange()
-        m, n, s, columns = self.natural.size, self.slips.size, self.stages, self.q.shape[1]
-        self._slip(theta, h)
-        try:
-            felt, pushed = self._at_each_node()
-            p, q = self._modes(pushed, h)
-            by_q = felt[..., :m] @ q
-            system = -by_q[..., : s * n].reshape(s, n, s, n)
-            system[range(s), :, range(s)] -= felt[..., m : m + n]
-            system[:, range(n), :, range(n)] += self.relaxing
-            right = by_q[..., s * n :] + felt[..., m + n :]
-            right += self.kept[..., None] * self.memory[self.slips, 0]
-            turned = np.linalg.solve(system.reshape(s * n, s * n), right.reshape(s * n, columns))
-        except np.linalg.LinAlgError:
-            return np.inf
-        p = (p[:, : s * n] @ turned + p[:, s * n :]).reshape(s, m, columns)
-        self.p_new, self.q_new = p[-1], q[-1, :, : s * n] @ turned + q[-1, :, s * n :]
-        self.s_new = turned[n * (s - 1) :]
-        tail = np.tensordot(self.rule.tail, np.concatenate((self.p[None], p)), axes=1)
-        scale = np.maximum(1.0, np.abs(np.concatenate((self.q, self.p))).max(axis=0, initial=0.0))
-        before, last = np.abs(tail / scale).max(axis=(1, 2), initial=0.0).tolist()
-        rest = float(max(last, self.options.coefficient_floor * before))
-        return rest if rest == rest else np.inf
+        i: cython.int
+        self.slip(theta, h)
+        for i in range(self.stages):
+            if not self.at_node(i):
+                return 1e300
+            self.push_modes(i)
+        self.equations_of_modes(h)
+        self.equations_of_slip(h)
+        if not condense(self.whole, self.swapped):
+            return 1e300
+        return self.move(h)
 
-    def _modes(self, pushed: FloatArray, h: float) -> tuple[FloatArray, FloatArray]:
-        """p (s mode, s slip + disturbance) and q (s, mode, the same) at the nodes, by s there.
+    def slip(self, theta: float, h: float) -> None:
+        """Of the contacts that slip, at the nodes: directions, what s feels, and how it answers to that."""
+        a: cython.int
+        c: cython.int
+        i: cython.int
+        j: cython.int
+        r: float
+        least: float = 0.0
+        for a in range(self.slipping):
+            c = self.sliders[a]
+            for i in range(self.stages):
+                at: float = theta + h * self.node[i]
+                self.sequence.direction(self.sequence.panel(c, at, False), at)
+                self.sequence.rates(c, at)
+                e_x: float = self.sequence.e_x
+                e_y: float = self.sequence.e_y
+                x_1: float = h * self.sequence.x_1
+                y_1: float = h * self.sequence.y_1
+                across: float = e_x * y_1 - e_y * x_1
+                push: float = max(e_x * x_1 + e_y * y_1 - h * self.sequence.r_1, 0.0)
+                self.e_x[i, a], self.e_y[i, a], self.pressed[i, a] = e_x, e_y, push
+                self.kept[i, a] = self.sequence.r
+                self.sees[0, i, a, 0], self.sees[0, i, a, 1] = e_x, e_y
+                self.sees[0, i, a, 2] = -self.ratio[a]
+                self.sees[1, i, a, 0] = -push * e_y - across * e_x
+                self.sees[1, i, a, 1] = push * e_x - across * e_y
+                self.sees[1, i, a, 2] = across * self.ratio[a]
+                least = max(least, 1e-12 * fabs(self.sequence.r))
+        for a in range(self.slipping):
+            fresh: cython.bint = self.fresh[self.sliders[a]] != 0
+            for i in range(self.stages):
+                r = max(self.kept[i, a], least)
+                self.kept[i, a] = 0.0 if fresh else -r * self.slopes[i, 0]
+                for j in range(self.stages):
+                    self.relaxing[a, i, j] = r * (self.inner[i, j] if fresh else self.slopes[i, j + 1])
+                self.relaxing[a, i, i] += self.pressed[i, a]
 
-        From q = q_0 + h A p and p = p_0 + h A p', with p' = -K q - C p + the forces on the modes.
-        """
-        m, n, s = self.natural.size, self.slips.size, self.stages
-        once, columns = h * self.butcher, self.q.shape[1]
-        K = self.K - pushed[..., :m]
-        system = np.tensordot(h * h * self.twice, K, axes=1).transpose(0, 2, 1, 3)
-        right = np.empty((s, m, s * n + columns))
-        of_s = once[:, None, :, None] * pushed[..., m : m + n].transpose(1, 0, 2)
-        right[..., : s * n] = of_s.reshape(s, m, s * n)
-        right[..., s * n :] = self.p + np.tensordot(once, pushed[..., m + n :] - K @ self.q, axes=1)
-        whole = system.reshape(s * m, s * m) + np.kron(once, np.diag(self.C)) + np.eye(s * m)
-        p: FloatArray = np.asarray(np.linalg.solve(whole, right.reshape(s * m, -1)), dtype=np.float64)
-        q: FloatArray = np.tensordot(once, p.reshape(s, m, -1), axes=1)
-        q[..., s * n :] += self.q
-        return p, q
+    def at_node(self, i: cython.int) -> cython.bint:
+        """`by`: by (q, s, disturbances), e . du - dr of contacts that slip, what s feels, forces on modes."""
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        a: cython.int
+        b: cython.int
+        j: cython.int
+        row: cython.int
+        by: cython.double[:, ::1] = self.by[i]
+        of: cython.double[:, :, :, ::1] = self.of_slips
+        seen: cython.double[:, :, ::1] = self.seen_by
+        e_x: cython.double[::1] = self.e_x[i]
+        e_y: cython.double[::1] = self.e_y[i]
+        f: float
+        g: float
+        for row in range(2 * n):
+            a = row % n
+            x: float = self.sees[row // n, i, a, 0]
+            y: float = self.sees[row // n, i, a, 1]
+            z: float = self.sees[row // n, i, a, 2]
+            for b in range(n):
+                f = x * of[0, 0, a, b] + y * of[1, 0, a, b] + z * of[2, 0, a, b]
+                g = x * of[0, 1, a, b] + y * of[1, 1, a, b] + z * of[2, 1, a, b]
+                by[row, b] = -f * e_x[b] - g * e_y[b]
+                by[row, n + m + b] = g * e_x[b] - f * e_y[b]
+            for j in range(m):
+                by[row, n + j] = x * seen[0, a, j] + y * seen[1, a, j] + z * seen[2, a, j]
+            for j in range(m, m + self.columns):
+                by[row, 2 * n + j] = x * seen[0, a, j] + y * seen[1, a, j] + z * seen[2, a, j]
+        for a in range(n):
+            by[a, a] += 1.0
+        for a in range(m):
+            row = 2 * n + a
+            for b in range(n):
+                f, g = self.pushes[0, a, b], self.pushes[1, a, b]
+                by[row, b] = -f * e_x[b] - g * e_y[b]
+                by[row, n + m + b] = g * e_x[b] - f * e_y[b]
+            for j in range(m):
+                by[row, n + j] = 0.0
+            for j in range(self.columns):
+                by[row, 2 * n + m + j] = self.held_push[a, j]
+        return condense(by, self.swapped_slips)
 
-    def accept(self) -> int:
+    def push_modes(self, i: cython.int) -> None:
+        """`by`: -K q is one of the forces on modes. `force`: these at a node, of q_0 and without slip."""
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        a: cython.int
+        b: cython.int
+        j: cython.int
+        part: float
+        by: cython.double[:, ::1] = self.by[i]
+        for a in range(m):
+            for j in range(self.columns):
+                self.force[i, a, j] = by[2 * n + a, 2 * n + m + j]
+            for b in range(m):
+                by[2 * n + a, n + b] -= self.K[a, b]
+                part = by[2 * n + a, n + b]
+                for j in range(self.columns):
+                    self.force[i, a, j] += part * self.q[b, j]
+
+    def equations_of_modes(self, h: float) -> None:
+        """`whole`: p + h A C p - h A (forces by q_0 + h A p, s, and disturbances) = p_0."""
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        s: cython.int = self.stages
+        a: cython.int
+        b: cython.int
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        first: cython.int
+        row: cython.Py_ssize_t
+        part: float
+        twice: float
+        out: cython.double[:, ::1] = self.whole
+        by: cython.double[:, :, ::1] = self.by
+        for i in range(s):
+            for a in range(m):
+                row = i * m + a
+                for j in range(s * m):
+                    out[row, j] = 0.0
+                for j in range(self.columns):
+                    out[row, s * (m + n) + j] = self.p[a, j]
+                for j in range(s):
+                    part = h * self.butcher[i, j]
+                    for k in range(s):
+                        twice = part * h * self.butcher[j, k]
+                        for b in range(m):
+                            out[row, k * m + b] -= twice * by[j, 2 * n + a, n + b]
+                    out[row, j * m + a] += part * self.C[a]
+                    first = s * m + j * n
+                    for b in range(n):
+                        out[row, first + b] = -part * by[j, 2 * n + a, n + m + b]
+                    for k in range(self.columns):
+                        out[row, s * (m + n) + k] += part * self.force[j, a, k]
+                out[row, row] += 1.0
+
+    def equations_of_slip(self, h: float) -> None:
+        """`whole`: relaxing s - what s feels of q_0 + h A p and s = what it feels of the rest, and s_0."""
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        s: cython.int = self.stages
+        a: cython.int
+        b: cython.int
+        i: cython.int
+        j: cython.int
+        last: cython.Py_ssize_t = s * (m + n)
+        row: cython.Py_ssize_t
+        part: float
+        out: cython.double[:, ::1] = self.whole
+        by: cython.double[:, ::1]
+        for i in range(s):
+            by = self.by[i]
+            for a in range(n):
+                row = s * m + i * n + a
+                for j in range(s):
+                    part = h * self.butcher[i, j]
+                    for b in range(m):
+                        out[row, j * m + b] = -part * by[n + a, n + b]
+                    for b in range(n):
+                        out[row, s * m + j * n + b] = -by[n + a, n + m + b] if i == j else 0.0
+                    out[row, s * m + j * n + a] += self.relaxing[a, i, j]
+                for j in range(self.columns):
+                    out[row, last + j] = by[n + a, 2 * n + m + j]
+                    out[row, last + j] += self.kept[i, a] * self.memory[self.slips[a], 0, j]
+                for b in range(m):
+                    part = by[n + a, n + b]
+                    for j in range(self.columns):
+                        out[row, last + j] += part * self.q[b, j]
+
+    def move(self, h: float) -> float:
+        """`q_new`, `p_new` at the end; the last coefficient of the velocities, beside the disturbances."""
+        m: cython.int = self.modes
+        s: cython.int = self.stages
+        first: cython.Py_ssize_t = s * (m + self.slipping)
+        a: cython.int
+        i: cython.int
+        j: cython.int
+        p: float
+        most: float = 0.0
+        out: cython.double[:, ::1] = self.whole
+        for j in range(self.columns):
+            scale: float = 1.0
+            size: float = 0.0
+            for a in range(m):
+                scale = max(scale, fabs(self.q[a, j]), fabs(self.p[a, j]))
+            for a in range(m):
+                q: float = 0.0
+                before: float = self.tail[0, 0] * self.p[a, j]
+                last: float = self.tail[1, 0] * self.p[a, j]
+                for i in range(s):
+                    p = out[i * m + a, first + j]
+                    q += self.butcher[s - 1, i] * p
+                    before += self.tail[0, i + 1] * p
+                    last += self.tail[1, i + 1] * p
+                self.q_new[a, j], self.p_new[a, j] = self.q[a, j] + h * q, p
+                size = max(size, fabs(last), self.coefficient_floor * fabs(before))
+            most = max(most, size / scale)
+        return most
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def accept(self) -> cython.int:
         """The end of the step is where the disturbances are."""
-        m, n = self.natural.size, self.slips.size
-        self.q, self.p = self.q_new, self.p_new
-        found = self.at_end[:, :m] @ self.q + self.at_end[:, m : m + n] @ self.s_new
-        found += self.at_end[:, m + n :]
-        k_u = self.k_u[self.slips, None, None]
-        along, across = self.e[-1, :, :, None], self.aside[-1, :, :, None]
-        self.g[self.slips] = 0.0
-        self.g[self.slips, :2] = k_u * (along * found[:, None] + across * self.s_new[:, None])
-        self.memory[self.slips, 0] = self.s_new
-        np.asarray(self.fresh)[:] = 0
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        a: cython.int
+        b: cython.int
+        c: cython.int
+        i: cython.int
+        j: cython.int
+        part: float
+        end: cython.Py_ssize_t = self.stages * (m + n)
+        first: cython.Py_ssize_t = end - n  # of s at the end
+        by: cython.double[:, ::1] = self.by[self.stages - 1]
+        self.q, self.q_new = self.q_new, self.q
+        self.p, self.p_new = self.p_new, self.p
+        for a in range(n):
+            c = self.slips[a]
+            along: cython.double[::1] = self.g[c, 2]
+            for j in range(self.columns):
+                along[j] = by[a, 2 * n + m + j]
+            for b in range(m):
+                part = by[a, n + b]
+                for j in range(self.columns):
+                    along[j] += part * self.q[b, j]
+            for b in range(n):
+                part = by[a, n + m + b]
+                for j in range(self.columns):
+                    along[j] += part * self.whole[first + b, end + j]
+            x: float = self.stiff[a] * self.e_x[self.stages - 1, a]
+            y: float = self.stiff[a] * self.e_y[self.stages - 1, a]
+            for j in range(self.columns):
+                part = self.whole[first + a, end + j]
+                self.memory[c, 0, j] = part
+                self.g[c, 0, j], self.g[c, 1, j] = x * along[j] - y * part, y * along[j] + x * part
+                along[j] = 0.0
+        for i in range(self.contacts):
+            self.fresh[i] = 0
         return 0
 
-    def apply_event(self, c: int, i: int) -> int:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
         """State i of a contact begins: what it remembers of the disturbances."""
         sequence, k = self.sequence, int(self.number[c])
         before, now, angle = int(self.state[c]), int(sequence.state[c, i]), float(sequence.begin[c, i])
-        np.asarray(self.state)[c] = now
-        np.asarray(self.fresh)[c] = now == SLIP and before == SEPARATION
-        w, made = self.memory[k], np.zeros_like(self.memory[k])
+        self.state[c], self.fresh[c] = now, now == SLIP and before == SEPARATION
+        memory, g, ratio = np.asarray(self.memory), np.asarray(self.g), self.ratios[k]
+        w, made = memory[k], np.zeros_like(memory[k])
         if self.arranged:  # several events at one angle see the displacements before them all
-            self.g_before = self.g.copy()
+            self.g_before = g.reshape(-1, self.columns).copy()
         if {before, now} == {STICK, SLIP}:
             e = sequence.slip_at(c, np.array([angle]), now == STICK)[0, :2]
             aside = np.array([-e[1], e[0]])
         if now == STICK:
             ports = slice(3 * k, 3 * k + 3)
-            du = self.seen[ports] @ self.q + self.soft[ports] @ self.g_before.reshape(-1, self.q.shape[1])
+            du = self.seen[ports] @ np.asarray(self.q) + self.soft[ports] @ self.g_before
         if now == SLIP and before == STICK:
             made[0] = aside @ w
         elif now == STICK and before == SLIP:
-            made = np.outer(e, e @ du[:2] - self.ratio[k] * du[2]) + np.outer(aside, w[0])
+            made = np.outer(e, e @ du[:2] - ratio * du[2]) + np.outer(aside, w[0])
         elif now == STICK:
             rate = sequence.slip_at(c, np.array([angle]))[0, 2:5]
-            made = du[:2] - np.outer(rate[:2], self.ratio[k] * du[2] / rate[2])
-        self.memory[k] = made
-        self.g[k, :2] = self.k_u[k] * made if now == STICK else 0.0
+            made = du[:2] - np.outer(rate[:2], ratio * du[2] / rate[2])
+        memory[k] = made
+        g[k, :2] = self.k_u[k] * made if now == STICK else 0.0
         self.arranged = False
         return 0
 
