@@ -70,6 +70,8 @@ def test_the_exact_motion_is_offered_where_it_is_not_refused(kind):
         assert kind is InTime.COMPUTED and offered
     said["curves"] = [{"parameters": {}, "may_not_be_unique": 3, "mode": 1}]
     assert "--method exact" not in maybe_not_unique(said)  # a nonlinear mode has no forces
+    said["curves"] = [{"parameters": {}, "may_not_be_unique": 3, "contacts": dict.fromkeys("abcdefghijklm")}]
+    assert "--method exact" not in maybe_not_unique(said)  # of many contacts it takes long
 
 
 def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():

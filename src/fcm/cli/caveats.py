@@ -338,11 +338,14 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
 
 def _how(summary: Mapping[str, Any]) -> str:
     """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
-    nonlinear mode, which has no forces."""
+    nonlinear mode, which has no forces, or takes long, as of many contacts."""
     from fcm.model.scene import InTime
 
-    if any("mode" in curve for curve in summary["curves"]) or (
-        InTime(summary["exact_motion"]) is not InTime.COMPUTED
+    if any(
+        "mode" in curve or len(curve.get("contacts", ())) > SENTENCES.contacts_in_time
+        for curve in summary["curves"]
     ):
+        return ""
+    if InTime(summary["exact_motion"]) is not InTime.COMPUTED:
         return ""
     return "--at F" if summary["method"] == "exact" else "--method exact --at F"
