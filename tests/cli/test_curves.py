@@ -319,7 +319,7 @@ def test_where_stability_is_not_told_is_a_table_of_its_own():
         {"sweep": "down", "from": 1.5, "to": 1.45, "before": {"u": 0.9}},
         {"sweep": "up", "from": 1.2, "to": 1.3, "before": {"u": 0.7}},
     ]
-    one = curve({"u": 1.0}, jumps) | {"stability_unknown": unknown}
+    one = curve({"u": 1.0}, jumps) | {"stability_untold": unknown}
     _, table, other = as_table({"curves": [one]}, "Hz").split("\n\n")
     assert [row.split() for row in table.splitlines()[1:]] == [
         ["1.60000", "1.00000", "0.500000", "up"],
@@ -332,7 +332,7 @@ def test_where_stability_is_not_told_is_a_table_of_its_own():
         ["1.50000", "1.45000", "0.900000", "down"],
         ["1.40000", "1.10000", "0.800000", "down"],
     ]
-    alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_unknown": unknown[:1]}]}, "Hz")
+    alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": unknown[:1]}]}, "Hz")
     assert "jump at" not in alone and "land on" not in alone and alone.count("\n\n") == 1
 
 
@@ -341,10 +341,10 @@ def test_narrow_windows_of_unknown_stability_are_counted():
     wide = {"sweep": "up", "from": 1.0, "to": 1.1, "before": {"u": 2.0}}
     narrow = wide | {"to": 1.0005}
     down = wide | {"sweep": "down", "from": 1.5, "to": 1.4999}
-    some = as_table({"curves": [curve({"u": 1.0}) | {"stability_unknown": [wide, narrow, down]}]}, "Hz")
+    some = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": [wide, narrow, down]}]}, "Hz")
     assert some.splitlines()[-2].split() == ["1.00000", "1.10000", "2.00000", "up"]
     assert some.splitlines()[-1] == "and in 2 more windows narrower than 0.1 % of the frequency"
-    alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_unknown": [narrow]}]}, "Hz")
+    alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": [narrow]}]}, "Hz")
     said = "stability is unknown, and a sweep may jump, in 1 window narrower than 0.1 % of the frequency"
     assert alone.splitlines()[-1] == said
 

@@ -94,7 +94,7 @@ def test_numbers_of_which_a_product_alone_matters_are_indistinguishable(measured
     path = measured(vary=("contact.shroud.mu", "contact.shroud.n_0"), points=12, k_v=0.0)
     done = called("respond", path, "--json")
     assert done.code == 0, done.err
-    ((one, other, power),) = json.loads(done.out)["fitted"]["indistinguishable"]
+    ((one, other, power),) = json.loads(done.out)["fitted"]["not_told_apart"]
     assert {one, other} == {"contact.shroud.mu", "contact.shroud.n_0"} and power == pytest.approx(
         1.0, rel=1e-6
     )

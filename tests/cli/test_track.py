@@ -208,7 +208,7 @@ def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     assert [one["place"] for one in curve["errors"]].count("cusp") == len(curve["turns"])
     assert None in told and all(0.0 < one < 0.01 for one in told if one is not None)
     with netCDF4.Dataset("folds.nc") as data:
-        known = np.ma.filled(data["tracked_error_known"][0], np.nan)
+        known = np.ma.filled(data["tracked_error_told"][0], np.nan)
         error = np.ma.filled(data["tracked_error"][0], np.nan)
     assert (known == 0.0).sum() == told.count(None) and (known == 1.0).sum() + told.count(None) == len(told)
     assert error[known == 1.0].tolist() == [one for one in told if one is not None]

@@ -120,7 +120,7 @@ def test_a_first_jump_that_is_not_known_is_none_of_the_percentiles(scatter_of):
         [0, 1, 1, 1, 1, 1, 1],
     ]
     up = scatter_of([curve_with(stable) for stable in given])["jumps"]["up"]
-    assert (up["share"], up["unknown"]) == (pytest.approx(2 / 6), pytest.approx(2 / 6))
+    assert (up["share"], up["untold"]) == (pytest.approx(2 / 6), pytest.approx(2 / 6))
     assert up["frequency"]["50"] == pytest.approx(2.75)
     assert up["frequency"]["5"] == pytest.approx(2.525)
 
@@ -129,7 +129,7 @@ def test_a_jump_before_stability_is_unknown_is_no_jump_before(scatter_of):
     """Downwards from 4 the motion is lost at 3, and is not told to be stable from 2 down."""
     (one, other) = ([1, nan_, nan_, 0, 1, 1, 1] for nan_ in (np.nan, 1.0))
     down = scatter_of([curve_with(one), curve_with(other)])["jumps"]["down"]
-    assert (down["share"], down["unknown"], down["frequency"]["5"]) == (1.0, 0.0, 3.0)
+    assert (down["share"], down["untold"], down["frequency"]["5"]) == (1.0, 0.0, 3.0)
 
 
 def test_a_jump_that_may_be_a_little_earlier_is_known(scatter_of):
@@ -139,7 +139,7 @@ def test_a_jump_that_may_be_a_little_earlier_is_known(scatter_of):
         place = [1.0, 1.5, unknown, 0.5 * (unknown + 2.5), 2.5, 3.0, 4.0]
         told = np.array([1, 1, 1, np.nan, 1, 0, 1])
         up = scatter_of([replace(curve, frequency=np.array(place), stable=told)])["jumps"]["up"]
-        assert (up["share"], up["unknown"]) == expected
+        assert (up["share"], up["untold"]) == expected
 
 
 @pytest.fixture
@@ -161,7 +161,7 @@ def test_peaks_that_no_motion_stays_at_are_said_to_be_unstable(scatter_of, respo
     for curve, stable in zip(curves, (1.0, 0.0, np.nan, 1.0), strict=True):
         curve.peaks["u"] = curve.peaks["u"]._replace(stable=stable)
     one = scatter_of(curves)
-    assert (one["peak"]["u"]["unstable"], one["peak"]["u"]["unknown"]) == (0.25, 0.25)
+    assert (one["peak"]["u"]["unstable"], one["peak"]["u"]["untold"]) == (0.25, 0.25)
     from fcm.cli.curves import as_table
     from fcm.results.curve_fields import scatter_fields
 
@@ -174,7 +174,7 @@ def test_peaks_that_no_motion_stays_at_are_said_to_be_unstable(scatter_of, respo
     own = [replace(curve, parameters=by) for curve, by in zip(curves, numbers, strict=True)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
     assert fields["peak_unstable_share"].values.tolist() == [[0.25]]
-    assert fields["peak_unknown_share"].values.tolist() == [[0.25]]
+    assert fields["peak_untold_share"].values.tolist() == [[0.25]]
 
 
 def test_what_is_not_known_is_printed_and_written(scatter_of, response):
@@ -190,7 +190,7 @@ def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     assert text.endswith("unknown: stability is not known, and a sweep may jump")
     own = [replace(c, parameters={"contact.c.n_0": float(i)}) for i, c in enumerate(curves)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
-    assert fields["jump_unknown_share"].values.tolist() == [[0.5, 0.5]]
+    assert fields["jump_untold_share"].values.tolist() == [[0.5, 0.5]]
 
 
 def test_nothing_is_said_where_nothing_is_drawn():

@@ -172,7 +172,7 @@ def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path,
     found = json.loads(fcm("respond", "s.toml", "--json", *FEW, *options, response=strict).out)
     assert "unknown" in said
     if analysis == "peaks tracked":
-        assert all(one["stability_unknown"] for one in found["tracked"]["curves"])
+        assert all(one["stability_untold"] for one in found["tracked"]["curves"])
         return
     assert all(curve["peak"]["u"]["stable"] is None for curve in found["curves"])
     if analysis == "optimum":

@@ -146,13 +146,13 @@ def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):
 
 def test_summary_and_file_say_the_same(fcm, scene, tmp_path, curve):
     (printed,) = json.loads(fcm("respond", str(scene), "--json", "-o", "a.nc").out)["curves"]
-    found = [(one["sweep"], one["from"], one["to"]) for one in printed["stability_unknown"]]
+    found = [(one["sweep"], one["from"], one["to"]) for one in printed["stability_untold"]]
     assert found == [(one.sweep, one.start, one.end) for one in curve.swept().unknown]
     with netCDF4.Dataset(tmp_path / "a.nc") as file:
         (kept,) = json.loads(file.summary)["curves"]
         assert file["peak_stable"][:].tolist() == [[0.0] * 4]
     assert [peak["stable"] for peak in printed["peak"].values()] == [False] * 4
-    assert kept["stability_unknown"] == printed["stability_unknown"]
+    assert kept["stability_untold"] == printed["stability_untold"]
 
 
 @pytest.mark.parametrize("unknown", [(), (1, 2), (5, 6), (0,), (4, 5)])

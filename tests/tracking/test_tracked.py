@@ -141,7 +141,7 @@ def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_pat
     write_netcdf(kept, tmp_path / "kept.nc")
     with netCDF4.Dataset(tmp_path / "kept.nc") as data:
         assert np.array_equal(data["tracked_number"][0], curve.number)
-        assert np.ma.filled(data["tracked_error_known"][0], np.nan) == pytest.approx(np.nan, nan_ok=True)
+        assert np.ma.filled(data["tracked_error_told"][0], np.nan) == pytest.approx(np.nan, nan_ok=True)
     with pytest.raises(KeyboardInterrupt):
         stop_at(-1.0)
 

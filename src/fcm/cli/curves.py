@@ -136,7 +136,7 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     jumps = {
         f"jump {sweep} at {unit}": one
         for sweep, one in found["jumps"].items()
-        if one["share"] or one["unknown"]
+        if one["share"] or one["untold"]
     }
     rows = []
     for dof in dofs if found["peak"] else ():
@@ -160,19 +160,19 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     return (
         f"{head}\n"
         + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
-        + (unknown if any(one["unknown"] for one in jumps.values()) else "")
+        + (unknown if any(one["untold"] for one in jumps.values()) else "")
     )
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
     """How many of the peaks are unstable, or may be."""
-    shares = ((peak["unstable"], "unstable"), (peak["unknown"], "of unknown stability"))
+    shares = ((peak["unstable"], "unstable"), (peak["untold"], "of unknown stability"))
     return ", ".join(f"{100.0 * share:.0f} % {what}" for share, what in shares if share)
 
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
     """Of how many curves the percentiles of a jump are, and of how many it is not known."""
-    unknown = f", unknown of {100.0 * jump['unknown']:.0f} %" if jump["unknown"] else ""
+    unknown = f", unknown of {100.0 * jump['untold']:.0f} %" if jump["untold"] else ""
     return f"of {100.0 * jump['share']:.0f} % of the curves{unknown}"
 
 

@@ -119,7 +119,7 @@ def unknown_stability_table(
 
     Narrow windows are counted.
     """
-    every = [one for curve in curves for one in curve.get("stability_unknown", ())]
+    every = [one for curve in curves for one in curve.get("stability_untold", ())]
     narrow = sum(map(_is_narrow, every))
 
     def rows(curve: Mapping[str, Any]) -> list[Row]:
@@ -130,7 +130,7 @@ def unknown_stability_table(
                 [number(one["from"]), number(one["to"])],
                 [[number(one["before"].get(dof))] for dof in dofs],
             )
-            for one in curve.get("stability_unknown", ())
+            for one in curve.get("stability_untold", ())
             if not _is_narrow(one)
         ]
 

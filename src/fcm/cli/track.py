@@ -285,7 +285,7 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
     over = plain(tracked["over"])
     rows = [[*_swept(tracked), "what", f"{over} from", "to", f"{unit} from", "to", "motion"]]
     for curve in tracked["curves"]:
-        for key, said in (("not_stable", "not stable"), ("stability_unknown", "stability unknown")):
+        for key, said in (("not_stable", "not stable"), ("stability_untold", "stability unknown")):
             for one in curve.get(key, ()):
                 ends = [f"{value:.6g}" for key in ("number", "frequency") for value in one[key]]
                 if ends[0] == ends[1] and ends[2] == ends[3]:  # at a place: no stretch that can be seen

@@ -194,7 +194,7 @@ def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
             np.stack([one.jumping for one in found]),
             {"long_name": "share of curves that jump", "units": "1"},
         ),
-        "jump_unknown_share": Field(
+        "jump_untold_share": Field(
             ("scatter", "sweep_direction"),
             np.stack([one.unknown for one in found]),
             {"long_name": "share of curves that may jump, as stability is unknown", "units": "1"},
@@ -204,7 +204,7 @@ def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
             np.stack([one.peak_unstable for one in found]),
             {"long_name": "share of curves that are not stable at the greatest amplitude", "units": "1"},
         ),
-        "peak_unknown_share": Field(
+        "peak_untold_share": Field(
             ("scatter", "dof"),
             np.stack([one.peak_unknown for one in found]),
             {"long_name": "share of curves of which that is unknown", "units": "1"},

@@ -81,7 +81,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["level_folds"] = curve.level_folds
     out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
     if swept.unknown and not _unjudged(curve):
-        out["stability_unknown"] = [_unknown(one, dofs, unit) for one in swept.unknown]
+        out["stability_untold"] = [_unknown(one, dofs, unit) for one in swept.unknown]
     out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
     if np.isfinite(condensed.truncation_error_at):
         out["truncation_error_at"] = float(in_unit(condensed.truncation_error_at, unit))

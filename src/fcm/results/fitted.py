@@ -209,7 +209,7 @@ class Fitted:
                 "interval": self.interval[k].tolist(),
                 "start": float(self.begin[k]),
                 "without_effect": bool(self.without_effect[k]),
-                "undetermined": bool(self.undetermined[k] or self.without_effect[k]),
+                "untold": bool(self.undetermined[k] or self.without_effect[k]),
                 "at_bound": bool(self.at_bound[k]),
             }
             for k, key in enumerate(self.keys)
@@ -218,7 +218,7 @@ class Fitted:
             "numbers": numbers,
             "confidence": self.confidence,
             "correlation": self.correlation.tolist(),
-            "indistinguishable": [[self.keys[i], self.keys[j], power] for i, j, power in self.alike],
+            "not_told_apart": [[self.keys[i], self.keys[j], power] for i, j, power in self.alike],
             "data": [one.summary() for one in self.data],
             "starts": [
                 {

@@ -120,7 +120,7 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
                 "amplitude": by_percent(one.peak[:, d]),
                 "frequency": by_percent(frequency[:, d]),
                 "unstable": float(one.peak_unstable[d]),
-                "unknown": float(one.peak_unknown[d]),
+                "untold": float(one.peak_unknown[d]),
             }
             for d, dof in enumerate(dofs)
             if one.curves
@@ -128,7 +128,7 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
         "jumps": {
             sweep: {
                 "share": float(one.jumping[i]),
-                "unknown": float(one.unknown[i]),
+                "untold": float(one.unknown[i]),
                 "frequency": by_percent(jump[:, i]),
             }
             for i, sweep in enumerate(SWEEPS)

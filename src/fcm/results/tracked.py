@@ -79,7 +79,7 @@ class TrackedCurve(Frozen):
 
     def _stability(self, unit: str) -> dict[str, Any]:
         """Stretches of the curve on which the motion is not stable, or not known to be; troughs apart."""
-        fields = {"not_stable": self.stable == 0.0, "stability_unknown": np.isnan(self.stable)}
+        fields = {"not_stable": self.stable == 0.0, "stability_untold": np.isnan(self.stable)}
         out = {}
         for name, where in fields.items():
             edges = np.flatnonzero(np.diff(where & ~self.trough, prepend=False, append=False))

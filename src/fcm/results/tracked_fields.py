@@ -93,7 +93,7 @@ def _errors(tracking: Tracking, unit: dict[str, str]) -> dict[str, Field]:
     return {
         "tracked_error": Field(dims, relative, {"long_name": about_relative, "units": "1"}),
         "tracked_number_error": Field(dims, number, {"long_name": about_number} | unit),
-        "tracked_error_known": Field(dims, known, {"long_name": about_known}),
+        "tracked_error_told": Field(dims, known, {"long_name": about_known}),
     }
 
 
