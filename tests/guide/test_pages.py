@@ -95,3 +95,18 @@ def test_files_that_the_makefile_names_exist():
     """Targets whose sources were moved are found only when they are made."""
     named = set(re.findall(r"\b(?:src|tests)/[\w/]+\.(?:py|txt)\b", read(ROOT / "Makefile")))
     assert len(named) > 10 and not [name for name in named if not (ROOT / name).is_file()]
+
+
+def test_targets_that_a_page_makes_exist():
+    """Each that stands in a line of text, too: numbers of validation are those of such commands."""
+    targets = set(re.findall(r"^([a-z-]+):", read(ROOT / "Makefile"), re.M))
+    named = {name for page in [*PAGES, *OTHERS] for name in re.findall(r"`make ([a-z-]+)", read(page))}
+    assert len(named) > 10 and not named - targets
+
+
+@pytest.mark.parametrize("page", sorted((GUIDE / "validation").glob("*.md")), ids=name_of)
+def test_a_page_of_validation_has_tables_and_commands(page):
+    text = read(page)
+    assert re.search(r"^\| -", text, re.M) and re.search(
+        r"`make |^```sh|`\.venv/bin/python |`fcm ", text, re.M
+    )
