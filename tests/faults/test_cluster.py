@@ -123,7 +123,7 @@ def test_what_stands_in_the_way_of_a_cluster_is_said_in_one_line(program, monkey
     at_once = FEW + "import fcm.run.cluster as cluster\ncluster.ANSWER = 0.3\n"
     nobody = program("respond", "one.toml", "-o", "a.nc", "--cluster", address, before=at_once)
     assert nobody.returncode == 2 and nobody.out == "" and nobody.err.count("\n") == 1
-    assert f"no dask scheduler answers at '{address}'" in nobody.err
+    assert f'no dask scheduler answers at "{address}"' in nobody.err
     without = FEW + "import sys\nsys.modules['distributed'] = None\n"
     missing = program("respond", "one.toml", "--cluster", address, before=without)
     assert missing.returncode == 2 and missing.err.count("\n") == 1
