@@ -123,7 +123,9 @@ class Multipliers:
         linear = self.system.linear
         structure = linear.ports, linear.natural, linear.damping, self.far
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
-        if len(self.contact) < self.options.structure.many_contacts:
+        options = self.options.structure
+        most = options.flexible_contacts if self.far.any() else options.many_contacts
+        if len(self.contact) < most:
             return [VariationalProblem(one, PlanarMonodromy(*structure, one)) for one in planar]
         return [VariationalProblem(one, ManyPlanarMonodromy(*structure, one, self._poll)) for one in planar]
 

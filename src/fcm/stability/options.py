@@ -45,6 +45,8 @@ class StructureOptions(Frozen):
         With more, those far above the excitation follow without delay.
     many_contacts : int
         From so many on a change of one's state is followed as that.
+    flexible_contacts : int
+        The same of contacts in a plane, where some modes follow without delay.
     above_excitation, above_harmonics : float
         Times the excitation, and times the highest harmonic, from where modes are far.
     above_of_few : float
@@ -62,6 +64,7 @@ class StructureOptions(Frozen):
 
     many_modes: int = 24
     many_contacts: int = 12
+    flexible_contacts: int = 2
     above_excitation: float = 6.0
     above_harmonics: float = 1.5
     above_of_few: float = 2.0
