@@ -75,7 +75,5 @@ def test_an_accuracy_that_fifty_harmonics_do_not_reach_is_not_said_to_be():
     off = abs(peak.amplitude / exact - 1.0)
     assert curve.harmonics[-1] == 50 and off > 1e-9
     assert "with 50 harmonics an estimated error of" in curve.short_of
-    assert curve.short_of.endswith(
-        "remains. Errors that are printed hold; for smaller ones try --method exact"
-    )
+    assert curve.short_of.endswith("remains. For smaller errors try --method exact")
     assert 1.0 / 3.0 < peak.error / off < 3.0 and np.isfinite(peak.error)

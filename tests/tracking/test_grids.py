@@ -110,7 +110,7 @@ def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene)
     short = optimise(aimed, accuracy=1e-7, options=options)
     assert short.tracking.optima[0].error > 1e-7 and len(short.tracking.harmonics) > 1
     found = f"with 1 harmonic it is {fewer.value:.6g} at {PRELOAD} = {fewer.values[PRELOAD]:.6g}"
-    assert f"; {found}. Errors" in short.curves[0].short_of
+    assert f"; {found}. For smaller errors try" in short.curves[0].short_of
 
 
 # no peak is high enough to be followed

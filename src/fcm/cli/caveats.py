@@ -340,9 +340,10 @@ def _how(summary: Mapping[str, Any]) -> str:
     """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
     nonlinear mode, which has no forces, or takes long, as of many contacts."""
     from fcm.model.scene import InTime
+    from fcm.response.options import SENTENCES as OF_RESPONSE
 
     if any(
-        "mode" in curve or len(curve.get("contacts", ())) > SENTENCES.contacts_in_time
+        "mode" in curve or len(curve.get("contacts", ())) > OF_RESPONSE.contacts_in_time
         for curve in summary["curves"]
     ):
         return ""

@@ -21,7 +21,6 @@ class RemarkOptions(Frozen):
     directions: int = 6  # at most, whose participation stands beside each other on a line
     forces: int = 2  # of these directions, where contacts need the others
     contacts: int = 3  # that fit beside the degrees of freedom on a line
-    contacts_in_time: int = 12  # with more nobody is sent to the exact motion: a frequency takes minutes
     problems: int = 3  # on a terminal; --json has all
     contact_name: int = 24  # characters of a contact's name
     redraw: float = 0.1  # [s] shortest time between two drawings of the progress line

@@ -140,7 +140,8 @@ def _moved(scene: Scene) -> BoolArray:
     along = [one for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0 for one in c.directions[:-1]]
     along += [c.normal for c in scene.contacts if c.k_v > 0.0]
     along += scene.pushes()
-    return np.asarray(_reaches(scene.modal, np.transpose(along)).any(axis=1))
+    directions = np.reshape(along, (len(along), scene.modal.shapes.shape[1])).T
+    return np.asarray(_reaches(scene.modal, directions).any(axis=1))
 
 
 def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:

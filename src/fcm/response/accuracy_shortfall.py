@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.stability_limits import StabilityLimit
-from fcm.model.scene import InTime, in_time
+from fcm.model.scene import InTime, Scene, in_time
 from fcm.response.options import SENTENCES
 from fcm.scene.errors import counted
 from fcm.scene.options import LIMITS
@@ -35,9 +35,9 @@ def remedy(harmonics: Sequence[int], *, exact: bool = False) -> str:
     exact: whether the exact motion can be computed instead.
 
     >>> remedy((1, 2, 3), exact=True)
-    'Errors that are printed hold; for smaller ones try --harmonics 6 or --method exact'
+    'For smaller errors try --harmonics 6 or --method exact'
     >>> remedy(range(1, 51))
-    'Errors that are printed hold; 50 harmonics are the most, so ask for a greater --accuracy'
+    '50 harmonics are the most, so ask for a greater --accuracy'
     """
     ways = []
     if (most := harmonics[-1]) < LIMITS.harmonics:
@@ -45,12 +45,17 @@ def remedy(harmonics: Sequence[int], *, exact: bool = False) -> str:
     if exact:
         ways.append("--method exact")
     if not ways:
-        return f"Errors that are printed hold; {most} harmonics are the most, so ask for a greater --accuracy"
-    return f"Errors that are printed hold; for smaller ones try {' or '.join(ways)}"
+        return f"{most} harmonics are the most, so ask for a greater --accuracy"
+    return f"For smaller errors try {' or '.join(ways)}"
+
+
+def exact_is_advised(scene: Scene) -> bool:
+    """Whether the exact motion of a scene is computed, and of so few contacts that it takes no minutes."""
+    return in_time(scene) is InTime.COMPUTED and len(scene.contacts) <= SENTENCES.contacts_in_time
 
 
 def _remedy(found: RefinedResponse) -> str:
-    return remedy(found.system.harmonics, exact=in_time(found.system.scene) is InTime.COMPUTED)
+    return remedy(found.system.harmonics, exact=exact_is_advised(found.system.scene))
 
 
 def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:

@@ -28,8 +28,8 @@ from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_
 from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray, InTime, Scene, in_time
-from fcm.response.accuracy_shortfall import remedy
+from fcm.model.scene import FloatArray, Scene
+from fcm.response.accuracy_shortfall import exact_is_advised, remedy
 from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import holds_unknown, no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
@@ -157,8 +157,8 @@ def _level_curve(
             else f"an estimated error of {worst:.1e} remains"
         )
         count = counted(len(system.harmonics), "harmonic")
-        computed = in_time(scene) is InTime.COMPUTED
-        curve.short_of = f"with {count} {what}. {remedy(system.harmonics, exact=computed)}"
+        helps = remedy(system.harmonics, exact=exact_is_advised(scene))
+        curve.short_of = f"with {count} {what}. {helps}"
     curve.seconds = time.perf_counter() - begin
     return curve
 

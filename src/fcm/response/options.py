@@ -57,6 +57,8 @@ class SentenceOptions(Frozen):
         Relative distance of a harmonic's frequency from a resonance, up to which a curve stops at that.
     spring_ratio : float
         Times below that resonance the spring to the ground is that is advised: it shifts it by 1/1800.
+    contacts_in_time : int
+        With more nobody is sent to the exact motion: a frequency takes minutes.
     """
 
     max_dofs: int = 3
@@ -66,6 +68,7 @@ class SentenceOptions(Frozen):
     max_states: int = 60
     resonance_tolerance: float = 1e-5
     spring_ratio: float = 30.0
+    contacts_in_time: int = 12
 
 
 SENTENCES = SentenceOptions()
