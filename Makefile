@@ -39,7 +39,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help docs reference guide-figures measured oblique joint design fuzz kills dist matrix wheels kernels extremes bench-time bench-many bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
+.PHONY: help docs links reference guide-figures measured oblique joint design fuzz kills dist matrix wheels kernels extremes bench-time bench-many bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
 	clean bench study study-plane
 
 help:  ## this list
@@ -268,6 +268,9 @@ joint: $(VENV)/installed  ## two bolted beams with 100 pairs in the plane: bendi
 
 docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml
+
+links: $(VENV)/installed-dev  ## request each link to another site from README and guide once; fails if a page is gone
+	$(BIN)/python -m tests.guide.links
 
 dist: $(VENV)/installed-dev  ## the source distribution and from it the wheel, in build/dist
 	rm -rf build/dist

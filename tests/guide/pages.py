@@ -18,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 GUIDE = ROOT / ".github/guide"
 PAGES = [README, *sorted(GUIDE.rglob("*.md"))]
+OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]
 LONGEST_SENTENCE, LONGEST_PARAGRAPH = 25, 100  # words
 
 FENCED = re.compile(r"^( *)```(\w*)\n(.*?)^\1```$", re.M | re.S)

@@ -4,9 +4,21 @@ import re
 
 import pytest
 
-from .pages import GUIDE, PAGES, README, ROOT, anchors, links, name_of, read, sentences, too_long, words
+from .pages import (
+    GUIDE,
+    OTHERS,
+    PAGES,
+    README,
+    ROOT,
+    anchors,
+    links,
+    name_of,
+    read,
+    sentences,
+    too_long,
+    words,
+)
 
-OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]
 SOURCES = {str(path.relative_to(ROOT / "src/fcm")) for path in (ROOT / "src/fcm").rglob("*.py")}
 KINDS = ("tutorials", "howto", "theory", "reference", "validation")
 
