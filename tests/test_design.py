@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "src/fcm/scenes"
 PAGE = (ROOT / ".github/guide/tutorials/best-preload.md").read_text(encoding="utf-8")
 SECTION = re.search(r"^## Design\n(.*?)^## ", PAGE, re.M | re.S)[1]
-COMMANDS = re.findall(r"^    (fcm .*)$", SECTION, re.M)
+COMMANDS = re.findall(r"^(fcm .*)$", SECTION, re.M)
 LESS = {  # of what takes minutes
     "[220.0, 470.0]": "[400.0, 430.0]",
     "[[5.0, 60.0]]": "[[7.5, 8.5]]",

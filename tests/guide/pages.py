@@ -1,7 +1,8 @@
 """The pages as their tests read them: fenced blocks, files, commands, headings, sentences.
 
-A block after a paragraph that ends with "as `NAME`:" is a file. Commands stand in blocks of sh. A block of
-text after one shows what its last command prints first, with a line `...` for lines that are left out.
+A block after a paragraph that ends with "as `NAME`:" is a file. After "Replace `[TABLE]` of `FILE` by this,
+and save it as `NAME`:" it is that file with another table. Commands stand in blocks of sh. A block of text
+after one shows what its last command prints first, with a line `...` for lines that are left out.
 
 usage: python -m tests.guide.pages [-v], which prints the median and the longest sentence and paragraph
 """
@@ -19,10 +20,14 @@ README = ROOT / "README.md"
 GUIDE = ROOT / ".github/guide"
 PAGES = [README, *sorted(GUIDE.rglob("*.md"))]
 OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]
-LONGEST_SENTENCE, LONGEST_PARAGRAPH = 25, 100  # words
+LONGEST_SENTENCE, LONGEST_PARAGRAPH = 24, 99  # words
 
 FENCED = re.compile(r"^( *)```(\w*)\n(.*?)^\1```$", re.M | re.S)
 NAMED = re.compile(r"as `([\w.-]+)`:\s*\Z")
+REPLACED = re.compile(
+    r"Replace `(\[\w+\])`\s+of\s+`([\w.-]+)`\s+by\s+this,\s+and\s+save\s+it\s+as\s+`\S+`:\s*\Z"
+)
+HEADING = re.compile(r"^#+ (.*)$", re.M)
 
 
 def name_of(page: Path) -> str:
@@ -35,11 +40,16 @@ def read(page: Path) -> str:
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: its kind, its text, and the name of the file that it is, if it is one."""
+    """A fenced block: its kind, its text, the heading above, and its name if it is a file.
+
+    A part of a file has the table that it replaces, and of which file.
+    """
 
     kind: str
     text: str
+    heading: str = ""
     file: str = ""
+    replaces: tuple[str, str] | None = None
 
 
 def blocks(page: Path) -> list[Block]:
@@ -47,20 +57,34 @@ def blocks(page: Path) -> list[Block]:
     text = read(page)
     found = []
     for match in FENCED.finditer(text):
-        named = NAMED.search(text[: match.start()])
-        found.append(Block(match[2], match[3], named[1] if named else ""))
+        before = text[: match.start()]
+        headings = HEADING.findall(FENCED.sub("", before))
+        named, replaced = NAMED.search(before), REPLACED.search(before)
+        file, replaces = named[1] if named else "", (replaced[1], replaced[2]) if replaced else None
+        found.append(Block(match[2], match[3], headings[-1] if headings else "", file, replaces))
     return found
 
 
 def files(page: Path) -> dict[str, str]:
     """The files that a reader of the page saves."""
-    return {block.file: block.text for block in blocks(page) if block.file}
+    found: dict[str, str] = {}
+    for block in blocks(page):
+        if block.replaces:
+            name, whole = block.replaces
+            before, table, after = found[whole].partition(f"{name}\n")
+            assert table, f"{whole} has no {name}"
+            found[block.file] = before + block.text + "".join(re.findall(r"^\[.*", after, re.M | re.S))
+        elif block.file:
+            found[block.file] = block.text
+    return found
 
 
-def commands(page: Path) -> list[tuple[str, str | None]]:
-    """Each command of a page, with the output that is shown of it."""
+def commands(page: Path, without: str = "") -> list[tuple[str, str | None]]:
+    """Each command of a page, but for those below one heading, with the output that is shown of it."""
     found: list[tuple[str, str | None]] = []
     for block in blocks(page):
+        if without and block.heading == without:
+            continue
         if block.kind == "sh":
             lines = re.sub(r"\\\n\s*", "", block.text).splitlines()
             found += [(line, None) for line in lines if line and not line.startswith("#")]
@@ -73,8 +97,7 @@ def anchors(page: Path) -> set[str]:
     """What a link to a heading of the page may name."""
     text = FENCED.sub("", read(page))
     return {
-        re.sub(r"[^\w -]", "", title).strip().lower().replace(" ", "-")
-        for title in re.findall(r"^#+ (.*)$", text, re.M)
+        re.sub(r"[^\w -]", "", title).strip().lower().replace(" ", "-") for title in HEADING.findall(text)
     }
 
 
@@ -85,20 +108,21 @@ def links(page: Path) -> list[tuple[str, str]]:
 
 
 def prose(page: Path, cells: bool = False) -> list[str]:
-    """The paragraphs and list items of a page, or the cells of its tables; no code, equations or sources.
+    """The headings, paragraphs and list items of a page, or the cells of its tables.
 
-    A formula, a piece of code or a link counts as a word.
+    Blocks of code, equations and sources are left out. A formula, a piece of code or a link counts as a word.
     """
     text = re.split(r"^## Sources$", FENCED.sub("\n\n", read(page)), flags=re.M)[0]
     text = re.sub(r"^\$\$.*?\$\$$", "\n\n", text, flags=re.M | re.S)
-    text = re.sub(r"^(?:    |\t).*$", "", text, flags=re.M)  # code by indentation
+    text = re.sub(r"(?<=\n\n)(?:(?:    |\t).*\n)+", "", text)  # code by indentation
     text = re.sub(r"\$[^$\n]+\$|`[^`\n]+`", "X", text)
     text = re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", text)
+    text = re.sub(r"^(#+ .*)$", r"\n\1\n", text, flags=re.M)
     found = []
     for part in re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )|\n(?=\|)", text):
         line = part.strip()
-        if line.startswith("|") == cells and line and not line.startswith("#"):
-            found += line.strip("|").split("|") if cells else [re.sub(r"^(?:[-*]|\d+\.) ", "", line)]
+        if line.startswith("|") == cells and line:
+            found += line.strip("|").split("|") if cells else [re.sub(r"^(?:[-*]|\d+\.|#+) ", "", line)]
     return [one.strip() for one in found if re.search(r"\w", one)]
 
 
@@ -122,7 +146,7 @@ def too_long(page: Path) -> list[str]:
 
 
 def main() -> None:
-    for page in PAGES:
+    for page in [*PAGES, *OTHERS]:
         texts = prose(page)
         of_sentences = [words(one) for text in texts for one in sentences(text)]
         of_paragraphs = [words(text) for text in texts]

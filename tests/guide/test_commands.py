@@ -2,16 +2,40 @@
 
 import doctest
 import re
+import shlex
 import tomllib
 
+import click
 import pytest
 
+from fcm.cli import main as program
 from fcm.scene.keys import TABLES
 
 from ..program import shell
-from .pages import PAGES, README, ROOT, blocks, commands, files, name_of
+from .pages import FENCED, GUIDE, OTHERS, PAGES, README, ROOT, blocks, commands, files, name_of, read
 
-TAUGHT = [page for page in PAGES if commands(page)]
+OF_THEIR_OWN = {  # tests of commands that need files of other programs, or minutes; below which heading
+    "howto/from-another-program.md": ("guide/test_from_another_program.py", None),
+    "howto/contacts.md": ("guide/test_pairs.py", "Pairs from two sets of nodes"),
+    "tutorials/best-preload.md": ("test_design.py", "Design"),
+}
+
+
+CONTRIBUTING = next(page for page in OTHERS if page.stem == "CONTRIBUTING")
+OF_OTHERS = ("--samples",)  # of tests.benchmarks.many
+
+
+def typed(page):
+    """The commands of a page that are run here, with what is shown of their output."""
+    _, heading = OF_THEIR_OWN.get(key(page), ("", ""))
+    return [] if heading is None else commands(page, heading)
+
+
+def key(page):
+    return str(page.relative_to(GUIDE)) if page != README else ""
+
+
+TAUGHT = [page for page in PAGES if typed(page)]
 
 
 def run(command, folder):
@@ -27,13 +51,13 @@ def test_every_command_runs_and_prints_what_is_shown(page, tmp_path):
     given = files(README) | files(page)
     for name, text in given.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    for command, shown in commands(page):
+    for command, shown in typed(page):
         done = run(command, tmp_path)
         assert done.code == 0, f"{command}\n{done.out}{done.err}"
         if shown is not None:
             assert_shown(done.out + done.err, shown)
     written = {path.name for path in tmp_path.iterdir()}
-    lines = [line for line, _ in commands(page)]
+    lines = [line for line, _ in typed(page)]
     named = {name for line in lines for name in re.findall(r"(?:-o|--csv|>) (\S+)", line)}
     scripts = [name for name in files(page) if f"python {name}" in lines]
     made = {name for script in scripts for name in re.findall(r'"(\w+\.(?:npz|txt|csv))"', given[script])}
@@ -110,6 +134,92 @@ def tables_in(data, path=""):
             if f"{path}{key}" in TABLES:
                 yield (f"{path}{key}", list(one))
                 yield from tables_in(one, f"{path}{key}.")
+
+
+def test_commands_stand_in_blocks_that_are_run():
+    """None by indentation, where no test would find it; the usage of a command is none."""
+    found = [
+        line
+        for page in PAGES
+        for line in re.findall(r"^ +((?:fcm|make|python|pip) .*)$", outside(page), re.M)
+    ]
+    assert [line for line in found if "[OPTIONS]" not in line and " COMMAND" not in line] == []
+
+
+@pytest.mark.parametrize(
+    "page", [one for one in [*PAGES, CONTRIBUTING] if one != GUIDE / "reference/commands.md"], ids=name_of
+)
+def test_commands_in_running_text_have_options_and_values_that_there_are(page):
+    """Words in capitals stand for others, and files need not exist. Options alone are of any command.
+
+    The page of commands is what the program says of itself.
+    """
+    faults = []
+    for text in re.findall(r"`((?:fcm|--[a-z])[^`]*)`", outside(page)):
+        words = shlex.split(text)
+        if words[0] != "fcm":
+            fault = min((fault_of(one, words) for one in all_commands(program)), key=len)
+        else:
+            command, rest = program, words[1:]
+            while isinstance(command, click.Group) and rest and rest[0] in command.list_commands(None):
+                command, rest = command.get_command(None, rest[0]), rest[1:]
+            fault = fault_of(command, rest)
+        if fault and words[0] not in OF_OTHERS:
+            faults.append(f"{text}: {fault}")
+    assert faults == []
+
+
+def all_commands(command):
+    yield command
+    if isinstance(command, click.Group):
+        for name in command.list_commands(None):
+            yield from all_commands(command.get_command(None, name))
+
+
+def fault_of(command, words):
+    """What is wrong with the arguments of a command, or nothing."""
+    context = click.Context(command)
+    try:
+        last = [one for one in command.get_params(context) if words[-1:] and words[-1] in one.opts]
+        values = [] if not last or last[0].is_flag else ["VALUE"] * last[0].nargs  # its name alone
+        given, left, _ = command.make_parser(context).parse_args([*words, *values])
+        if isinstance(command, click.Group) and left and not stands_for_another(left[0]):
+            raise click.UsageError(f"no command {left[0]}")
+        for one in command.get_params(context):
+            value = given.get(one.name)
+            if value and not isinstance(one.type, click.Path) and not stands_for_another(value):
+                one.type_cast_value(context, value)
+    except click.ClickException as error:
+        return error.format_message()
+    return ""
+
+
+def stands_for_another(value):
+    """A word in capitals, as FILE or FROM:TO:COUNT, or several words with one."""
+    if isinstance(value, list | tuple):
+        return any(map(stands_for_another, value))
+    return isinstance(value, str) and re.search(r"\b[A-Z]+\b", value) is not None
+
+
+def test_options_and_values_that_are_none_are_seen():
+    respond = program.get_command(None, "respond")
+    response = program.get_command(None, "plot").get_command(None, "response")
+    assert fault_of(respond, ["SCENE", "--harmonics", "1-3", "--at", "F"]) == ""
+    assert "No such option" in fault_of(respond, ["SCENE", "--harmonic-s", "3"])
+    assert "closed-from" in fault_of(respond, ["SCENE", "--method", "closed-from"])
+    assert "requires 2 arguments" in fault_of(response, ["FILE", "--band", "5"])
+    assert "no command" in fault_of(program, ["resound", "SCENE"])
+
+
+def outside(page):
+    """The text of a page without its fenced blocks."""
+    return FENCED.sub("", read(page))
+
+
+def test_commands_with_a_test_of_their_own_are_run_by_it():
+    for name, (test, heading) in OF_THEIR_OWN.items():
+        assert heading is None or len(commands(GUIDE / name)) > len(typed(GUIDE / name))
+        assert "shell(" in read(ROOT / "tests" / test)
 
 
 def test_every_block_is_of_a_kind_that_is_tested():

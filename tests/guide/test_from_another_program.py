@@ -4,7 +4,6 @@ import csv
 import json
 import re
 import shutil
-from pathlib import Path
 
 import netCDF4
 import numpy as np
@@ -12,9 +11,10 @@ import pytest
 
 from ..program import ended, shell
 from ..scene.test_matrix_formats import ABAQUS_K, ABAQUS_M, BEAM, BOEING, PUNCH, ROWS
+from .pages import FENCED, GUIDE, ROOT, blocks, read
 
-ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / ".github/guide/howto/from-another-program.md").read_text("utf-8")
+PATH = GUIDE / "howto/from-another-program.md"
+PAGE = read(PATH)
 MAPPING = "Matrix Eqn    Node    DOF\n 1 7 UX\n 2 7 UY\n 3 9 UX\n 4 9 ROTZ\n"
 MASSES = """Masses                                                                  M
              3             1             1             1             0
@@ -31,8 +31,20 @@ def parts(title):
     """The scene of a how-to, the lines for the other program, and the commands."""
     section = PAGE.split(f"## {title}\n")[1].split("\n## ")[0]
     (scene,) = re.findall(r"^```toml\n(.*?)^```", section, re.M | re.S)
-    lines = re.findall(r"^    (.*)$", re.sub(r"^```.*?^```", "", section, flags=re.M | re.S), re.M)
-    return scene, [x for x in lines if not x.startswith("fcm ")], [x for x in lines if x.startswith("fcm ")]
+    lines = re.findall(r"^    (.*)$", FENCED.sub("", section), re.M)
+    return scene, lines, typed(title)
+
+
+def typed(title):
+    """The commands below a heading."""
+    lines = [
+        line
+        for block in blocks(PATH)
+        if (block.kind, block.heading) == ("sh", title)
+        for line in block.text.splitlines()
+    ]
+    assert len(lines) == 3
+    return lines
 
 
 def files_of(title, folder):
@@ -62,7 +74,6 @@ def test_from_an_empty_folder_to_a_curve(tmp_path, title):
     scene, _, commands = parts(title)
     files_of(title, tmp_path)
     (tmp_path / "model.toml").write_text(scene)
-    assert len(commands) == 3
     for command in commands:
         done = shell(command, tmp_path)
         assert done.code == 0, f"{command}\n{done.out}{done.err}"
@@ -81,9 +92,7 @@ def test_back_to_the_mesh(tmp_path):
     files_of("From CalculiX", tmp_path)
     (tmp_path / "model.toml").write_text(scene)
     section = PAGE.split("## Back to the mesh\n")[1]
-    commands = re.findall(r"^    (fcm .*)$", section, re.M)
-    assert len(commands) == 3
-    for command in commands:
+    for command in typed("Back to the mesh"):
         done = shell(command, tmp_path)
         assert done.code == 0, f"{command}\n{done.out}{done.err}"
     with (tmp_path / "forces.csv").open() as file:

@@ -11,8 +11,10 @@ from .pages import (
     README,
     ROOT,
     anchors,
+    files,
     links,
     name_of,
+    prose,
     read,
     sentences,
     too_long,
@@ -40,10 +42,30 @@ def test_every_page_is_of_a_kind_and_in_the_index():
     assert (".github/guide/README.md", "") in links(README)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", [*PAGES, *OTHERS], ids=name_of)
 def test_sentences_and_paragraphs_are_short(page):
-    """25 and 100 words at most; `python -m tests.guide.pages -v` shows them."""
+    """Under 25 and 100 words, lists and tables, too; `python -m tests.guide.pages -v` shows longer ones."""
     assert too_long(page) == []
+
+
+def test_a_file_may_be_another_with_one_table_replaced(tmp_path):
+    page = tmp_path / "page.md"
+    whole = "Save this as `a.toml`:\n\n```toml\n[one]\nx = 1\n\n[sweep]\ny = [2]\n\n[last]\nz = 3\n```\n"
+    part = (
+        "Replace `[sweep]` of `a.toml` by this, and\nsave it as `b.toml`:\n\n```toml\n[optimum]\nu = 4\n```\n"
+    )
+    page.write_text(f"{whole}\n{part}", encoding="utf-8")
+    assert files(page)["b.toml"] == "[one]\nx = 1\n\n[optimum]\nu = 4\n[last]\nz = 3\n"
+
+
+def test_headings_items_and_cells_are_read_and_code_is_not(tmp_path):
+    page = tmp_path / "page.md"
+    text = (
+        "# One\ntwo\n\n- three\n    four\n\n    code\n    more\n\n1. five\n\n| six | seven |\n| --- | --- |\n"
+    )
+    page.write_text(f"{text}\n```sh\neight\n```\n", encoding="utf-8")
+    assert prose(page) == ["One", "two", "three\n    four", "five"]
+    assert prose(page, cells=True) == ["six", "seven"]
 
 
 def test_words_and_sentences_are_counted():
