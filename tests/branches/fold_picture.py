@@ -69,8 +69,8 @@ def draw(picture):
 
     figure = Figure(figsize=(6.0, 5.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
-    for curve in picture.folds:
-        above.plot(*curve.T, color="C0", linewidth=1.2)
+    for k, curve in enumerate(picture.folds):
+        above.plot(*curve.T, color="C0", linewidth=1.2, label=None if k else "curves of folds")
     above.plot(*picture.turns.T, "o", color="C0", markersize=4, label="the level turns here")
     above.axhline(1.0, color="black", linewidth=0.8)
     above.set_yscale("log")
@@ -79,14 +79,23 @@ def draw(picture):
     above.set_yticks(levels, [f"{level:g}" for level in levels])
     above.minorticks_off()
     above.set_ylabel("level of the forces")
+    said = set()
     for points, closed in zip(picture.branches, picture.closed, strict=True):
-        below.plot(*points.T, color="C3" if closed else "black", linewidth=1.2)
+        label = "closed branch" if closed else "other branches"
+        below.plot(
+            *points.T,
+            color="C3" if closed else "black",
+            linewidth=1.2,
+            label=None if label in said else label,
+        )
+        said.add(label)
     for k, omega in enumerate(picture.crossings()):
         label = "a curve of folds crosses the level 1" if k == 0 else None
         above.plot(omega, 1.0, "s", color="C3", markersize=5, label=label)
         for axes in (above, below):
             axes.axvline(omega, color="C3", linewidth=0.6, linestyle=":")
-    above.legend(fontsize=8)
+    for axes in (above, below):
+        axes.legend(fontsize=8)
     below.set_ylabel("amplitude at the level 1")
     below.set_xlabel("frequency [rad/s]")
     return figure

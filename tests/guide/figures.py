@@ -38,16 +38,20 @@ def contact_on_a_line(figure):
     left, right = figure.subplots(1, 2)
     u, force, load = np.sin(TURN), loop.force(TURN), loop.normal_load(TURN)
     states = np.array(list(loop.states(TURN)))
-    drawn(left, "harmonic", u, f_b + f_s * np.sin(TURN) + f_c * np.cos(TURN), "k--", lw=0.8)
+    mean_and_first = f_b + f_s * np.sin(TURN) + f_c * np.cos(TURN)
+    drawn(left, "harmonic", u, mean_and_first, "k--", lw=0.8, label="mean, first harmonic")
     for state, (name, look) in STATES.items():
         if np.any(states == state):
             left.plot(u, np.where(states == state, force, np.nan), label=name, **look)
             right.plot(TURN, np.where(states == state, force, np.nan), **look)
-    drawn(right, "upper", TURN, load, "k:", lw=0.8)
+    drawn(right, "upper", TURN, load, "k:", lw=0.8, label="slip limits")
     drawn(right, "lower", TURN, -load, "k:", lw=0.8)
     left.set(xlabel="displacement  $u/a$", ylabel="friction  $f / (k_u a)$")
     right.set(xlabel=r"angle  $\theta$", xticks=[0, np.pi, 2 * np.pi], xticklabels=["0", "π", "2π"])
+    right.set_ylabel("friction  $f / (k_u a)$")
+    left.set_ylim(top=1.9)  # for its legend
     left.legend(loc="upper left", fontsize=7)
+    right.legend(loc="upper center", fontsize=7)
 
 
 def contact_in_a_plane(figure):
@@ -192,7 +196,8 @@ def rubber(figure):
     mode = the_mode()
     left, right = figure.subplots(1, 2)
     drawn(left, "frequency", mode.amplitude, mode.omega / (2.0 * np.pi), "k-", lw=0.9)
-    left.axhline(STUCK, color=BLUE, lw=0.7, ls="--")
+    left.axhline(STUCK, color=BLUE, lw=0.7, ls="--", label="published, stuck")
+    left.legend(fontsize=7)
     drawn(right, "damping", mode.amplitude, 100.0 * mode.damping, "-", color=ORANGE, lw=0.9)
     left.set(xscale="log", xlabel="modal amplitude [m √kg]", ylabel="frequency [Hz]")
     right.set(xscale="log", xlabel="modal amplitude [m √kg]", ylabel="damping ratio [%]")

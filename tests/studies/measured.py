@@ -150,10 +150,11 @@ def draw_beam(path: Path, parts: list[list[tuple[FloatArray, ...]]]) -> None:
         for axes, rows, title in zip(
             figure.subplots(1, 2), parts, ("fitted: four forces", "tried: eight responses"), strict=True
         ):
-            for frequency, measured, model in rows:
-                axes.plot(frequency, measured, "+", color=BLUE, ms=3)
-                axes.plot(frequency, model, "-", color=ORANGE, lw=0.8)
+            for k, (frequency, measured, model) in enumerate(rows):
+                axes.plot(frequency, measured, "+", color=BLUE, ms=3, label=None if k else "measured")
+                axes.plot(frequency, model, "-", color=ORANGE, lw=0.8, label=None if k else "model")
             axes.set(xlabel="frequency [Hz]", ylabel="acceleration [m/s²]", title=title)
+            axes.legend(fontsize=7)
         figure.savefig(path, dpi=110)
 
 
