@@ -1,10 +1,11 @@
-"""The pages of reference, as the program itself says: keys of a scene, options, variables of files, Python.
+"""The pages of reference, as the program says itself: keys of a scene, options, files, Python, its source.
 
-usage: python -m tests.guide.reference [scene|commands|files|python ...], which writes the pages
+usage: python -m tests.guide.reference [scene|commands|files|python|source ...], which writes the pages
 """
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import inspect
 import re
@@ -19,6 +20,7 @@ import fcm
 from fcm.cli import main as program
 from fcm.scene.keys import LISTS, TABLES
 
+from ..layers import PACKAGES
 from ..program import called
 from .pages import GUIDE, ROOT
 
@@ -171,7 +173,38 @@ class Shown:
         return f"{self.name}()"
 
 
-PAGES = {"scene": scene, "commands": commands, "files": files, "python": python}
+def source() -> str:
+    """Every module of every package, as the first paragraph of its docstring says."""
+    sources = ROOT / "src/fcm"
+    parts = [
+        "# The source\n",
+        f"{MADE}Each package of `src/fcm` may import those above it, none below, which a test holds.\n",
+        table(("package", "about"), [(f"[`{one}`](#{one})", about(sources / one)) for one in PACKAGES]),
+    ]
+    for one in PACKAGES:
+        parts += [f"## {one}\n", modules(sources / one, sorted((sources / one).rglob("*.py")))]
+    parts += ["## Beside the packages\n", modules(sources, sorted(sources.glob("*.py")))]
+    return "\n".join(parts)
+
+
+def modules(folder: Path, paths: list[Path]) -> str:
+    sources = ROOT / "src/fcm"
+    rows = [
+        (f"`{path.relative_to(sources).with_suffix('').as_posix().removesuffix('/__init__')}`", about(path))
+        for path in paths
+        if path.name != "__init__.py" or path.parent != folder
+    ]
+    return table(("module", "about"), rows)
+
+
+def about(path: Path) -> str:
+    """The first paragraph of the docstring of a module, or of a package."""
+    file = path / "__init__.py" if path.is_dir() else path
+    told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    return cell(told.split("\n\n")[0].replace("``", "`"))
+
+
+PAGES = {"scene": scene, "commands": commands, "files": files, "python": python, "source": source}
 
 if __name__ == "__main__":
     for chosen in sys.argv[1:] or PAGES:

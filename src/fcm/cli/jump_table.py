@@ -1,5 +1,7 @@
-"""Tables of jumps, where a slow sweep of the frequency leaves a curve's stable part; and of where that is not
-known, as it is unknown whether the motion is stable."""
+"""Tables of jumps, where a slow sweep of the frequency leaves a curve's stable part, or may leave it.
+
+It may where stability is unknown.
+"""
 
 from __future__ import annotations
 
