@@ -156,7 +156,7 @@ def loop(
 ) -> None:
     """Draw hysteresis loops, as figures 5, 6 and 8: friction force over tangential displacement.
 
-    The contact is given by ratios, or by its stiffness, friction, preload and motion; any of them may be
+    The contact is given by ratios, or by its stiffness, friction, preload and motion. Any of them may be
     repeated, and every combination is drawn. Or it is a contact of FILE, at a point of a curve. FILE is what
     `fcm respond -o FILE` wrote; the displacement counts from its mean.
 

@@ -26,9 +26,10 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
 
-    This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list stands
-    what was read: matrices, their rows, entries and symmetry, rigid bodies, frequencies in both units, and
-    those while all contacts stick. Frequencies that look as if units were mixed are named.
+    This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
+    stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand
+    there in both units, with those while all contacts stick. Frequencies that look as if units were mixed
+    are named.
     """
     from fcm.scene import load_scene
     from fcm.scene.listing import listing

@@ -93,7 +93,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option(
         "--harmonics", metavar="H", callback=balance.harmonics,
-        help="Harmonics that are balanced: up to a number from 1 to 50, or some such as 1,2,3,9 or 1-3,9.  "
+        help="Harmonics that are balanced: up to a number from 1 to 50, or as 1,2,3,9 or 1-3,9.  "
         "[default: the scene's, or as --accuracy]",
     ),
     click.option(

@@ -40,9 +40,9 @@ def fourier_coefficients(
 
     Notes
     -----
-    Absolute error below 1e-12 for b_bar up to 1e3, below 1e-7 up to 1e300, boundary cases included; the
+    Absolute error below 1e-12 for b_bar up to 1e3, below 1e-7 up to 1e300, boundary cases included. The
     worst of 400 000 random and boundary points, against fifty digits, was 9e-16. Where n0_bar and b_bar are
-    small, as those of a stiff contact, the error is small against the force as well: below 1e-12 of the
+    small, as those of a stiff contact, the error is small against the force as well. It is below 1e-12 of the
     greatest coefficient for loads from 1e-10 on.
     A contact that never slips carries the mean force nearest to zero, F_b = clip(0, ell_2 - n0_bar,
     n0_bar - ell_1). Source: Yang, Chu and Menq (1998), sections 3.4, 4.1 and appendix.
@@ -74,8 +74,8 @@ def fourier_gradients(
 
     Notes
     -----
-    The force is continuous in theta, so the derivative of the integral is the integral of the derivative:
-    +-(dn/dx) while slipping, and while sticking the constant that the contact brought into the stick.
+    The force is continuous in theta, so the derivative of the integral is the integral of the derivative.
+    That is +-(dn/dx) while slipping, and while sticking the constant that the contact brought into the stick.
 
     Examples
     --------

@@ -118,7 +118,7 @@ TABLES: dict[str, dict[str, Key]] = {
     },
     "contact": {
         "name": Key("of the contact", "string"),
-        "tangential": Key("the displacement u along which it slides; in a plane a list of two"
+        "tangential": Key("the displacement u along which it slides. In a plane a list of two"
                           f"{_WITH_NODES}", _DIRECTION),
         "nodes": Key("pairs [[a, b], ...], a .csv file, or two sets; u and v are of a less b",
                      "list, file or table", "none: one contact"),

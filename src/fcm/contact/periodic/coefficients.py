@@ -67,12 +67,12 @@ def periodic_forces(
 
     Notes
     -----
-    All events of the cycle are located, none missed, however many instants that takes; between them the
+    All events of the cycle are located, none missed, however many instants that takes. Between them the
     forces are trigonometric polynomials, and their integrals are closed. Measured against a march in extended
-    precision, over 10 000 motions of 1 to 15 harmonics that decay as h**-0.7 to h**-3: error below 1e-14 of
-    the greatest force. A normal load that varies much more than the friction force adds its own rounding, as
-    does a contact that closes for a small part of its normal motion. With one harmonic it is
-    `fourier_coefficients`.
+    precision, the error is below 1e-14 of the greatest force. That was over 10 000 motions of 1 to 15
+    harmonics that decay as h**-0.7 to h**-3. A normal load that varies much more than the friction force adds
+    its own rounding. So does a contact that closes for a small part of its normal motion. With one harmonic
+    it is `fourier_coefficients`.
     Source: Yang, Chu and Menq (1998), equations (1) to (7), for motions of several harmonics.
 
     Examples
@@ -113,8 +113,8 @@ def periodic_gradients(
 
     Notes
     -----
-    Exact. Where the contact just does not slip, or does not separate, within rounding, a derivative is that
-    of the side on which it does not.
+    Exact. Within rounding of the onset of slip, or of separation, a derivative is that of the side on which
+    there is none.
 
     Examples
     --------

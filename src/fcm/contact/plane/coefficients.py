@@ -81,8 +81,8 @@ def planar_forces(
     which is the linear equation y' = [[u_x', u_y'], [u_y', -u_x']] y / (2 r) of tan(alpha / 2) = y_2 / y_1.
     It is solved by collocation of order 15, slips end where lambda vanishes and sticks where |u - w| = r, all
     located. What a contact that never opens remembers of the period before is found by Newton's method.
-    Measured against extrapolated marches and in 30 digits: error below 1e-10 of k_u times the greatest
-    coefficient; with motion along one line it is `periodic_forces`.
+    Measured against extrapolated marches and in 30 digits, the error is below 1e-10 of k_u times the greatest
+    coefficient. With motion along one line it is `periodic_forces`.
 
     Examples
     --------
@@ -125,8 +125,8 @@ def planar_gradients(
     Notes
     -----
     By the variational equation of the slip direction, and through all that the slider remembers; measured
-    against differences, 1e-8 of the stiffness. Where the contact just does not slip, or does not open, within
-    rounding, a derivative is that of the side on which it does not.
+    against differences, 1e-8 of the stiffness. Within rounding of the onset of slip,
+    or of opening, a derivative is that of the side on which there is none.
 
     Examples
     --------
