@@ -3,6 +3,7 @@
 import doctest
 import re
 import shlex
+import sys
 import tomllib
 
 import click
@@ -39,8 +40,16 @@ TAUGHT = [page for page in PAGES if typed(page)]
 
 
 def run(command, folder):
-    if command.startswith("make "):  # that the target exists; tests do not call what calls them
-        command, folder = command.replace("make ", "make -n ", 1), ROOT
+    """Of what takes minutes only that it exists: targets of make, tests, and programs that measure."""
+    name, _, rest = command.partition(" ")
+    if name == "make":
+        command, folder = f"make -n {rest}", ROOT
+    elif name == ".venv/bin/python":
+        if rest.startswith("-m pytest "):
+            rest += " --collect-only -q"
+        elif rest.startswith("-m tests.benchmarks."):
+            rest = f"-m {rest.split()[1]} --help"
+        command, folder = f"{shlex.quote(sys.executable)} {rest}", ROOT
     return shell(command, folder)
 
 
@@ -66,23 +75,29 @@ def test_every_command_runs_and_prints_what_is_shown(page, tmp_path):
 
 def assert_shown(printed, shown):
     """The lines that are shown are the first printed; after `...` they may stand anywhere behind."""
-    ours, at = printed.splitlines(), 0
+    ours, at, heading = printed.splitlines(), 0, ""
     for number, part in enumerate(re.split(r"^\.\.\.\n", shown, flags=re.M)):
         theirs = part.splitlines()
+        headings = headings_of(theirs, heading)
         places = range(at, len(ours) - len(theirs) + 1) if number else [0]
-        found = next((i for i in places if same(ours[i : i + len(theirs)], theirs)), None)
+        found = next((i for i in places if same(ours[i : i + len(theirs)], theirs, headings)), None)
         assert found is not None, f"shown:\n{part}\nprinted:\n{printed}"
-        at = found + len(theirs)
+        at, heading = found + len(theirs), headings[-1] if headings else ""
 
 
-def same(printed, shown):
-    """Line by line, with the header above a row known: points and times are not compared."""
-    heading = ""
-    for ours, theirs in zip(printed, shown, strict=False):
-        heading = theirs if re.search(r"\bpoints\b|\bjump\b", theirs) else heading if theirs else ""
-        if cells(ours, heading) != cells(theirs, heading):
-            return False
-    return len(printed) == len(shown)
+def headings_of(lines, before):
+    """The header above each line, so that points and times are not compared; it holds beyond `...`."""
+    found = []
+    for line in lines:
+        before = line if re.search(r"\bpoints\b|\bjump\b", line) else before if line else ""
+        found.append(before)
+    return found
+
+
+def same(printed, shown, headings):
+    """Whether each line is, as far as it is compared."""
+    pairs = zip(printed, shown, headings, strict=False)
+    return len(printed) == len(shown) and all(cells(a, head) == cells(b, head) for a, b, head in pairs)
 
 
 def cells(line, heading):
