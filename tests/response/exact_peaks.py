@@ -16,6 +16,7 @@ from fcm.time_domain import SimulationError
 
 FIRST, LAST = 2e-3, 2e-6  # [rad/s] steps of the climb: near a maximum the amplitude errs by their square
 SAME_BRANCH = 0.3  # greatest relative change of the amplitude by a step
+ROUNDING = 1e-12  # of relative errors
 TRIED = 8  # points of the curve from which the climb may begin, to either side of the peak
 
 
@@ -76,10 +77,16 @@ def _higher(scene: Scene, orbit: Orbit, step: float) -> Orbit | None:
     return new if 0.0 < growth < SAME_BRANCH else None
 
 
+def _shown(error: float) -> str:
+    """Two digits, and 0 where there is rounding alone."""
+    return f"{error:.1e}" if abs(error) > ROUNDING else "0"
+
+
 if __name__ == "__main__":
-    print("| preload | peak u, balanced | exact | truncation error | true error |\n|--:|--:|--:|--:|--:|")
+    print("| preload | peak u, balanced | exact | estimated error | true error |")
+    print("| ---: | ---: | ---: | ---: | ---: |")
     for peak in peaks():
         print(
             f"| {peak.preload:g} | {peak.balanced:.4f} | {peak.exact:.4f} "
-            f"| {peak.truncation_error:.1e} | {peak.true_error + 0.0:+.1e} |"
+            f"| {_shown(peak.truncation_error)} | {_shown(peak.true_error)} |"
         )
