@@ -85,6 +85,12 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
     assert "(contact.a.n_0 = 0.5; on 1 of 2 curves)" in said and said.endswith(
         "--method exact --at F shows the motion there"
     )
+    curves[1]["no_stable_motion"] = ways[:2]
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
+    assert "between 1 and 1.5 and between 2 and 2.1 Hz (" in said
+    curves[1]["no_stable_motion"] = [*ways[2:], [6.0, 6.04]]
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
+    assert "and in 1 narrower range (" in said
     curves[1]["may_not_be_unique"] = 3  # another member of the family of motions may be stable
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert "not found, or has another residual friction. " in said

@@ -127,7 +127,8 @@ def test_a_peak_where_the_range_ends_is_marked():
     assert text.splitlines()[1].split()[:6] == ["1.00000", "1.50000", "-", "2.00000", "1.50000*", "-"]
     assert (
         text.splitlines()[-1]
-        == "* at an end of the range: beyond it the curve may rise further; fcm plot modes SCENE: resonances"
+        == "* at an end of the range: beyond it the curve may rise further. fcm plot modes SCENE lists "
+        "the resonances"
     )
 
 
@@ -270,7 +271,7 @@ def test_jumps_and_folds_that_nobody_could_see_are_counted():
 def test_a_peak_where_nothing_stable_was_found_says_so():
     one = curve({"u": 1.0, "v": 2.0}) | {"no_stable_motion": [[1.4, 1.6]]}
     one["peak"]["u"]["stable"], one["peak"]["v"]["stable"] = False, True
-    said = "u: no stable motion was found at the frequency of the peak, so none is known there"
+    said = "u: no stable motion was found at the frequency of the peak, so no steady amplitude is known there"
     assert said in as_table({"curves": [one]}, "Hz").splitlines()
     one["no_stable_motion"] = [[1.0, 1.2]]
     assert "the frequency of the peak" not in as_table({"curves": [one]}, "Hz")

@@ -182,7 +182,7 @@ def test_only_peaks_says_so(fcm, scene):
     whole = json.loads(fcm("respond", scene, "--method", "exact", "--json").out)["curves"][0]
     (curve,) = json.loads(run.out)["curves"]
     assert run.code == 0 and curve["only"] == "peaks" and curve["points"] < whole["points"]
-    assert "folds and jumps: lower peaks, too" in run.err
+    assert "folds and jumps. Lower peaks are left out, too" in run.err
     assert curve["peak"]["u"]["amplitude"] == pytest.approx(whole["peak"]["u"]["amplitude"], rel=1e-8)
     for wrong in ([], ["--method", "exact", "--at", "1"]):
         refused = fcm("respond", scene, "--only", "peaks", *wrong)

@@ -69,7 +69,7 @@ def test_without_jumps_there_is_one_table(fcm, scene):
 def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):
     cost, error = fcm("respond", scene).err.splitlines()[-2:]
     assert cost.startswith("1 curve, ") and " points in " in cost and cost.endswith(" s")
-    assert error.startswith("largest relative error: ") and "of the table" in error
+    assert error.startswith("largest relative error: ") and "by the table alone" in error
 
 
 @pytest.mark.parametrize("asked", [(), ("--method", "table")])

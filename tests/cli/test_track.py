@@ -11,6 +11,7 @@ import pytest
 from matplotlib.text import Text
 
 import fcm as package
+from fcm.cli.track import incomplete
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
 from fcm.response.track import track
 from fcm.scene import load_scene
@@ -377,3 +378,13 @@ def test_an_interrupted_search_goes_on_to_the_same_optimum(fcm, scene, wanted, m
 def test_of_a_search_that_found_nothing_before_it_was_interrupted_nothing_is_said(fcm, optimum):
     done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc", messages=Interrupting("optimum"))
     assert (done.code, done.out) == (3, "") and not Path("best.nc").exists()
+
+
+def test_a_tracked_curve_that_stopped_says_what_shows_the_rest():
+    """Not where it was interrupted, nor of the level, which no [sweep] has."""
+    curves = [{"complete": False}, {"complete": True}]
+    tracked = {"what": "peaks", "over": "contact.a.mu", "complete": False, "problems": [], "curves": curves}
+    said = incomplete({"tracked": tracked})
+    assert said.startswith("1 of 2 tracked curves stopped early: a [sweep] of contact.a.mu shows ")
+    for other in ({"problems": ["interrupted"]}, {"over": "level"}, {"what": "optimum"}):
+        assert "[sweep]" not in incomplete({"tracked": tracked | other})

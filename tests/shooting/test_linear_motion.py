@@ -64,8 +64,8 @@ def test_motions_that_no_point_belongs_to_are_told_with_what_leads_to_them(optio
     (curve,) = json.loads(run.out)["curves"]
     (beside,) = curve["stuck_beside"]
     assert run.code == 0 and beside["regime"] == ["E"]
-    assert "motions beside the curves, in which a contact never slips: 1" in run.err
-    assert f"[start] friction = [{beside['start_friction'][0]:.5g}]" in run.err
+    assert "beside the curves there are motions in which a contact never slips, 1 of them" in run.err
+    assert f"friction = [{beside['start_friction'][0]:.5g}] in [start]" in run.err
     scene = fcm.load_scene(WEDGE)
     start = Start(np.zeros(1), np.zeros(1), np.array(beside["start_friction"]), 0.0)
     at = None if not options else [1.3]

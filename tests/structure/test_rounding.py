@@ -242,6 +242,8 @@ def test_a_scene_says_by_how_much_rounding_moves_its_frequencies():
     (said,) = (note for note in notes(1e12, 1e-3) if "rounding changes" in note)
     assert 1e-7 < float(said.partition("by up to ")[2].partition(",")[0]) < 1e-3
     assert not any("rounding" in note for note in (*notes(1e12, 1.0), *notes(1e3, 1e-4)))
+    assert not any("rounding" in note for note in notes(1e7, 0.0))  # no width to compare with
+    assert any("rounding" in note for note in notes(1e14, 0.0))
 
 
 def test_rigid_body_modes_take_no_digits_from_the_elastic_ones():

@@ -229,9 +229,11 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
         return f"no stable motion was found in {hooks}, too narrow to be seen in a sweep" if narrow else ""
     found, shown = [curves[i] for i in wide], next(iter(wide.values()))
     widest = sorted(_widest_first(shown)[: SENTENCES.stretches])
-    ways = ", ".join(_between(*ends) for ends in widest)
-    more = f" and in {len(shown) - len(widest)} narrower ranges" if len(shown) > len(widest) else ""
+    others = len(shown) - len(widest)
+    more = f" and in {others} narrower range{'s' * (others > 1)}" if others else ""
     more += f" and in {hooks}" if narrow else ""
+    *before, last = (_between(*ends) for ends in widest)
+    ways = f"{', '.join(before)}{', ' if more else ' and '}{last}" if before else last
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
     shows = f"{how} shows the motion there" if (how := _how(summary)) else "More harmonics may find one"

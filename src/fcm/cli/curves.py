@@ -237,7 +237,7 @@ def _curves(
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
         lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
-        beyond = "beyond it the curve may rise further; fcm plot modes SCENE: resonances"
+        beyond = "beyond it the curve may rise further. fcm plot modes SCENE lists the resonances"
         lines.append(f"{_EDGE} at an end of the range: {beyond}")
     lower = _lower_peaks(curves, dofs)
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
@@ -250,8 +250,8 @@ def _curves(
     ]
     if lost:
         lines.append(
-            f"{', '.join(lost)}: no stable motion was found at the frequency of the peak, so none is known "
-            "there"
+            f"{', '.join(lost)}: no stable motion was found at the frequency of the peak, so no steady "
+            "amplitude is known there"
         )
     if UNKNOWN in marks:
         highest = [curve["peak"].get(dof) or {} for curve in judged for dof in dofs]
@@ -409,7 +409,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         if (closure := _worst(curves, "closure_error")) is not None:
             errors.append(f"{closure:.1e} by which a period does not close{_of_lower_peaks(summary)}")
     if summary.get("method") == "table" and table and not summary.get("directions"):
-        errors.append(f"{table:.1e} of the table, not of the points")
+        errors.append(f"{table:.1e} of solutions by the table alone, not of these points")
     if harmonic is not None:
         unknown = any(_unknown_error(curve, dof) for curve in curves for dof in curve["peak"])
         shown = shown_dofs(summary)  # of which the table has the peaks

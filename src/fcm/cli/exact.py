@@ -234,7 +234,7 @@ def _stuck(response: Response) -> list[str]:
     start = ", ".join(f"{force:.5g}" for force in first.friction)
     swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
     return [
-        f"motions beside the curves, in which a contact never slips: {len(stuck)} (stuck_beside). At "
-        f"{swept}{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}: "
-        f"[start] friction = [{start}] leads to it"
+        f"beside the curves there are motions in which a contact never slips, {len(stuck)} of them (all: "
+        f"stuck_beside of --json). At {swept}{float(in_unit(first.frequency, unit)):.6g} {unit} there is one "
+        f"with {does}: --method exact begins at it with friction = [{start}] in [start]"
     ]

@@ -325,11 +325,15 @@ def cost(result: Mapping[str, Any]) -> str:
 
 def incomplete(result: Mapping[str, Any]) -> str:
     """What of the tracked curves is missing; empty if nothing is."""
+    from fcm.scene.address import LEVEL
+
     tracked = result.get("tracked")
     if tracked is None or tracked["complete"]:
         return ""
     stopped = sum(not curve["complete"] for curve in tracked["curves"])
     said = [stopped_early(stopped, len(tracked["curves"]), "tracked curve")] if stopped else []
     problems = tracked["problems"]
+    if stopped and not problems and tracked["what"] != "optimum" and tracked["over"] != LEVEL:
+        said[-1] += f": a [sweep] of {tracked['over']} shows the response beyond these places"
     more = [f"and so {len(problems) - SENTENCES.problems} more"] if len(problems) > SENTENCES.problems else []
     return "; ".join([*said, *problems[: SENTENCES.problems], *more])

@@ -30,8 +30,8 @@ from fcm.units import UNIT
 
 METHOD = "exact"
 ONLY_PEAKS = (
-    "of the exact curves all points but the greatest peak of each degree of freedom, folds and jumps: lower "
-    "peaks, too"
+    "all points of the exact curves but the greatest peak of each degree of freedom, folds and jumps. Lower "
+    "peaks are left out, too"
 )
 
 

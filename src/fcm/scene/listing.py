@@ -182,7 +182,7 @@ def notes_of_modes(scene: Scene) -> list[str]:
     if rigid:
         of_open = f"0 ({counted(rigid, 'rigid-body mode')})" + (f", {of_open}" if opened.size else "")
     damped = f". Their damping ratios while stuck: {_listed(ratio[:most], 3)}" if omega.size else ""
-    among = ": of the first of each, rigid-body modes counted, and so on" if rigid else ""
+    among = ": of the first between the first of each, and so on. Rigid-body modes count" if rigid else ""
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
     said = [
         f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "

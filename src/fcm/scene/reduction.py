@@ -152,7 +152,8 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
             "of the first elastic frequency cannot be distinguished from rigid-body modes, and are taken for "
             "such. Write it with more digits"
         )
-    if off > max(MESSAGES.damping_left_out * float(ratios.min(initial=1.0)), TOLERANCES.undamped):
+    width = float(ratios.min(initial=1.0, where=ratios > 0.0))  # what nothing damps has no peak to move
+    if off > max(MESSAGES.damping_left_out * width, TOLERANCES.undamped):
         why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"
         said.append(
             f"structure: rounding changes the frequencies of its modes by up to {_upwards(off)}, relative, "

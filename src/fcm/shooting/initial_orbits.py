@@ -302,7 +302,8 @@ def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> st
             "one period of the force. Take a lower frequency"
         )
     return (
-        f"{where}: a mode is free to drift, or resonates without damping. Add damping, or try another range"
+        f"{where}: a mode is free to drift, or resonates without damping. Hold it by a soft spring, add "
+        "damping, or try another range"
     )
 
 

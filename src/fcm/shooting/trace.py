@@ -138,7 +138,20 @@ def explore(
         f"no exact motion was found from the stable branch of harmonic balance at {with_unit(scene, one)}"
         for one in dict.fromkeys(lost)
     ]
-    return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])
+    return list(paths), "; ".join([*_by_cause([missed[end] for end in ends]), *told, *bounded.given_up])
+
+
+def _by_cause(reasons: Sequence[str]) -> list[str]:
+    """Reasons with the same cause behind a colon as one.
+
+    >>> _by_cause(["none at 1 Hz: no damping", "none at 2 Hz: no damping", "none at 3 Hz"])
+    ['none at 1 Hz and none at 2 Hz: no damping', 'none at 3 Hz']
+    """
+    found: dict[str, list[str]] = {}
+    for reason in reasons:
+        what, _, cause = reason.partition(": ")
+        found.setdefault(cause, []).append(what)
+    return [": ".join(filter(None, (" and ".join(what), cause))) for cause, what in found.items()]
 
 
 def _reaches_height(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
