@@ -257,7 +257,7 @@ guide-figures: $(VENV)/installed-dev  ## the figures of the theory pages, and th
 	$(BIN)/python -m tests.guide.figures
 	$(BIN)/python -m tests.guide.gallery
 
-measured: $(VENV)/installed  ## two measured joints fitted, in build/measured; DATA= names the folder of their files; minutes
+measured: $(VENV)/installed  ## two measured joints fitted, in build/measured; DATA= names the folder of their files; half an hour
 	$(BIN)/python -m tests.studies.measured $(DATA)
 
 oblique: $(VENV)/installed  ## two bodies on an oblique plane, built with CalculiX, in build/oblique; minutes

@@ -70,6 +70,27 @@ def test_numbers_that_are_hardly_told_are_said_once_and_their_product():
     assert said == "contact.c.mu is hardly determined by these data: its standard error is 150 %"
 
 
+def test_many_numbers_that_hang_together_are_said_in_one_sentence():
+    four = np.ones(4)
+    hardly = replace(
+        fitted(0.0),
+        keys=("k_1", "n_1", "k_2", "n_2"),
+        begin=four,
+        values=four,
+        error=1e5 * four,
+        without_effect=0.0 * four,
+        undetermined=four,
+        at_bound=0.0 * four,
+        alike=((0, 1, -1.0), (0, 2, 0.5), (1, 2, 0.5), (0, 3, 0.5), (1, 3, 0.5), (2, 3, -1.0)),
+    )
+    assert hardly.problems() == [
+        "k_1, n_1, k_2 and n_2 are hardly determined by these data: their standard errors are many times as "
+        "large",
+        "k_1, n_1, k_2 and n_2 cannot be distinguished: these data determine k_1 / n_1, k_1 * k_2^0.5 and "
+        "k_1 * n_2^0.5 alone",
+    ]
+
+
 def misfit_of(residual):
     """Data of a response whose points are off by this, in units of errors of 1 % of the greatest."""
     ones = np.ones(residual.size)

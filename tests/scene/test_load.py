@@ -160,6 +160,7 @@ def test_a_name_like_no_other_gets_no_guess():
         (b"\xff\xfe\x00binary", "is not UTF-8 text"),
         (b"\x89PNG\r\n\x1a\n", "is not UTF-8 text"),
         (b"\x89HDF\r\n\x1a\n", "is a file of results; name the scene, a TOML file, that it is of"),
+        (b"PK\x03\x04\x00\xff", "is an archive, as of matrices; name the scene, a TOML file, that names it"),
         (b"[modal\n", r"line 1, \[modal: a table begins with its name in brackets: write \[modal\]"),
         (b"title = 'x'\ntitle = 'y'\n", "line 2, title = 'y': the key title is there twice: it is in line 1"),
         (b"x = " + b"[" * 100_000, "nested too deeply"),

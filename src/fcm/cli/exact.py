@@ -66,7 +66,7 @@ def check_options(
             "--periods needs --method exact, and whole curves: no --only; --at finds such motions by itself."
         )
     if only is not None and (method != "exact" or at is not None):
-        raise click.UsageError("--only needs --method exact, and curves: no frequencies by --at.")
+        raise click.UsageError("--only needs --method exact without --at: it is of whole curves.")
     if method != "exact":
         if at is not None and level is None:
             raise click.UsageError(

@@ -291,7 +291,9 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
                 if ends[0] == ends[1] and ends[2] == ends[3]:  # at a place: no stretch that can be seen
                     ends[1] = ends[3] = ""
                 rows.append([*swept(curve), plain(curve["what"]), *ends, said])
-    title = "where no motion is stable, or stability is unknown:"
+    unknown = any(curve.get("stability_untold") for curve in tracked["curves"])
+    helps = "; more harmonics may show it" if unknown else ""
+    title = f"where no motion is stable, or stability is unknown{helps}:"
     return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""
 
 

@@ -12,6 +12,7 @@ from fcm.model.scene import FloatArray, Measured
 from fcm.units import in_unit
 
 _EACH = "are", "their standard errors are"
+Pair = tuple[int, int, float]  # of numbers told as one: i, j, p of i times j to the power p
 
 
 def _told(one: str, other: str, power: float) -> str:
@@ -30,6 +31,33 @@ def misfit(data: Measured, residual: FloatArray, error: FloatArray) -> float:
     square = residual[:, 0] ** 2 if data.damping is not None else (residual**2).sum(axis=1)
     size = data.frequency if data.damping is not None else data.amplitude.max()
     return float(np.sqrt((square * (error[:, 0] / size) ** 2).mean()))
+
+
+def _listed(parts: list[str]) -> str:
+    """Parts of a sentence.
+
+    >>> _listed(["mu"]), _listed(["mu", "k_u"]), _listed(["mu", "k_u", "n_0"])
+    ('mu', 'mu and k_u', 'mu, k_u and n_0')
+    """
+    return " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
+
+
+def _groups(pairs: tuple[Pair, ...]) -> list[list[Pair]]:
+    """Pairs of numbers that hang together; of each group as many as it takes to tell all others.
+
+    >>> _groups(((0, 1, 1.0), (0, 2, 1.0), (1, 2, -1.0), (3, 4, 1.0)))
+    [[(0, 1, 1.0), (0, 2, 1.0)], [(3, 4, 1.0)]]
+    """
+    found: list[tuple[set[int], list[Pair]]] = []
+    for pair in pairs:
+        ends = set(pair[:2])
+        touched = [one for one in found if one[0] & ends]
+        if any(ends <= numbers for numbers, _ in touched):
+            continue
+        found = [one for one in found if one not in touched]
+        numbers = ends.union(*(one for one, _ in touched))
+        found.append((numbers, [*(each for _, own in touched for each in own), pair]))
+    return [own for _, own in found]
 
 
 class FittedData(Frozen):
@@ -134,7 +162,7 @@ class Fitted:
     without_effect: FloatArray  # (number,) 1 where the data do not change with it
     undetermined: FloatArray  # (number,) 1 where its standard error is as large as itself, nearly
     at_bound: FloatArray  # (number,) 1 where a bound keeps it
-    alike: tuple[tuple[int, int, float], ...]  # pairs told as one: i, j, p of i times j to the power p
+    alike: tuple[Pair, ...]  # those of which only a product is told
     data: list[FittedData]
     starts: list[FittedStart]
     harmonics: tuple[int, ...]
@@ -152,7 +180,8 @@ class Fitted:
         elif not self.settled:
             said.append(
                 "the search for the numbers stopped before a minimum, so that others may be nearer to the "
-                "data. The standard errors are not those of a minimum. Begin with these numbers"
+                "data. The standard errors are not those of a minimum. Write these numbers into the scene, "
+                "and fit again from there"
             )
         for k, key in enumerate(self.keys):
             if self.without_effect[k]:
@@ -165,17 +194,16 @@ class Fitted:
             k for k in range(len(self.keys)) if self.undetermined[k] and not self.without_effect[k]
         ]:
             each, error = ("is", "its standard error is") if len(hardly) == 1 else _EACH
-            errors = " and ".join(self._relative(k) for k in hardly)
+            sizes = [self._relative(k) for k in hardly]
+            errors = _listed(sizes if len(set(sizes)) > 1 else sizes[:1])
             said.append(
-                f"{' and '.join(self.keys[k] for k in hardly)} {each} hardly determined by these data: "
+                f"{_listed([self.keys[k] for k in hardly])} {each} hardly determined by these data: "
                 f"{error} {errors}"
             )
-        for i, j, power in self.alike:
-            one, other = self.keys[i], self.keys[j]
-            said.append(
-                f"{one} and {other} cannot be distinguished: these data determine {_told(one, other, power)} "
-                "alone"
-            )
+        for pairs in _groups(self.alike):
+            among = dict.fromkeys(self.keys[k] for pair in pairs for k in pair[:2])
+            told = _listed([_told(self.keys[i], self.keys[j], power) for i, j, power in pairs])
+            said.append(f"{_listed(list(among))} cannot be distinguished: these data determine {told} alone")
         for part in self.data:
             if part.unreached:
                 name = part.measured.file

@@ -18,6 +18,7 @@ from fcm.scene.toml_mistakes import slips
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 
 NETCDF_BEGINS = b"\x89HDF", b"CDF"  # the first bytes of netCDF files
+ARCHIVE_BEGINS = b"PK\x03\x04"  # and of .npz files
 
 
 def read_toml(path: Path, source: str, options: TomlOptions = TOML) -> dict[str, Any]:
@@ -68,6 +69,8 @@ def _text(path: Path, source: str, options: TomlOptions) -> str:
         what = "is not UTF-8 text, so it is not a TOML file: save it as UTF-8"
         if error.object.startswith(NETCDF_BEGINS):
             what = "is a file of results; name the scene, a TOML file, that it is of"
+        elif error.object.startswith(ARCHIVE_BEGINS):
+            what = "is an archive, as of matrices; name the scene, a TOML file, that names it"
         elif error.object[:2] not in (b"\xff\xfe", b"\xfe\xff") and b"\0" not in error.object:
             what += f"; the first letter that is none is in line {error.object.count(10, 0, error.start) + 1}"
         raise SceneError(source, [what]) from None
