@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
+import scipy.sparse.linalg
 import xarray
 
 from ..guide.gallery import small
@@ -216,9 +217,49 @@ def totals(beams: Beams) -> dict[str, float]:
     return {"k_u": beams.k_u * area, "k_v": beams.k_v * area}
 
 
+def frequencies(K: scipy.sparse.csc_array, M: scipy.sparse.csc_array, count: int) -> FloatArray:
+    """The lowest [Hz], of sparse matrices."""
+    squares = scipy.sparse.linalg.eigsh(K, count, M, sigma=1.0, return_eigenvectors=False)
+    return np.sqrt(np.sort(squares)) / (2.0 * np.pi)
+
+
+def slender(beams: Beams) -> float:
+    """First bending frequency [Hz] of one free beam, by Euler and Bernoulli."""
+    speed = np.sqrt(beams.modulus / beams.density / 12.0)
+    return float(4.730041**2 * beams.height / (2.0 * np.pi * beams.length**2) * speed)
+
+
+def glued(beams: Beams, made: Mesh) -> FloatArray:
+    """Both first bending frequencies [Hz] with all nodes at one place as one.
+
+    They are one also where the end of a beam stands against the other.
+    """
+    K, M = matrices(beams, made)
+    _, place = np.unique(made.nodes.round(7), axis=0, return_inverse=True)
+    rows = (3 * place.ravel()[:, None] + np.arange(3)).ravel()
+    glue = scipy.sparse.csc_array((np.ones(rows.size), (np.arange(rows.size), rows)))
+    return frequencies(glue.T @ K @ glue, glue.T @ M @ glue, 8)[6:]
+
+
+def stuck(beams: Beams, made: Mesh) -> FloatArray:
+    """Both first bending frequencies [Hz] with all pairs as springs."""
+    K, M = matrices(beams, made)
+    k_u, k_v = totals(beams).values()
+    share = np.repeat(made.areas / made.areas.sum(), 3) * np.tile([k_u, k_u, k_v], len(made.pairs))
+    rows = [(3 * made.pairs[:, side, None] + np.arange(3)).ravel() for side in range(2)]
+    pulls = scipy.sparse.csc_array(
+        (np.repeat([1.0, -1.0], share.size), (np.concatenate(rows), np.tile(np.arange(share.size), 2))),
+        shape=(K.shape[0], share.size),
+    )
+    return frequencies(K + pulls @ scipy.sparse.diags_array(share) @ pulls.T, M, 8)[6:]
+
+
 def main(out: str = "build/joint", along: str = "20", across: str = "5") -> None:
-    folder = Path(out)
-    scene = write(folder, int(along), int(across))
+    folder, beams = Path(out), Beams()
+    scene, made = write(folder, int(along), int(across)), mesh(beams, int(along), int(across))
+    print(f"first bending, one slender free beam: {slender(beams):.1f} Hz")
+    for what, found in (("glued", glued(beams, made)), ("contacts that stick", stuck(beams, made))):
+        print(f"first bending, {what}: {found[0]:.1f} and {found[1]:.1f} Hz")
     for number, name in MODES.items():
         result, span = folder / f"mode{number}.nc", ":".join(map(str, LEVELS))
         done = called("respond", scene, "--mode", number, "--level", span, "--max-step", STEP, "-o", result)

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.sparse
 
 from fcm.continuation import Status
 from fcm.harmonic_balance.system import System
@@ -12,7 +11,7 @@ from fcm.nonlinear_modes.backbone import nonlinear_mode, truncation
 from fcm.nonlinear_modes.options import NonlinearModeOptions, TruncationOptions
 from fcm.scene.load import load_scene
 
-from .joint import Beams, matrices, mesh, preloads, totals, write
+from .joint import Beams, glued, matrices, mesh, preloads, slender, stuck, write
 
 PAIRS = 10, 2  # along and across the joint
 BEAMS = Beams()
@@ -33,12 +32,6 @@ def mode(scene):
     return nonlinear_mode(System(scene, (1,)), 7, (3e-6, 6e-4), scene.max_step)
 
 
-def frequencies(K, M, count):
-    """The lowest [Hz], of sparse matrices."""
-    squares = scipy.sparse.linalg.eigsh(K, count, M, sigma=1.0, return_eigenvectors=False)
-    return np.sqrt(np.sort(squares)) / (2.0 * np.pi)
-
-
 def test_mass_springs_and_loads_are_those_of_the_beams(made):
     K, M = matrices(BEAMS, made)
     area = (BEAMS.lap[1] - BEAMS.lap[0]) * BEAMS.width
@@ -52,30 +45,12 @@ def test_mass_springs_and_loads_are_those_of_the_beams(made):
 
 
 def test_glued_it_bends_as_one_free_beam(made):
-    """In both planes, as that of Euler and Bernoulli; shear takes a little, the springs at the ends give it.
-
-    All nodes at one place are one, also where the end of a beam stands against the other.
-    """
-    K, M = matrices(BEAMS, made)
-    _, place = np.unique(made.nodes.round(7), axis=0, return_inverse=True)
-    rows = (3 * place.ravel()[:, None] + np.arange(3)).ravel()
-    glue = scipy.sparse.csc_array((np.ones(rows.size), (np.arange(rows.size), rows)))
-    bending = frequencies(glue.T @ K @ glue, glue.T @ M @ glue, 8)[6:]
-    slender = 4.730041**2 * BEAMS.height / (2.0 * np.pi * BEAMS.length**2)
-    assert bending == pytest.approx(slender * np.sqrt(BEAMS.modulus / BEAMS.density / 12.0), rel=0.01)
+    """In both planes, as that of Euler and Bernoulli; shear takes a little, the springs at its ends give."""
+    assert glued(BEAMS, made) == pytest.approx(slender(BEAMS), rel=0.01)
 
 
 def test_at_small_amplitude_the_pairs_are_springs(made, mode):
-    K, M = matrices(BEAMS, made)
-    k_u, k_v = totals(BEAMS).values()
-    share = np.repeat(made.areas / made.areas.sum(), 3) * np.tile([k_u, k_u, k_v], len(made.pairs))
-    rows = [(3 * made.pairs[:, side, None] + np.arange(3)).ravel() for side in range(2)]
-    pulls = scipy.sparse.csc_array(
-        (np.repeat([1.0, -1.0], share.size), (np.concatenate(rows), np.tile(np.arange(share.size), 2))),
-        shape=(K.shape[0], share.size),
-    )
-    stuck = frequencies(K + pulls @ scipy.sparse.diags_array(share) @ pulls.T, M, 7)[6]
-    assert mode.omega[0] / (2.0 * np.pi) == pytest.approx(stuck, rel=1e-4)
+    assert mode.omega[0] / (2.0 * np.pi) == pytest.approx(stuck(BEAMS, made)[0], rel=1e-4)
 
 
 def test_the_mode_is_followed_as_its_contacts_slip_one_after_the_other(mode):
