@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from fcm.cli import COMMANDS, main
 from fcm.cli.commands import INSTEAD
-from fcm.cli.guard import guarded
+from fcm.cli.guard import guarded, outdated_kernels
 from fcm.cli.messages import Messages
 from fcm.continuation import dense_solver
 from fcm.model.question import Question
@@ -124,6 +124,15 @@ def test_a_defect_is_one_line(capsys, monkeypatch):
     monkeypatch.delenv("FCM_DEBUG", raising=False)
     assert end_of(ZeroDivisionError("of zero")) == 1
     assert capsys.readouterr().err == "fcm: defect: ZeroDivisionError: of zero (-v shows where)\n"
+
+
+def test_a_defect_names_kernels_older_than_their_sources(tmp_path):
+    for name, time in (("new.py", 1), ("new.abi3.so", 2), ("old.py", 3), ("old.abi3.so", 2)):
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, (time, time))
+    assert "old.abi3.so is older than its source: make kernels" in outdated_kernels(str(tmp_path))
+    os.utime(tmp_path / "old.abi3.so", (4, 4))
+    assert outdated_kernels(str(tmp_path)) == ""
 
 
 def test_a_defect_shows_its_place_on_request(capsys, monkeypatch):

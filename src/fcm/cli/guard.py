@@ -101,7 +101,18 @@ def _exit_code_and_line(error: BaseException) -> tuple[int, str]:
     if isinstance(error, OSError):
         _discard_output()
         return NOT_COMPLETED, f"error: {error.filename or 'output'}: {error.strerror or error}"
-    return DEFECT, f"defect: {type(error).__name__}: {error} (-v shows where)"
+    return DEFECT, f"defect: {type(error).__name__}: {error} (-v shows where){outdated_kernels()}"
+
+
+def outdated_kernels(package: str = "") -> str:
+    """What to try where a compiled kernel of a package, this one, is older than its source; else nothing."""
+    from pathlib import Path
+
+    for kernel in sorted((Path(package) if package else Path(__file__).parents[1]).rglob("*.abi3.*")):
+        sources = [kernel.with_name(kernel.name.split(".")[0] + end) for end in (".py", ".pxd")]
+        if any(one.exists() and one.stat().st_mtime > kernel.stat().st_mtime for one in sources):
+            return f". {kernel.name} is older than its source: make kernels compiles it again"
+    return ""
 
 
 def _no_room(error: BaseException) -> bool:
