@@ -260,7 +260,7 @@ guide-figures: $(VENV)/installed-dev  ## the figures of the theory pages, and th
 measured: $(VENV)/installed  ## two measured joints fitted, in build/measured; DATA= names the folder of their files; half an hour
 	$(BIN)/python -m tests.studies.measured $(DATA)
 
-oblique: $(VENV)/installed  ## two bodies on an oblique plane, built with CalculiX, in build/oblique; minutes
+oblique: $(VENV)/installed  ## two bodies on an oblique plane, built with CalculiX, in build/oblique
 	$(BIN)/python -m tests.studies.oblique
 
 joint: $(VENV)/installed  ## two bolted beams with 100 pairs in the plane: bending modes, map of slip, in build/joint; minutes

@@ -189,3 +189,16 @@ def test_a_mode_is_drawn_over_the_response_of_its_scene(fcm, result, tmp_path):
     assert (tmp_path / "b.png").read_bytes() != (tmp_path / "alone.png").read_bytes()
     done = fcm("plot", "response", "r.nc", "--backbone", "r.nc")
     assert done.code == 2 and "not a file of nonlinear modes (fcm respond --mode)" in done.err
+
+
+def test_the_last_line_says_at_how_many_points_the_error_was_estimated(fcm, tmp_path):
+    """It gave the error of the one point at which it was known as that of the whole mode."""
+    done = fcm("respond", "beam", "--mode", 1, "--level", "1e-6:1e-2", "-o", tmp_path / "a.nc")
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        error, amplitude = (data[name][0].filled(np.nan) for name in ("truncation_error", "modal_amplitude"))
+        (curve,) = json.loads(data.summary)["curves"]
+    known, points = np.isfinite(error).sum(), np.isfinite(amplitude).sum()
+    assert 0 < known < points and done.code == 0
+    assert curve["mode"]["error_known"]["points"] == known
+    assert curve["mode"]["error_known"]["modal_amplitude"] == amplitude[np.isfinite(error)].max()
+    assert f"estimated at {known} of {points} points" in done.err

@@ -166,7 +166,11 @@ def test_few_errors_have_a_line_and_no_panel():
     error[[5, 40]] = 0.02, 0.14
     one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, np.full(41, 0.3), error)
     _, lower = draw_modes(DrawnModes("", "Hz", (one,))).axes
-    assert "at most 0.14, estimated at 2 points" in lower.get_title(loc="right")
+    assert lower.get_title(loc="right").endswith("at most 0.14, estimated at 2 points")
+    error[40] = np.nan
+    _, lower = draw_modes(DrawnModes("", "Hz", (one,))).axes
+    end = f"at most 0.02, estimated at 1 point, beyond {AMPLITUDE[5]:.2g} unknown"
+    assert lower.get_title(loc="right").endswith(end)
 
 
 def test_a_mode_that_stopped_early_says_so_and_where():

@@ -3,7 +3,7 @@
 usage: python -m tests.studies.oblique [OUT]
 
 The study needs `ccx`. It writes the mesh, the matrices, the scene, the first nonlinear mode and its picture
-into OUT, build/oblique; minutes. Then it prints the mode beside two limits that CalculiX finds by itself: the
+into OUT, build/oblique. Then it prints the mode beside two limits that CalculiX finds by itself: the
 first frequency of both bodies as one, and of one body alone.
 """
 

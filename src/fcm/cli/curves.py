@@ -435,7 +435,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
                 if max(peaks) < harmonic:
                     of_all = f"{of_peaks} and {of_any}{_where(summary, harmonic)}"
             but = ", and of some peaks unknown" if unknown else ""
-            errors.append(f"{of_all}, by the harmonics left out{but}")
+            errors.append(f"{of_all}, by the harmonics left out{but}{_known_of_modes(curves)}")
         if places := [at for one in _peaks_of(curves, shown) if (at := one.get("frequency_error"))]:
             errors.append(f"{max(places):.1e} of the frequencies of the greatest peaks")
     return (
@@ -466,6 +466,24 @@ def _of_lower_peaks(summary: Mapping[str, Any]) -> str:
 def _amount(error: float) -> str:
     """An error as a sentence says it."""
     return short(error).replace(BEYOND, "more than 100 %")
+
+
+def _known_of_modes(curves: Sequence[Curve]) -> str:
+    """At how many points of nonlinear modes the error is known, and how far up, where not at all of them.
+
+    >>> mode = {"modal_amplitude": [1e-6, 1e-4], "error_known": {"points": 1, "modal_amplitude": 1e-5}}
+    >>> _known_of_modes([{"points": 62, "mode": mode}])
+    ', estimated at 1 of 62 points. Beyond the modal amplitude 1e-05 it is unknown'
+    """
+    modes = [one["mode"] for one in curves if one.get("mode")]
+    points = sum(one["points"] for one in curves if one.get("mode"))
+    known = sum(mode["error_known"]["points"] for mode in modes)
+    if known in (0, points):
+        return ""
+    ends = [(one["error_known"]["modal_amplitude"], max(one["modal_amplitude"])) for one in modes]
+    short_of = [known_to for known_to, end in ends if known_to is not None and known_to < end]
+    beyond = f". Beyond the modal amplitude {min(short_of):.4g} it is unknown" if short_of else ""
+    return f", estimated at {known} of {points} points{beyond}"
 
 
 def _where(summary: Mapping[str, Any], error: float) -> str:

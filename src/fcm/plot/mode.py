@@ -247,6 +247,9 @@ def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
     known = np.concatenate([mode.error[mode.error > 0.0] for mode in modes])
     if known.size:
         points = f"{known.size} point{'s' * (known.size > 1)}"
+        ends = [np.nanmax(np.where(mode.error > 0.0, mode.amplitude, 0.0)) for mode in modes]
+        if any(end < mode.amplitude.max() for end, mode in zip(ends, modes, strict=True)):
+            points += f", beyond {min(ends):.2g} unknown"
         said = f"error by the harmonics left out: at most {float(known.max()):.2g}, estimated at {points}"
         axes.set_title(said, loc="right", fontsize=LAYOUT.small_text)
 

@@ -91,6 +91,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["mode"] = curve.mode.summary(
             curve.frequency, unit, dict(zip(curve.peaks, curve.amplitude.T, strict=True))
         )
+        known = curve.mode.amplitude[np.isfinite(curve.truncation_error)]
+        out["mode"]["error_known"] = {"points": known.size, "modal_amplitude": max(known, default=None)}
     return out | {"seconds": curve.seconds}
 
 
