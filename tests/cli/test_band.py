@@ -10,6 +10,7 @@ def result(fcm, scene, tmp_path):
     scene.write_text(scene.read_text() + "harmonics = 1\n" + DRAWS)
     done = fcm("respond", scene, "-o", tmp_path / "draws.nc")
     assert done.code == 0 and "percentiles of 4 curves" in done.out and "50 %" in done.out
+    assert "a peak and a frequency of one column are not of one draw" in done.out
     return tmp_path / "draws.nc"
 
 

@@ -71,6 +71,8 @@ def test_curves_that_an_interruption_left_out_are_counted():
     assert len(rows) == 4 and rows[1].split()[-2:] == ["NOT", "COMPLETE"]
     assert rows[2] == "n_0 = 3 NOT COMPLETE: interrupted at 3 rad/s"
     assert rows[3] == "2 more curves NOT COMPLETE: interrupted before they were traced"
+    said = cost_and_error({"curves": each, "seconds": 1.0, "method": "balance"})
+    assert said.startswith("2 of 4 curves, ")
 
 
 def test_what_is_minimised_is_shown_however_small():

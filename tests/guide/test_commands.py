@@ -193,7 +193,7 @@ def all_commands(command):
 
 def fault_of(command, words):
     """What is wrong with the arguments of a command, or nothing."""
-    context = click.Context(command)
+    context = click.Context(command, **program.context_settings)  # click keeps the help option of the first
     try:
         last = [one for one in command.get_params(context) if words[-1:] and words[-1] in one.opts]
         values = [] if not last or last[0].is_flag else ["VALUE"] * last[0].nargs  # its name alone

@@ -156,12 +156,14 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     if not rows:
         return head
     percents = next(iter(found["jumps"].values()))["frequency"]
-    unknown = "\nunknown: stability is not known, and a sweep may jump"
-    return (
-        f"{head}\n"
-        + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
-        + (unknown if any(one["untold"] for one in jumps.values()) else "")
-    )
+    lines = [head, aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)]
+    if found["peak"] and dofs:
+        lines.append(
+            "each line is in its own order: a peak and a frequency of one column are not of one draw"
+        )
+    if any(one["untold"] for one in jumps.values()):
+        lines.append("unknown: stability is not known, and a sweep may jump")
+    return "\n".join(lines)
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
@@ -400,7 +402,9 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     """What the run cost and how wrong it is, in a line or two."""
     curves = summary["curves"]
     points = sum(curve["points"] for curve in curves)
-    count = f"{len(curves)} curve{'' if len(curves) == 1 else 's'}"
+    begun = sum(curve["points"] > 0 for curve in curves)
+    of = f"{begun} of " if begun < len(curves) else ""
+    count = f"{of}{len(curves)} curve{'' if len(curves) == 1 else 's'}"
     tabled = [curve for curve in curves if len(curve.get("harmonics", ())) < 2]  # more are summed exactly
     table, harmonic = _worst(tabled, "table_error"), _worst(curves, "truncation_error")
     errors = []

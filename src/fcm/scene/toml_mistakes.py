@@ -296,6 +296,20 @@ def _value_of_word(match: re.Match[str]) -> str:
     return before + (f"'{word}'" if "\\" in word else f'"{word}"')
 
 
+def _deviation(line: str) -> str:
+    """A standard deviation in units of its mean, of which it is a percentage."""
+
+    def mend(match: re.Match[str]) -> str:
+        mean, percent = float(match[2]), float(match[3])
+        return f"{match[1]}{match[2]}, {abs(mean) * percent / 100.0:.12g}"
+
+    return _outside(
+        lambda part: re.sub(
+            rf"(normal\s*=\s*\[\s*)({_NUMBER.pattern})\s*,\s*({_NUMBER.pattern})\s*%", mend, part
+        )
+    )(line)
+
+
 def _units(line: str) -> str:
     """Numbers without what stands behind them; an angle in degrees is a string."""
 
@@ -404,6 +418,7 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
     ("a list is in brackets", _outside(lambda part: re.sub(r"=\s*\(([^()]*)\)", r"= [\1]", part))),
     ("each key is on a line of its own", lambda line: line.replace("\r", "\n")),
     ("each key is on a line of its own", _statements),
+    ("normal has a mean and a standard deviation, both in units of the key", _deviation),
     ("units are not written", _units),
     ("it is true, false, inf or nan, in small letters", _outside(_in_small)),
     ("a word needs quotes", _outside(lambda part: _VALUE.sub(_value_of_word, part))),
