@@ -70,6 +70,7 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     shown = _which_are_shown(summary, dofs)
     parts = [_curves(summary, names, dofs, unit, length, shown)]
     parts += filter(None, [_every_peak(curves, names, dofs, unit, length)])
+    parts += filter(None, [_at_level_1(curves, names, dofs, length)])
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
     moving = [dof for dof in dofs if not all(_at_rest(curve, dof) for curve in curves)]
     tables = [
@@ -99,6 +100,24 @@ def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit
     rows = [(left, [cells[d] for d in kept], right) for left, cells, right in rows]
     shown = [_with_unit(dofs[d], length) for d in kept]
     return f"{_EVERY}\n" + DofTable(names, shown, _peak_heads(unit), [], rows).text(last=0)
+
+
+def _at_level_1(curves: Sequence[Curve], names: list[str], dofs: list[str], length: str) -> str:
+    """The motions of curves of levels at the level 1; empty if there is none."""
+    marks = {True: "", False: UNSTABLE, None: UNKNOWN}
+    said = {False: f", {UNSTABLE} unstable", None: f", {UNKNOWN} of unknown stability"}
+    rows = []
+    for curve in curves:
+        for one in curve.get("at_level_1", ()):
+            mark, errors = marks[one["stable"]], one["error"]
+            cells = [[number(one["amplitude"][dof]) + mark, short(errors[dof])] for dof in dofs]
+            rows.append((swept(curve), cells, list[str]()))
+    if not rows:
+        return ""
+    shown = [_with_unit(dof, length) for dof in dofs]
+    table = DofTable(names, shown, ["{}", "error"], [], rows).text(last=0)
+    stable = {one["stable"] for curve in curves for one in curve.get("at_level_1", ())}
+    return f"motions at the level 1{''.join(said[one] for one in said if one in stable)}:\n{table}"
 
 
 def _peak_heads(unit: str) -> list[str]:

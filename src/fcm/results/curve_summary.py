@@ -79,6 +79,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["sensitivity"] = _sensitivity(curve, curve.sensitivity, unit)
     if curve.level is not None:
         out["level_folds"] = curve.level_folds
+        out["at_level_1"] = _motions_at_level_1(curve, dofs)
     out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
     if swept.unknown and not _unjudged(curve):
         out["stability_untold"] = [_unknown(one, dofs, unit) for one in swept.unknown]
@@ -94,6 +95,22 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         known = curve.mode.amplitude[np.isfinite(curve.truncation_error)]
         out["mode"]["error_known"] = {"points": known.size, "modal_amplitude": max(known, default=None)}
     return out | {"seconds": curve.seconds}
+
+
+def _motions_at_level_1(curve: Curve, dofs: Sequence[str]) -> list[dict[str, Any]]:
+    """Each motion at the level 1, which is a point of the curve, the smallest first."""
+    found = [
+        {
+            "amplitude": dict(zip(dofs, curve.amplitude[i].tolist(), strict=True)),
+            "error": {
+                dof: error if np.isfinite(error) else None
+                for dof, error in zip(dofs, curve.error[i].tolist(), strict=True)
+            },
+            "stable": None if np.isnan(curve.stable[i]) else bool(curve.stable[i]),
+        }
+        for i in np.flatnonzero(np.asarray(curve.level) == 1.0)
+    ]
+    return sorted(found, key=lambda one: max(one["amplitude"].values()))
 
 
 def _unjudged(curve: Curve) -> bool:

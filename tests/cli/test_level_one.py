@@ -1,0 +1,30 @@
+"""The motions at the level 1 that a curve of the level of the forces passes are those of the response."""
+
+import json
+
+import numpy as np
+import pytest
+
+from fcm.response import trace
+from fcm.scene import load_scene
+
+
+def test_motions_at_the_level_1_are_where_the_response_passes_the_frequency(fcm):
+    run = fcm("respond", "yang1998-jump", "--level", "0:4", "--at", 1.2, "--json")
+    (curve,) = json.loads(run.out)["curves"]
+    found = [one["amplitude"]["u"] for one in curve["at_level_1"]]
+    (response,) = trace(load_scene("yang1998-jump")).curves
+    off, amplitude = response.frequency - 1.2, response.amplitude[:, 0]
+    at = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+    part = off[at] / (off[at] - off[at + 1])
+    passed = amplitude[at] + part * (amplitude[at + 1] - amplitude[at])
+    assert found == pytest.approx(sorted(passed), rel=5e-3)
+    assert [one["stable"] for one in curve["at_level_1"]] == [True, False, True]
+
+
+def test_motions_at_the_level_1_are_a_table(fcm):
+    said = fcm("respond", "yang1998-jump", "--level", "0:4", "--at", 1.2).out
+    title, _, *rows = said.partition("motions at the level 1")[2].splitlines()
+    assert title == ", ! unstable:" and len(rows) == 3
+    assert [row.split()[1].endswith("!") for row in rows] == [False, True, False]
+    assert "motions at" not in fcm("respond", "yang1998-jump", "--level", "0:0.5", "--at", 1.2).out
