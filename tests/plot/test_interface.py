@@ -161,7 +161,13 @@ def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
     path = file[0]
     done = fcm("plot", "contacts", path, "--at", "1.2", "-o", path.with_suffix(".svg"))
     assert done.code == 0
-    assert "contact" in done.err and "wrote" in done.err and path.with_suffix(".svg").stat().st_size > 5000
+    assert "contact" in done.err and "wrote" in done.err
+    (point,) = points_of(read_interface(path), (1.2,))
+    states = re.search(r"; (\d+) contacts? \((.*)\)", done.err)
+    counts = [int(part.partition(": ")[2]) for part in states[2].split(", ")]
+    assert sum(counts) == int(states[1]) == point.state.size
+    assert (f"sticks: {np.count_nonzero(point.state == 0)}" in states[2]) == bool((point.state == 0).any())
+    assert path.with_suffix(".svg").stat().st_size > 5000
     many = [word for _ in range(7) for word in ("--at", "1.2")]
     assert fcm("plot", "contacts", path, *many).code == 2
 
@@ -193,7 +199,7 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     done = fcm("plot", "contacts", output, "--curve", "0", "--curve", "2", "-o", tmp_path / "a.svg")
     swept = [re.search(rf"curve {k} \(.*= ([0-9.]+)\); 2", done.err) for k in (0, 2)]
     assert done.code == 0 and [one and one[1] for one in swept] == ["0.01", "20"]
-    assert "(amplitude = 0.01); 2 contacts: none takes energy" in done.err and "$" not in done.err
+    assert "(amplitude = 0.01); 2 contacts (sticks: 2): none takes energy" in done.err and "$" not in done.err
     few = [word for k in (0, 1, 2) for word in ("--curve", k)]
     many = [word for at in ("1.2", "1.3", "1.4") for word in ("--at", at)]
     assert "9 points by --at and --curve are too many" in fcm("plot", "contacts", output, *few, *many).err

@@ -53,6 +53,7 @@ def contacts(
     cycle, and the greatest normal force. Those that take most energy are listed.
     """
     from fcm.plot.interface import (
+        counted_states,
         draw_interface,
         greatest_takers,
         place_of,
@@ -90,7 +91,8 @@ def contacts(
         swept = ", ".join(f"{key} = {value:.6g}" for key, value in point.swept.items())
         of = f", curve {curve}{f' ({swept})' if swept else ''}" if len(read.frequency) > 1 else ""
         nothing = "" if takers else ": none takes energy"
-        messages.info(f"at {place_of(read, point)}{of}; {counted(len(read.contacts), 'contact')}{nothing}")
+        states = f"{counted(len(read.contacts), 'contact')} ({counted_states(point)})"
+        messages.info(f"at {place_of(read, point)}{of}; {states}{nothing}")
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 

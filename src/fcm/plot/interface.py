@@ -227,6 +227,14 @@ def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> li
     ]
 
 
+def counted_states(point: InterfacePoint) -> str:
+    """How many contacts are in each state, as ``sticks: 8, slips: 2``."""
+    count = np.bincount(point.state, minlength=len(STATES_OF_CONTACTS))
+    return ", ".join(
+        f"{state[0]}: {number}" for state, number in zip(STATES_OF_CONTACTS, count, strict=True) if number
+    )
+
+
 @apart
 def read_places(path: Path, contacts: Sequence[str]) -> FloatArray:
     """Coordinates (contact, 2) of a text file with a line for each contact: its name, then two numbers,
