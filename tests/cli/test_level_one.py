@@ -24,7 +24,9 @@ def test_motions_at_the_level_1_are_where_the_response_passes_the_frequency(fcm)
 
 def test_motions_at_the_level_1_are_a_table(fcm):
     said = fcm("respond", "yang1998-jump", "--level", "0:4", "--at", 1.2).out
-    title, _, *rows = said.partition("motions at the level 1")[2].splitlines()
+    title, _, *rows = said.partition("motions that are passed at the level 1")[2].splitlines()
     assert title == ", ! unstable:" and len(rows) == 3
     assert [row.split()[1].endswith("!") for row in rows] == [False, True, False]
-    assert "motions at" not in fcm("respond", "yang1998-jump", "--level", "0:0.5", "--at", 1.2).out
+    assert (
+        "motions that are passed" not in fcm("respond", "yang1998-jump", "--level", "0:0.5", "--at", 1.2).out
+    )

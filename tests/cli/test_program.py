@@ -130,9 +130,9 @@ def test_a_defect_names_kernels_older_than_their_sources(tmp_path):
     for name, time in (("new.py", 1), ("new.abi3.so", 2), ("old.py", 3), ("old.abi3.so", 2)):
         (tmp_path / name).touch()
         os.utime(tmp_path / name, (time, time))
-    assert "old.abi3.so is older than its source: make kernels" in outdated_kernels(str(tmp_path))
+    assert "old.abi3.so is older than its source: make kernels" in outdated_kernels(tmp_path)
     os.utime(tmp_path / "old.abi3.so", (4, 4))
-    assert outdated_kernels(str(tmp_path)) == ""
+    assert outdated_kernels(tmp_path) == ""
 
 
 def test_a_defect_shows_its_place_on_request(capsys, monkeypatch):

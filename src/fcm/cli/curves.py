@@ -103,21 +103,23 @@ def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit
 
 
 def _at_level_1(curves: Sequence[Curve], names: list[str], dofs: list[str], length: str) -> str:
-    """The motions of curves of levels at the level 1; empty if there is none."""
-    marks = {True: "", False: UNSTABLE, None: UNKNOWN}
-    said = {False: f", {UNSTABLE} unstable", None: f", {UNKNOWN} of unknown stability"}
-    rows = []
-    for curve in curves:
-        for one in curve.get("at_level_1", ()):
-            mark, errors = marks[one["stable"]], one["error"]
-            cells = [[number(one["amplitude"][dof]) + mark, short(errors[dof])] for dof in dofs]
-            rows.append((swept(curve), cells, list[str]()))
-    if not rows:
+    """The motions at the level 1 that curves of levels pass; empty if there is none."""
+    found = [(swept(curve), one) for curve in curves for one in curve.get("at_level_1", ())]
+    if not found:
         return ""
+    marks = {True: "", False: UNSTABLE, None: UNKNOWN}
+    rows = []
+    for left, one in found:
+        mark = marks[one["stable"]]
+        cells = [[number(one["amplitude"][dof]) + mark, short(one["error"][dof])] for dof in dofs]
+        rows.append((left, cells, list[str]()))
+    stable = {one["stable"] for _, one in found}
+    meanings = ((False, f", {UNSTABLE} unstable"), (None, f", {UNKNOWN} of unknown stability"))
+    title = "motions that are passed at the level 1" + "".join(
+        text for one, text in meanings if one in stable
+    )
     shown = [_with_unit(dof, length) for dof in dofs]
-    table = DofTable(names, shown, ["{}", "error"], [], rows).text(last=0)
-    stable = {one["stable"] for curve in curves for one in curve.get("at_level_1", ())}
-    return f"motions at the level 1{''.join(said[one] for one in said if one in stable)}:\n{table}"
+    return f"{title}:\n" + DofTable(names, shown, ["{}", "error"], [], rows).text(last=0)
 
 
 def _peak_heads(unit: str) -> list[str]:

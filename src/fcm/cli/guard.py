@@ -9,7 +9,7 @@ import traceback
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
@@ -17,6 +17,9 @@ from fcm import signals
 from fcm.cli import terminal
 from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 DEFECT = 1  # of fcm
 WRONG_INPUT = 2
@@ -104,11 +107,11 @@ def _exit_code_and_line(error: BaseException) -> tuple[int, str]:
     return DEFECT, f"defect: {type(error).__name__}: {error} (-v shows where){outdated_kernels()}"
 
 
-def outdated_kernels(package: str = "") -> str:
-    """What to try where a compiled kernel of a package, this one, is older than its source; else nothing."""
+def outdated_kernels(package: Path | None = None) -> str:
+    """What to try where a compiled kernel of a package, by default fcm, is older than its source."""
     from pathlib import Path
 
-    for kernel in sorted((Path(package) if package else Path(__file__).parents[1]).rglob("*.abi3.*")):
+    for kernel in sorted((package or Path(__file__).parents[1]).rglob("*.abi3.*")):
         sources = [kernel.with_name(kernel.name.split(".")[0] + end) for end in (".py", ".pxd")]
         if any(one.exists() and one.stat().st_mtime > kernel.stat().st_mtime for one in sources):
             return f". {kernel.name} is older than its source: make kernels compiles it again"
