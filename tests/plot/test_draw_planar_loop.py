@@ -76,6 +76,7 @@ def test_both_hysteresis_loops_and_the_names_of_the_directions(figure):
         assert np.nanmin(shown) == pytest.approx(path.f[:, i].min())
     assert plane.get_xlabel() == "Displacement $u_x$ = ax - bx (mm)"
     assert plane.get_ylabel() == r"Displacement $u_y$ = ay \$ by (mm)"
+    assert [above.get_xlabel(), below.get_xlabel()] == [plane.get_xlabel(), plane.get_ylabel()]
     assert above.get_ylabel() == "$f_x$ (N)"
 
 

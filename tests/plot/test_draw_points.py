@@ -53,7 +53,7 @@ def test_names_stay_within_the_frame_where_legends_above_and_below_take_room():
     )
     figure.draw_without_rendering()
     axes, frame = figure.axes[0], figure.axes[0].get_window_extent()
-    assert [len(legend.get_texts()) for legend in figure.legends] == [3, 3] and len(axes.texts) == 2
+    assert [len(legend.get_texts()) for legend in figure.legends] == [3, 4] and len(axes.texts) == 2
     assert all(text.get_window_extent().y1 < frame.y1 for text in axes.texts)
 
 

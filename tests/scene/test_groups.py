@@ -266,7 +266,7 @@ def test_one_pair_alone_is_swept_by_its_name():
         ({"nodes": [[40, 41, 50]]}, "nodes[0]: must be two nodes"),
         (
             {"nodes": [40, "41"]},
-            'nodes: may be one pair, or two nodes that touch the ground: write [[40, "41"]]',
+            'nodes: may be pairs, or nodes that touch the ground: write [[40, "41"]] or [[40], ["41"]]',
         ),
         ({"nodes": [[40, 40]]}, "nodes[0]: is the same node twice, 40"),
         ({"nodes": [[40, ""]]}, "nodes[0]: must be two nodes, or one that touches the ground"),

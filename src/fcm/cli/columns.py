@@ -86,6 +86,16 @@ class DofTable(Frozen):
         return aligned([[*self.left, "dof", *heads, *self.right], *lines], last)
 
 
+def greatest_of(sizes: Sequence[float], curves: int) -> list[int]:
+    """Places, in order, of the greatest of a curve's rows: as many as a table of so many curves has room for.
+
+    >>> greatest_of([3.0, 1.0, 2.0, 5.0], curves=30), len(greatest_of(range(40), curves=1))
+    ([0, 2, 3], 12)
+    """
+    room = max(SENTENCES.of_each_curve, SENTENCES.lines // max(curves, 1))
+    return sorted(sorted(range(len(sizes)), key=lambda i: -sizes[i])[:room])
+
+
 ABSENT = "\0"  # a cell that there is none of, though others of its column have one
 
 

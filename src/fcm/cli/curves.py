@@ -16,6 +16,7 @@ from fcm.cli.columns import (
     UNSTABLE,
     DofTable,
     aligned,
+    greatest_of,
     not_complete,
     number,
     ranges,
@@ -88,18 +89,23 @@ def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit
 
     Columns are those of the highest peaks.
     """
-    rows = []
-    for curve in curves:
-        every = [curve.get("peaks", {}).get(dof, []) for dof in dofs]
-        for k in range(max(map(len, every), default=0)):
-            cells = [_cells_of_peak(peaks[k]) if k < len(peaks) else ["", "", ""] for peaks in every]
+    rows, lower = [], 0
+    several = [curve for curve in curves if any(curve.get("peaks", {}).get(dof) for dof in dofs)]
+    for curve in several:
+        every = [curve["peaks"].get(dof, []) for dof in dofs]
+        kept_of = [greatest_of([one["amplitude"] or 0.0 for one in peaks], len(several)) for peaks in every]
+        shown_of = [[peaks[k] for k in kept] for peaks, kept in zip(every, kept_of, strict=True)]
+        lower += max(len(peaks) - len(kept) for peaks, kept in zip(every, kept_of, strict=True))
+        for k in range(max(map(len, shown_of), default=0)):
+            cells = [_cells_of_peak(peaks[k]) if k < len(peaks) else ["", "", ""] for peaks in shown_of]
             rows.append((swept(curve), cells, list[str]()))
     if not rows:
         return ""
     kept = [d for d in range(len(dofs)) if any(any(cells[d]) for _, cells, _ in rows)]
     rows = [(left, [cells[d] for d in kept], right) for left, cells, right in rows]
     shown = [_with_unit(dofs[d], length) for d in kept]
-    return f"{_EVERY}\n" + DofTable(names, shown, _peak_heads(unit), [], rows).text(last=0)
+    left_out = f"\nand {lower} lower peak{'s' * (lower > 1)}: --json has all" if lower else ""
+    return f"{_EVERY}\n{DofTable(names, shown, _peak_heads(unit), [], rows).text(last=0)}{left_out}"
 
 
 def _at_level_1(curves: Sequence[Curve], names: list[str], dofs: list[str], length: str) -> str:

@@ -5,10 +5,10 @@ It may where stability is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import DofTable, number, short, swept
+from fcm.cli.columns import DofTable, greatest_of, number, short, swept
 from fcm.cli.limits import SENTENCES
 
 _LOST = "\n- the curve has no stable part there to land on"
@@ -24,20 +24,28 @@ def jump_table(
     resolution: within which, in the unit, nothing is seen.
     """
 
-    def rows(curve: Mapping[str, Any]) -> list[Row]:
-        return [
-            (
-                one["sweep"],
-                one["frequency"],
-                [number(one["frequency"])],
-                [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs],
-            )
-            for one in curve.get("jumps", ())
-            if is_seen(one, curve, dofs, resolution)
-        ]
-
-    found = _rows(curves, rows)
-    small = sum(len(curve.get("jumps", ())) for curve in curves) - len(found)
+    seen = [
+        [one for one in curve.get("jumps", ()) if is_seen(one, curve, dofs, resolution)] for curve in curves
+    ]
+    count = sum(map(bool, seen))
+    shown = [[jumps[k] for k in greatest_of([_step(one, dofs) for one in jumps], count)] for jumps in seen]
+    found = _rows(
+        curves,
+        [
+            [
+                (
+                    one["sweep"],
+                    one["frequency"],
+                    [number(one["frequency"])],
+                    [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs],
+                )
+                for one in jumps
+            ]
+            for jumps in shown
+        ],
+    )
+    small = sum(len(curve.get("jumps", ())) for curve in curves) - sum(map(len, seen))
+    others = sum(map(len, seen)) - len(found)
     left_out = ""
     if small:
         left_out = f"{small} jump{'s' * (small > 1)} too small to be seen: by less than "
@@ -49,7 +57,8 @@ def jump_table(
         return left_out
     lost = any("-" in cells for _, each, _ in found for cells in each)
     table = DofTable([*names, f"jump at {unit}"], dofs, ["{} before", "{} after"], ["sweep"], found)
-    more = f"\nand {left_out}" if left_out else ""
+    more = f"\nand {others} more jump{'s' * (others > 1)}, by less: --json has all" if others else ""
+    more += f"\nand {left_out}" if left_out else ""
     return table.text(last=1) + (_LOST if lost else "") + more
 
 
@@ -83,6 +92,14 @@ def _beyond_gap(
                     found: Mapping[str, float] = other["before"]
                     return found
     return None
+
+
+def _step(jump: Mapping[str, Any], dofs: Sequence[str]) -> float:
+    """The greatest change of an amplitude; infinite where the curve has no stable part to land on."""
+    ends = [(jump["before"].get(dof), jump["after"].get(dof)) for dof in dofs]
+    if any(after is None for _, after in ends):
+        return float("inf")
+    return max(abs(float(after) - float(before or 0.0)) for before, after in ends)
 
 
 def _change(before: Mapping[str, Any], after: Mapping[str, Any], dof: str) -> float:
@@ -123,29 +140,38 @@ def unknown_stability_table(
     """
     every = [one for curve in curves for one in curve.get("stability_untold", ())]
     narrow = sum(map(_is_narrow, every))
-
-    def rows(curve: Mapping[str, Any]) -> list[Row]:
-        return [
-            (
-                one["sweep"],
-                one["from"],
-                [number(one["from"]), number(one["to"])],
-                [[number(one["before"].get(dof))] for dof in dofs],
-            )
-            for one in curve.get("stability_untold", ())
-            if not _is_narrow(one)
-        ]
-
+    wide = [[one for one in curve.get("stability_untold", ()) if not _is_narrow(one)] for curve in curves]
+    count = sum(map(bool, wide))
+    shown = [
+        [windows[k] for k in greatest_of([abs(one["to"] - one["from"]) for one in windows], count)]
+        for windows in wide
+    ]
     windows = (
         f"window{'s' * (narrow > 1)} narrower than {100.0 * SENTENCES.narrow_window:g} % of the frequency"
     )
-    cells = _rows(curves, rows)
+    cells = _rows(
+        curves,
+        [
+            [
+                (
+                    one["sweep"],
+                    one["from"],
+                    [number(one["from"]), number(one["to"])],
+                    [[number(one["before"].get(dof))] for dof in dofs],
+                )
+                for one in of_curve
+            ]
+            for of_curve in shown
+        ],
+    )
     if not cells:
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
         return said if narrow else ""
     table = DofTable([*names, f"from {unit}", "to"], dofs, ["{} there"], ["sweep"], cells)
     said = "between these frequencies stability is unknown, and a sweep may jump; more harmonics may show it:"
-    more = f"\nand in {narrow} more {windows}" if narrow else ""
+    others = sum(map(len, wide)) - len(cells)
+    more = f"\nand between {others} more, which are nearer: --json has all" if others else ""
+    more += f"\nand in {narrow} more {windows}" if narrow else ""
     return f"{said}\n{table.text(last=1)}{more}"
 
 
@@ -154,12 +180,12 @@ def _is_narrow(window: Mapping[str, Any]) -> bool:
 
 
 def _rows(
-    curves: Sequence[Mapping[str, Any]], rows: Callable[[Mapping[str, Any]], list[Row]]
+    curves: Sequence[Mapping[str, Any]], rows_of: Sequence[list[Row]]
 ) -> list[tuple[list[str], list[list[str]], list[str]]]:
     """The rows of all curves, of each as first the upward, then the downward sweep meets them."""
     found = []
-    for curve in curves:
-        ups = sorted((one for one in rows(curve) if one[0] == "up"), key=lambda one: one[1])
-        downs = sorted((one for one in rows(curve) if one[0] != "up"), key=lambda one: -one[1])
+    for curve, rows in zip(curves, rows_of, strict=True):
+        ups = sorted((one for one in rows if one[0] == "up"), key=lambda one: one[1])
+        downs = sorted((one for one in rows if one[0] != "up"), key=lambda one: -one[1])
         found += [([*swept(curve), *where], each, [sweep]) for sweep, _, where, each in ups + downs]
     return found

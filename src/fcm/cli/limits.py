@@ -16,6 +16,9 @@ class RemarkOptions(Frozen):
     resolution: float = 1e-3  # of the range: what happens within less is not seen in a sweep or a picture
     small_jump: float = 1e-2  # of the amplitude: a jump of less is not seen either
     narrow_window: float = 1e-3  # of the frequency: narrower ones of unknown stability have no line each
+    tried: int = 2  # values on either side of an optimum that was found by trials
+    lines: int = 12  # of a table of peaks, jumps or windows, for all curves; of each curve at least
+    of_each_curve: int = 3
     rows: int = 10  # of the table of an interface: contacts that take most
     flexible: int = 5  # modes that stand for flexibility, in a list of modes
     directions: int = 6  # at most, whose participation stands beside each other on a line

@@ -13,6 +13,10 @@ from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import scene_argument
 
+_FRICTION = (
+    "the damping ratio that friction can add to each resonance, an estimate while contacts stay closed:"
+)
+
 
 @click.command()
 @scene_argument
@@ -25,6 +29,10 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     The participation is the share of a mode in the static flexibility along a contact or a force. Modes that
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
+
+    A second table has the resonances, with all contacts open and with all stuck. It has the greatest
+    damping ratio that friction can add to each, estimated by one harmonic. The contacts are closed, at
+    their best preload, with the same share of slip in all. "most in" is the contact with the greatest part.
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
     stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand
@@ -55,8 +63,30 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
 
 def as_table(found: dict[str, Any]) -> str:
-    """One line for each mode, with as many directions as it has room for."""
-    return _lines(found, _shown(found))
+    """One line for each mode, with as many directions as it has room for; one for each resonance."""
+    return "\n\n".join(filter(None, [_lines(found, _shown(found)), _resonances(found)]))
+
+
+def _resonances(found: dict[str, Any]) -> str:
+    """The damping that friction can add to each of the first resonances; empty without friction."""
+    every = found.get("resonances", [])
+    if not any(one["friction_damping"] for one in every):
+        return ""
+    unit = found["frequency_unit"]
+    rows = [["resonance", f"open at {unit}", f"stuck at {unit}", "friction adds up to", "most in", ""]]
+    for number_of, one in enumerate(every, 1):
+        name, share = max(one["by_contact"].items(), key=lambda item: item[1])
+        most = [name, f"{100.0 * share:.0f} %"] if one["friction_damping"] else ["-", ""]
+        rows.append(
+            [
+                str(number_of),
+                number(one["open"]),
+                number(one["stuck"]),
+                f"{one['friction_damping']:.2g}",
+                *most,
+            ]
+        )
+    return f"{_FRICTION}\n{aligned(rows, left=2)}"
 
 
 def _lines(found: dict[str, Any], directions: list[str]) -> str:

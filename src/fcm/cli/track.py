@@ -180,7 +180,7 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
         f"({_error(one)}{_ranges(one)})"
     )
     where = f"{least} with {where}{kind}{_flat(one)}{_higher(one)}"
-    return f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}"
+    return f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}{_tried(one)}"
 
 
 def _nearly(one: Mapping[str, Any]) -> str:
@@ -193,6 +193,17 @@ def _nearly(one: Mapping[str, Any]) -> str:
     )
     key = plain(next(iter(one["values"])))
     return f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
+
+
+def _tried(one: Mapping[str, Any]) -> str:
+    """Of an optimum by trials, the peaks at the values next to it: how near a higher one may begin."""
+    if not one["tried"]:
+        return ""
+    (best,) = one["values"].values()
+    below = [pair for pair in one["tried"] if pair[0] < best][-SENTENCES.tried :]
+    above = [pair for pair in one["tried"] if pair[0] > best][: SENTENCES.tried]
+    peaks = ", ".join(f"{value:.4g} with {number:.5g}" for number, value in below + above)
+    return f"\ntried beside it: {peaks}. Between two of these the peak is unknown"
 
 
 def _end(one: Mapping[str, Any]) -> str:

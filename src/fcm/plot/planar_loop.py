@@ -81,8 +81,10 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
         grid = figure.add_gridspec(2, 2)
         plane = figure.add_subplot(grid[0, 0])
         _draw_plane(plane, drawn, path)
-        plane.set_xlabel(_of_direction("$u_x$", drawn.directions[0], length))
-        plane.set_ylabel(_of_direction("$u_y$", drawn.directions[1], length))
+        along = [
+            _of_direction(f"$u_{k}$", name, length) for k, name in zip("xy", drawn.directions, strict=True)
+        ]
+        plane.set(xlabel=along[0], ylabel=along[1])
         loops = [figure.add_subplot(grid[i, 1]) for i in range(2)]
         for i, axes in enumerate(loops):
             _draw_direction(axes, path, i)
@@ -90,9 +92,8 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
             if not motion.any():
                 axes.set(xlim=other.get_xlim(), ylim=other.get_ylim())
                 axes.text(0.5, 0.75, "no motion", transform=axes.transAxes, ha="center", fontsize=7)
-        for axes, name in zip(loops, "xy", strict=True):
-            axes.set_xlabel(f"$u_{name}${length}")
-            axes.set_ylabel(f"$f_{name}${force}")
+        for axes, name, displacement in zip(loops, "xy", along, strict=True):
+            axes.set(xlabel=displacement, ylabel=f"$f_{name}${force}")
         limits = figure.add_subplot(grid[1, 0])
         _draw_forces(limits, drawn.loop, path)
         limits.set_xlabel(f"$f_x${force}")

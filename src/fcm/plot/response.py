@@ -43,6 +43,7 @@ _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
 # what is said of both kinds of faded stretches
 _FADED = f"may err by more than {100 * LAYOUT.doubtful_error:g} %, or by an unknown amount"
+_STABLE = "stable"  # what is a solid line, where others are not
 _NOT_STABLE = "unstable"  # what is dashed
 _UNKNOWN = "stability unknown"  # what is dotted
 _HOLLOW = "a point, unstable or of unknown stability"  # what is a hollow dot
@@ -184,6 +185,9 @@ def _notes(axes: Axes, curves: list[DrawnCurve], column: int, colour: str, width
         notes[_UNKNOWN] = Line2D([], [], color=colour, linewidth=width, linestyle=DOTS)
     if any((_alone(curve, column) & _not_stable(curve)).any() for curve in curves):
         notes[_HOLLOW] = Line2D([], [], color=colour, linestyle="none", marker=".", markerfacecolor="none")
+    solid = any(_seen(axes, curve, column, ~_not_stable(curve)) for curve in curves)
+    if solid and notes.keys() & {_NOT_STABLE, _UNKNOWN}:
+        return {_STABLE: Line2D([], [], color=colour, linewidth=width), **notes}
     return notes
 
 

@@ -259,6 +259,7 @@ def _optimal(
         active=tuple(sorted(active, key=lambda pair: pair[1])),
         kind=best.kind,
         between=best.between,
+        tried=best.tried,
         flat={task.numbers[k].key: (low, high) for k, low, high in best.flat},
         harmonics=harmonics,
     )

@@ -119,6 +119,7 @@ class Optimal(Frozen):
     harmonics: tuple[int, ...]
     error: float = np.nan  # of the value, estimated, relative
     between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
+    tried: tuple[tuple[float, float], ...] = ()  # values, and the greatest peak there, likewise
     stable: tuple[float, ...] = ()  # of each of the active, as of a `Peak`
     residual: tuple[float, ...] = ()  # likewise
     fewer: Optimal | None = None  # what was found with fewer harmonics before
@@ -156,6 +157,7 @@ class Optimal(Frozen):
             "harmonics": list(self.harmonics),
             "error": self.error,
             "between": None if self.between is None else list(self.between),
+            "tried": [list(pair) for pair in self.tried],
             "flat": {key: list(ends) for key, ends in self.flat.items()},
             "nearly_least": None if self.nearly is None else asdict(self.nearly),
             "end_error": self.end_error,

@@ -10,6 +10,7 @@ from fcm.model.question import Question
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.errors import counted
+from fcm.scene.friction_damping import friction_damping
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 
@@ -32,6 +33,9 @@ FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out
 
 def listing(scene: Scene) -> dict[str, Any]:
     """Modes with frequency, damping, mass and participation; how they are normalised; notes and warnings.
+
+    Beside them the resonances with open and with stuck contacts, and how much friction can damp them; of a
+    ring of sectors they are left to `fcm plot campbell`.
 
     The participation of a mode in a direction (of a contact or a force) is its share of the static
     flexibility along it, phi^2 / (m omega^2) by the sum over all modes; None where rigid-body modes make
@@ -60,6 +64,7 @@ def listing(scene: Scene) -> dict[str, Any]:
         "title": scene.title,
         "frequency_unit": scene.frequency_unit,
         "modes": modes,
+        "resonances": friction_damping(scene),
         "normalisation": _normalisation(scene),
         "read": _read(scene, modal.frequency[:own]),
         "notes": list(scene.notes),

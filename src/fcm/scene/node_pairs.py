@@ -89,12 +89,13 @@ def _listed(section: Section, value: Any) -> list[Pair]:
         right = "a list of pairs such as [[40, 41], [50, 51]], a file, or { sets = , mesh = , tolerance = }"
         section.wrong("nodes", f"must be {right}, is {kind(value)}")
         return []
-    if len(value) == 2 and not any(isinstance(item, list | tuple) for item in value):
-        one, other = (described(item).removeprefix("the string ") for item in value)
+    if len(value) > 1 and not any(isinstance(item, list | tuple) for item in value):
+        one, other = (described(item).removeprefix("the string ") for item in value[:2])
+        more = ", ..." if len(value) > 2 else ""
         section.wrong(
             "nodes",
-            f"may be one pair, or two nodes that touch the ground: write [[{one}, {other}]], "
-            f"or [[{one}], [{other}]]",
+            f"may be pairs, or nodes that touch the ground: write [[{one}, {other}]{more}] or "
+            f"[[{one}], [{other}]{more}]",
         )
         return []
     pairs = [_pair(section, index, item) for index, item in enumerate(value)]

@@ -28,9 +28,13 @@ class MessageOptions(Frozen):
     names_compared: int = 2000  # names that a misspelt one is compared with
     entries: int = 3  # of a matrix that a message names
     longest_path: int = 400  # characters of a path shown in a message
+    known_keys: int = 8  # of a table, which are all said beside one that is not known
     faults: int = 5  # of a file beside a scene that are said one by one
     groups: int = 3  # of contacts in one sentence
     stuck_modes: int = 3  # whose frequencies are said, while all contacts stick
+    damped_modes: int = 10  # of which it is said how much friction can damp them
+    slip_angles: int = 48  # angles theta at which that is computed, [rad]
+    least_slip_angle: float = 1e-2  # the least of them [rad]
     damping_left_out: float = 1e-4  # relative change of the response by damping that is left out
     # [byte] that directions of contacts take in a large structure: from here on it is said
     memory: float = 2e9
@@ -40,7 +44,7 @@ class MessageOptions(Frozen):
     range_above: float = 2.0
     # times the structure's flexibility there: stiffnesses of contacts beyond these are asked about
     stiff_contact: float = 1e6
-    soft_contact: float = 1e-4
+    soft_contact: float = 5e-3  # friction then adds no damping ratio beyond about 1e-3
     # of the range, logarithmic: where a slip of units would put a mode it is so far from the ends
     range_margin: float = 0.05
     far_below: float = 10.0  # times: a first resonance so far below the range is asked about

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.model.scene import FloatArray
-from fcm.scene.errors import Mistakes, bare, choices, kind, quoted, shown
+from fcm.scene.errors import Mistakes, bare, choices, kind, nearest, quoted, shown
 from fcm.scene.number_text import fault_of_number, number_in
+from fcm.scene.options import MESSAGES
 from fcm.scene.rules import ANY, Rule, as_float
 
 if TYPE_CHECKING:
@@ -44,10 +45,14 @@ class Section:
         self.mistakes.add(self.at(key) if key else self.path, what, word, among)
 
     def only(self, *known: str) -> None:
-        """Note every key that is not known."""
+        """Note every key that is not known, with the one that is meant, or, of few, all that there are."""
         for key in self.data:
-            if key not in known:
-                self.wrong(bare(key), "unknown key", SYNONYMS.get(str(key), str(key)), known)
+            if key in known:
+                continue
+            word = SYNONYMS.get(str(key), str(key))
+            few = 0 < len(known) <= MESSAGES.known_keys and not nearest(word, known)
+            there = f"; known here: {', '.join(map(quoted, known))}" if few else ""
+            self.wrong(bare(key), f"unknown key{there}", word, known)
 
     def missing(self, key: str, right: str) -> bool:
         """Whether the key is missing, which is a mistake."""

@@ -213,6 +213,9 @@ def _damping(section: Section, files: Files, rows: int | None, dofs: Names | Non
 
 
 def _proportional(table: Section) -> dict[str, Any]:
+    if set(table.data) == {"ratio"}:
+        table.wrong("ratio", f"unknown key; a ratio of all modes is damping = {shown(table.data['ratio'])}")
+        return {}
     table.only(*names("structure.damping"))
     if "loss_factor" in table.data:
         if len(table.data) > 1:

@@ -51,6 +51,7 @@ class EnvelopeMinimum(Frozen):
     between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
     flat: tuple[tuple[int, float, float], ...] = ()  # a number's index, and between which of its values, here
     # of s, the greatest does not depend on it
+    tried: tuple[tuple[float, float], ...] = ()  # s, rising, and the greatest there, if found by trials
 
 
 class MonotonePiece:

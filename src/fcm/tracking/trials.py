@@ -33,7 +33,12 @@ def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
     if (flat := _flat_about(search, s)) is not None:
         return EnvelopeMinimum(s, top.value, (top,), "flat", flat=((0, *flat),))
     kind = "bound" if s in search.span else "trials"
-    return EnvelopeMinimum(s, top.value, (top,), kind, _neighbours(search, s))
+    tried = tuple(
+        (one, search.visited_values[one].value)
+        for one in sorted(search.visited_values)
+        if search.visited_values[one].value
+    )
+    return EnvelopeMinimum(s, top.value, (top,), kind, _neighbours(search, s), tried=tried)
 
 
 def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | None:

@@ -1,0 +1,84 @@
+r"""How much friction can damp each resonance: an estimate by one harmonic, of contacts that stay closed.
+
+A Jenkins element in harmonic motion of amplitude X is a stiffness and a damping force in phase with the
+velocity, with cos(theta) = 1 - 2 mu n_0 / (k_u X):
+
+.. math:: k_r = k_u \frac{\theta - \sin\theta\cos\theta}{\pi}, \qquad k_i = k_u \frac{\sin^2\theta}{\pi}.
+
+A mode phi of mass 1 and frequency omega, of the structure with its contacts at k_v and k_r, has the ratio
+
+.. math:: \zeta = \frac{1}{2 \omega^2} \sum_c k_i (\phi^T t_c)^2.
+
+Its maximum over theta, the same for all contacts, is what friction can add. For one degree of freedom it is
+the greatest damping ratio of the nonlinear mode (Krack 2015) of one harmonic.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fcm.model.scene import Scene
+from fcm.scene.options import MESSAGES, TOLERANCES
+from fcm.units import UNIT
+
+
+def friction_damping(scene: Scene) -> list[dict[str, Any]]:
+    """Of the first elastic modes: frequencies with the contacts open and stuck, and the damping of friction.
+
+    `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
+    in it. Empty without contacts. Modes are counted among those that are elastic while the contacts stick.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> one = friction_damping(fcm.load_scene("yang1998-n5"))[0]
+    >>> round(one["open"], 4), round(one["stuck"], 4), round(one["friction_damping"], 3)
+    (1.0, 1.4137, 0.046)
+    """
+    if not scene.contacts:
+        return []
+    import scipy.linalg  # which most runs do without
+
+    modal, contacts = scene.modal, scene.contacts
+    scale = np.sqrt(modal.mass)[:, None]
+    sliding = [contact.directions[:-1] for contact in contacts]
+    owner = np.repeat(np.arange(len(contacts)), [len(one) for one in sliding])
+    along = modal.shapes @ np.array([one for many in sliding for one in many]).T / scale
+    k_u = np.array([contacts[i].k_u for i in owner])
+    lossy = k_u * np.array([contacts[i].mu > 0.0 for i in owner])
+    normal = modal.shapes @ np.array([contact.normal for contact in contacts]).T / scale
+    k_v = np.array([contact.k_v for contact in contacts])
+
+    held = np.diag(modal.frequency**2) + (normal * k_v) @ normal.T
+    added = (along * k_u) @ along.T
+    opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
+    floating = int((modal.frequency == 0.0).sum())
+    last = min(opened.size, floating + MESSAGES.damped_modes) - 1
+    squares = scipy.linalg.eigh(held + added, subset_by_index=[0, last], eigvals_only=True)
+    stuck = np.sqrt(np.maximum(squares, 0.0))
+    elastic = squares > TOLERANCES.undamped * float(np.abs(held + added).sum(axis=1).max(initial=0.0))
+
+    best = np.zeros(last + 1)
+    ratio = np.zeros((last + 1, len(contacts)))  # of each contact, at the best theta of each mode
+    for theta in np.geomspace(MESSAGES.least_slip_angle, np.pi, MESSAGES.slip_angles, endpoint=False):
+        k_r, k_i = (theta - np.sin(theta) * np.cos(theta)) / np.pi, np.sin(theta) ** 2 / np.pi
+        squares, shapes = scipy.linalg.eigh(held + k_r * added, subset_by_index=[0, last])
+        for mode in np.flatnonzero(elastic & (squares > 0.0)).tolist():
+            loss = k_i * lossy * (along.T @ shapes[:, mode]) ** 2 / (2.0 * squares[mode])
+            if loss.sum() > best[mode]:
+                best[mode] = loss.sum()
+                ratio[mode] = np.bincount(owner, loss, len(contacts))
+    return [
+        {
+            "open": float(opened[mode] / UNIT[scene.frequency_unit]),
+            "stuck": float(stuck[mode] / UNIT[scene.frequency_unit]),
+            "friction_damping": float(best[mode]),
+            "by_contact": {
+                contact.name: float(one / best[mode]) if best[mode] else 0.0
+                for contact, one in zip(contacts, ratio[mode], strict=True)
+            },
+        }
+        for mode in np.flatnonzero(elastic).tolist()[: MESSAGES.damped_modes]
+    ]

@@ -1,0 +1,77 @@
+"""How much friction can damp a resonance, estimated before anything is solved."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+import fcm
+from fcm.response.mode import trace_modes
+from fcm.scene.friction_damping import friction_damping
+
+ONE = """
+[modal]
+dofs = ["u", "v"]
+mass = [2.0, 1.0]
+frequency = [1.0, 2.0]
+damping = [0.0, 0.01]
+shapes = [[1.0, 0.0], [0.0, 1.0]]
+[[contact]]
+name = "damper"
+tangential = "u"
+normal = "v"
+mu = 0.3
+k_u = 1.4
+k_v = 1
+n_0 = 1
+[[force]]
+dof = "u"
+amplitude = 0.1
+[response]
+frequency = [0.5, 2]
+harmonics = 1
+"""
+
+
+def scene(tmp_path, text):
+    (tmp_path / "scene.toml").write_text(text)
+    return fcm.load_scene(tmp_path / "scene.toml")
+
+
+def greatest(stiffness):
+    """Of m = 1, k = 1 and a Jenkins element of k_u = stiffness: the damping ratio of its loss for a cycle."""
+
+    def ratio(amplitude):  # in multiples of the displacement at which it slips
+        loss = 4.0 * stiffness * (amplitude - 1.0)
+        cosine = 1.0 - 2.0 / amplitude
+        theta = np.arccos(cosine)
+        real = stiffness * (theta - np.sin(theta) * cosine) / np.pi
+        return loss / (2.0 * np.pi * amplitude**2 * (1.0 + real))
+
+    return -minimize_scalar(lambda x: -ratio(x), bounds=(1.0, 60.0), method="bounded").fun
+
+
+def test_of_one_degree_of_freedom_it_is_the_loss_of_a_cycle_at_the_best_amplitude(tmp_path):
+    first, second = friction_damping(scene(tmp_path, ONE))
+    assert first["friction_damping"] == pytest.approx(greatest(0.7), rel=5e-3)
+    assert (first["open"], first["stuck"]) == (1.0, pytest.approx(np.sqrt(1.7)))
+    assert second["friction_damping"] == 0.0  # it moves along the normal alone
+    stiff = friction_damping(scene(tmp_path, ONE.replace("k_u = 1.4", "k_u = 40")))[0]
+    assert stiff["friction_damping"] == pytest.approx(greatest(20.0), rel=5e-3)
+
+
+def test_it_is_the_greatest_damping_of_the_nonlinear_mode(tmp_path):
+    of_mode = trace_modes(scene(tmp_path, ONE), 1, (0.01, 20.0)).curves[0].mode
+    greatest_there = of_mode.damping.max()
+    assert friction_damping(scene(tmp_path, ONE))[0]["friction_damping"] == pytest.approx(
+        greatest_there, rel=1e-2
+    )
+
+
+def test_shares_are_of_contacts_that_rub(tmp_path):
+    contact = ONE[ONE.index("[[contact]]") : ONE.index("[[force]]")]
+    smooth = contact.replace("damper", "smooth").replace("0.3", "0")
+    soft = contact.replace("damper", "soft").replace("1.4", "0.35")
+    one = friction_damping(scene(tmp_path, ONE.replace("[[force]]", f"{smooth}{soft}[[force]]")))[0]
+    assert one["by_contact"] == pytest.approx({"damper": 0.8, "smooth": 0.0, "soft": 0.2})
