@@ -11,10 +11,11 @@ import pytest
 import fcm
 from fcm.response.exact import trace_exact
 from fcm.shooting import Shooting, periodic
+from fcm.shooting.options import SHOOTING
 from fcm.shooting.periodic_orbit import converged
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
-from fcm.shooting.steady_state import SteadyMotion, steady
+from fcm.shooting.steady_state import SteadyMotion, grows_or_decays, steady
 from fcm.time_domain import State, simulate
 from fcm.time_domain.system import System
 
@@ -101,11 +102,32 @@ def test_an_irregular_motion_that_lingers_has_an_extent():
 
 
 def test_the_extent_holds_bursts_that_are_seldom():
-    """For a thousand periods there may be none: the amplitude is half as great until then."""
-    found = found_at(IRREGULAR, 1.7)
-    long = simulate(IRREGULAR, 1.7, 4000).measures(last=3500)
+    """For two thousand periods there may be none, and the amplitude is half as great until then. So it is a
+    matter of the start, and of rounding: of eight starts at least five meet a burst, as seven did here."""
+    long = simulate(IRREGULAR, 1.7, 12_000).measures(last=11_000)
     greatest = np.max([one.amplitude for one in long], axis=0)
-    assert found.periods == 0 and found.greatest == pytest.approx(greatest, rel=0.1)
+    rest, hold = State.rest(IRREGULAR), 0
+    for k in range(8):
+        found = steady(System(IRREGULAR, 1.7), replace(rest, q=rest.q + 1e-12 * k))
+        assert isinstance(found, SteadyMotion) and found.periods == 0
+        assert (found.greatest < 1.1 * greatest).all()
+        hold += bool((found.greatest > 0.9 * greatest).all())
+    assert hold >= 5
+
+
+def test_amplitudes_that_grow_or_decay_have_no_extent_and_bursts_have_one():
+    """Windows of made-up cycle amplitudes: geometric ones at several rates, and bursts in one of three."""
+    rng, cycle = np.random.default_rng(1), np.arange(100)
+    for rate in (1.5, 3.0, 30.0):
+        rising = [rate ** (k + cycle / 100) * (1.0 + 0.01 * rng.standard_normal(100)) for k in range(3)]
+        for windows in (rising, rising[::-1]):
+            assert grows_or_decays([one[:, None] for one in windows], SHOOTING)
+    quiet = [1.0 + 0.1 * rng.standard_normal((100, 1)) for _ in range(3)]
+    assert not grows_or_decays(quiet, SHOOTING)
+    for place in range(3):
+        bursts = [one.copy() for one in quiet]
+        bursts[place][40:60] += 5.0
+        assert not grows_or_decays(bursts, SHOOTING)
 
 
 def test_a_transient_is_no_steady_motion():

@@ -42,8 +42,12 @@ def test_shipped_files_are_small(name, size):
 
 
 def test_the_splines_beside_the_shipped_table_are_those_of_its_file():
+    """But for rounding: scipy makes splines by BLAS, whose sums hang on the processor."""
     ready, file = shipped.read(shipped.DEFAULT), open_table(shipped.DEFAULT)
-    assert ready.coefficients.tobytes() == file.coefficients.tobytes()
+    size = np.abs(file.coefficients).max()
+    assert ready.coefficients == pytest.approx(
+        file.coefficients, rel=0.0, abs=8.0 * np.finfo(float).eps * size
+    )
     assert (ready.error, ready.part, ready.resolution) == (file.error, file.part, file.resolution)
 
 

@@ -31,8 +31,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
 
     A second table has the resonances, with all contacts open and with all stuck. It has the greatest
-    damping ratio that friction can add to each, estimated by one harmonic. The contacts are closed, at
-    their best preload, with the same share of slip in all. "most in" is the contact with the greatest part.
+    damping ratio that friction can add to each, estimated by one harmonic. Contacts stay closed, at
+    their best preload, with the same share of slip. "most in" is the contact with the greatest part.
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
     stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand

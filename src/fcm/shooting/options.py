@@ -58,7 +58,7 @@ class SteadyOptions(Frozen):
     cycles : tuple of int
         Simulated before each look whether it is.
     ranging_cycles : int
-        From so many cycles on they tell together how far a motion ranges, as it may linger and burst out.
+        Looks at so many cycles tell together how far a motion ranges, as it may linger and burst out.
     max_periods : int
         Of the force, after which a steady motion may repeat, at most.
     max_distance : float
@@ -66,7 +66,7 @@ class SteadyOptions(Frozen):
     return_ratio : float
         Part of its distance after fewer periods, to which the motion comes back after more.
     min_spread_ratio : float
-        Part of the spread of cycle amplitudes in one half that the other must have.
+        Part of the spread of cycle amplitudes in one window, of which the next has less if it decays.
     distinct_distance : float
         Distance from a motion, relative to it, at which a motion of twice its periods is another.
     """

@@ -2,7 +2,8 @@
 
 A motion repeats if Newton's method on the closure of so many periods finds a stable motion beside the
 simulated one. One that does not, and whose amplitudes neither grow nor decay any more, is quasi-periodic or
-irregular.
+irregular. That is judged over windows of many cycles: what grows or decays does so from each window to the
+next, where an intermittent motion has bursts in some.
 """
 
 from __future__ import annotations
@@ -58,8 +59,7 @@ def steady(
     >>> found.periods, found.states, found.measure.amplitude.round(4)
     (1, ('SPEN',), array([7.1681, 7.1663]))
     """
-    ranging: SteadyMotion | None = None
-    seen = list[Cycle]()
+    windows = list[list[Cycle]]()
     for count in options.steady.cycles:
         ends, cycles = deque([state], options.steady.max_periods + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
@@ -73,10 +73,8 @@ def steady(
             if found is not None:
                 return found
         if count >= options.steady.ranging_cycles:
-            of_all = _ranging([*seen, *cycles], options)
-            seen = cycles if of_all is None else [*seen, *cycles]
-            ranging = of_all or _ranging(cycles, options) or ranging
-    return state if ranging is None else ranging
+            windows.append(cycles)
+    return (_ranging(windows, options) if windows else None) or state
 
 
 def _candidates(ends: Sequence[State], options: ShootingOptions = SHOOTING) -> list[int]:
@@ -171,24 +169,39 @@ def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions =
     return None
 
 
-def _ranging(cycles: Sequence[Cycle], options: ShootingOptions = SHOOTING) -> SteadyMotion | None:
-    """The motion over cycles that do not repeat, unless their amplitudes still grow or decay."""
-    measures = [measure(cycle) for cycle in cycles]
-    amplitude = np.array([one.amplitude for one in measures])
-    first, second = np.array_split(amplitude, 2)
-    drift = np.abs(second.mean(axis=0) - first.mean(axis=0))
-    if (drift > options.approach.max_drift * np.ptp(amplitude, axis=0)).any():
-        return None
-    spreads = first.std(axis=0), second.std(axis=0)
-    if (np.minimum(*spreads) < options.steady.min_spread_ratio * np.maximum(*spreads)).any():
-        return None
+def _ranging(windows: Sequence[list[Cycle]], options: ShootingOptions = SHOOTING) -> SteadyMotion | None:
+    """The motion over windows of cycles that do not repeat; over the last one alone, by its halves, if the
+    amplitudes grow or decay over all. None if they do so within that, too."""
+    measures = [[measure(cycle) for cycle in window] for window in windows]
+    amplitudes = [np.array([one.amplitude for one in window]) for window in measures]
+    if grows_or_decays(amplitudes, options):
+        if grows_or_decays(np.array_split(amplitudes[-1], 2), options):
+            return None
+        windows, measures, amplitudes = windows[-1:], measures[-1:], amplitudes[-1:]
+    cycles, amplitude = [one for window in windows for one in window], np.concatenate(amplitudes)
     start, none = cycles[0], np.zeros(0, dtype=np.complex128)
     system, y = start.system, np.asarray(start.segments.y)[0]
     state = State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), start.angle)
     return SteadyMotion(
-        0, state, cycles[-1].states, combined_measure(measures), amplitude.min(axis=0), amplitude.max(axis=0),
-        state_fractions(cycles), none, np.nan, contact_loads(cycles),
+        0, state, cycles[-1].states, combined_measure([one for window in measures for one in window]),
+        amplitude.min(axis=0), amplitude.max(axis=0), state_fractions(cycles), none, np.nan,
+        contact_loads(cycles),
     )  # fmt: skip
+
+
+def grows_or_decays(windows: Sequence[FloatArray], options: ShootingOptions) -> bool:
+    """Whether mean or spread of amplitudes (cycle, dof) changes the same way from each window to the next."""
+    mean = np.array([window.mean(axis=0) for window in windows])
+    spread = np.array([window.std(axis=0) for window in windows])
+    least = options.approach.max_drift * np.ptp(np.concatenate(windows), axis=0)
+    part = options.steady.min_spread_ratio
+    ways = (
+        np.diff(mean, axis=0) > least,
+        np.diff(mean, axis=0) < -least,
+        spread[1:] < part * spread[:-1],
+        spread[:-1] < part * spread[1:],
+    )
+    return any(bool(way.all(axis=0).any()) for way in ways)
 
 
 def combined_measure(measures: Sequence[Measure]) -> Measure:
