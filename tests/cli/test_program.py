@@ -135,6 +135,13 @@ def test_a_defect_names_kernels_older_than_their_sources(tmp_path):
     assert outdated_kernels(tmp_path) == ""
 
 
+def test_a_defect_names_a_kernel_that_is_not_compiled_where_others_are(tmp_path):
+    (tmp_path / "alone.py").write_text("import numpy\nimport cython\n")
+    assert outdated_kernels(tmp_path) == ""  # all as Python
+    (tmp_path / "other.abi3.so").touch()
+    assert "alone.py is not compiled, where others are: make kernels" in outdated_kernels(tmp_path)
+
+
 def test_a_defect_shows_its_place_on_request(capsys, monkeypatch):
     monkeypatch.delenv("FCM_DEBUG", raising=False)
     assert end_of(ZeroDivisionError("of zero"), Messages(verbosity=1)) == 1

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
 
 import fcm
 from fcm.plot.read import DrawnCurve, read_response
@@ -53,6 +54,13 @@ def path(response, tmp_path_factory):
     path = tmp_path_factory.mktemp("scatter") / "a.nc"
     write_netcdf(response, path)
     return path
+
+
+def test_draws_of_which_no_curve_is_complete_have_a_file_without_percentiles(response, tmp_path):
+    lost = replace(response, curves=[replace(one, complete=False) for one in response.curves])
+    write_netcdf(lost, tmp_path / "lost.nc")
+    with xarray.open_dataset(tmp_path / "lost.nc") as file:
+        assert file.peak_percentile.sizes["dof"] == 2 and file.peak_percentile.isnull().all()
 
 
 @pytest.mark.slow

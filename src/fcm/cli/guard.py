@@ -108,10 +108,16 @@ def _exit_code_and_line(error: BaseException) -> tuple[int, str]:
 
 
 def outdated_kernels(package: Path | None = None) -> str:
-    """What to try where a compiled kernel of a package, by default fcm, is older than its source."""
+    """What to try where a kernel of a package (fcm) is not compiled, or older than its source."""
     from pathlib import Path
 
-    for kernel in sorted((package or Path(__file__).parents[1]).rglob("*.abi3.*")):
+    package = package or Path(__file__).parents[1]
+    compiled = sorted(package.rglob("*.abi3.*"))
+    have = {kernel.with_name(kernel.name.split(".")[0] + ".py") for kernel in compiled}
+    for source in sorted(package.rglob("*.py")) if compiled else ():
+        if source not in have and "\nimport cython\n" in source.read_text(encoding="utf-8"):
+            return f". {source.name} is not compiled, where others are: make kernels compiles it"
+    for kernel in compiled:
         sources = [kernel.with_name(kernel.name.split(".")[0] + end) for end in (".py", ".pxd")]
         if any(one.exists() and one.stat().st_mtime > kernel.stat().st_mtime for one in sources):
             return f". {kernel.name} is older than its source: make kernels compiles it again"

@@ -44,7 +44,11 @@ def scatter(response: Response) -> list[Scatter]:
     """One for each combination of the swept values that are not drawn; none where nothing is drawn."""
     curves = response.curves
     return [
-        _of(parameters, [curves[i] for i in places if curves[i].complete and curves[i].points])
+        _of(
+            parameters,
+            [curves[i] for i in places if curves[i].complete and curves[i].points],
+            len(curves[0].peaks),
+        )
         for parameters, places in groups(response)
     ]
 
@@ -61,10 +65,10 @@ def groups(response: Response) -> list[tuple[dict[str, float], list[int]]]:
     return [(dict(zip(names, key, strict=True)), places) for key, places in found.items()]
 
 
-def _of(parameters: dict[str, float], curves: Sequence[Curve]) -> Scatter:
+def _of(parameters: dict[str, float], curves: Sequence[Curve], dofs: int) -> Scatter:
     peaks = np.array([[peak[:2] for peak in curve.peaks.values()] for curve in curves])
-    heights, frequencies = (peaks[..., i] if curves else np.full((1, 1), np.nan) for i in range(2))
-    stable = np.array([[_stays(peak) for peak in curve.peaks.values()] for curve in curves] or [[1.0]])
+    heights, frequencies = (peaks[..., i] if curves else np.full((1, dofs), np.nan) for i in range(2))
+    stable = np.array([[_stays(peak) for peak in curve.peaks.values()] for curve in curves] or [[1.0] * dofs])
     each = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves]
     jumps = np.array(each or [[NONE] * len(SWEEPS)])
     return Scatter(
