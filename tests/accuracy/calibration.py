@@ -20,7 +20,8 @@ except ImportError:  # run as a program
     from truth import MANY, SAME, Truth, exact, scene
 
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.refinement import with_estimated_errors
+from fcm.accuracy.refinement import with_errors
+from fcm.accuracy.unchecked_response import unchecked_response
 from fcm.continuation import FollowOptions, Mark, follow
 from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
@@ -34,6 +35,11 @@ HARMONICS = ((1,), (1, 2), (1, 2, 3), (1, 2, 3, 4, 5))
 SMALLEST = 1e-4  # errors below are not compared
 STEP = 0.1  # longest, along a branch that is followed
 MOVING = 1e-3  # of the greatest amplitude at a point, from which on a degree of freedom is compared
+
+
+def with_estimated_errors(system, accuracy):
+    """The response of a system, with its errors."""
+    return with_errors(unchecked_response(system), accuracy)
 
 
 def points(system, number):

@@ -10,7 +10,6 @@ import pytest
 import fcm
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.refinement import with_estimated_errors
 from fcm.continuation import Mark
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
@@ -25,6 +24,7 @@ from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain import SimulationError
 
 from ..harmonic_balance.truth import SAME, Truth, scene, state
+from .calibration import with_estimated_errors
 
 NAMES = ("greatest_normal_force", "greatest_friction_force", "slip_path", "dissipated_energy")
 SMALLEST = 1e-3  # errors below are not compared

@@ -9,7 +9,7 @@ import pytest
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import PAIR, VALIDITY
-from fcm.accuracy.refinement import with_errors, with_estimated_errors
+from fcm.accuracy.refinement import with_errors
 from fcm.accuracy.stability_validity import on_other_branch
 from fcm.accuracy.unchecked_response import unchecked_response
 from fcm.continuation import Mark, Status
@@ -28,7 +28,7 @@ from ..harmonic_balance.strips import strip
 from ..harmonic_balance.truth import Truth, exact, scene
 from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
-from .calibration import points
+from .calibration import points, with_estimated_errors
 
 EXACT_FOLDS = {5: (1.239829, 1.193559)}  # of the exact motion: `trace_exact`, to 1e-6
 

@@ -8,7 +8,6 @@ import pytest
 
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.peak_errors import peak_errors
-from fcm.accuracy.refinement import with_estimated_errors
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
@@ -19,6 +18,7 @@ from fcm.shooting.problem import OrbitProblem
 from ..harmonic_balance.scenes import up_to
 from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
+from .calibration import with_estimated_errors
 
 
 def scene(frequency, damping, shapes, contact, forces, span):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.options import RefinementOptions
-from fcm.accuracy.refinement import enlarged, refined_response, with_errors, with_estimated_errors
+from fcm.accuracy.refinement import enlarged, refined_response, with_errors
 from fcm.accuracy.unchecked_response import prolongated_solutions, unchecked_response, with_more
 from fcm.branches import force_level, shared_levels
 from fcm.continuation.all_branches import contains
@@ -22,6 +22,7 @@ from fcm.response.accuracy_shortfall import shortfall
 
 from ..harmonic_balance.strips import planar_strip
 from ..harmonic_balance.truth import scene
+from .calibration import with_estimated_errors
 
 
 def limited(seconds):

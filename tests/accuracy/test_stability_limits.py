@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import with_estimated_errors
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
@@ -12,6 +11,8 @@ from fcm.response.trace import traced_curve
 from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
+
+from .calibration import with_estimated_errors
 
 MANY = tuple(range(1, 21))
 NEGLIGIBLE = 2e-6  # an error: below, a crossing may by chance be nearer than is known of it

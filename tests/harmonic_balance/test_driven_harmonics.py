@@ -249,7 +249,9 @@ def test_damping_that_varies_with_the_frequency_is_refused(damping):
 
 
 def test_the_linear_response_is_told_at_the_resonances_of_each_driven_harmonic():
-    from fcm.reduction.linear import comparison_frequencies, linear_response
+    from fcm.reduction.linear import comparison_frequencies
+
+    from ..response.linear_response import linear_response
 
     of = scene([force(1.0, 2, 0.3)], span=(0.4, 0.6))
     at, free = comparison_frequencies(of, np.zeros(2)), np.zeros(2)

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fcm.plot.style import LAYOUT, house_style, new_figure
+from fcm.plot.style import house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 5.5, 4.2  # [inch]
+LEAST_ERROR = 1e-12  # what is less is drawn here
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")  # Okabe and Ito's, safe for the colour-blind
 MARKERS = ("o", "^", "s", "D")  # by the number of harmonics
 
@@ -41,11 +42,11 @@ def draw_others(lines: Sequence[Points]) -> Figure:
         axes = figure.subplots()
         for line in lines:
             colour, marker = COLOURS[packages.index(line.package)], MARKERS[counts.index(line.harmonics)]
-            middle = [max(error, LAYOUT.package_error) for error in line.median]
+            middle = [max(error, LEAST_ERROR) for error in line.median]
             axes.vlines(
                 line.seconds,
                 middle,
-                [max(e, LAYOUT.package_error) for e in line.greatest],
+                [max(e, LEAST_ERROR) for e in line.greatest],
                 color=colour,
                 linewidth=0.7,
             )

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from fcm.plot.style import LAYOUT, save
+from fcm.plot.style import save
 
 from .convergence import as_text, convergence_order
-from .convergence_picture import Balanced, Line, draw_convergence
+from .convergence_picture import EXACT_ERROR, Balanced, Line, draw_convergence
 
 HARMONICS = (1, 2, 3, 5, 9, 15)
 
@@ -42,7 +42,7 @@ def test_all_that_was_measured_is_drawn(lines, tmp_path):
     drawn = [list(zip(*line.get_data(), strict=True)) for line in axes.lines]
     for line in lines:
         assert [(one.milliseconds, one.error) for one in line.balanced] in drawn
-        assert [(line.exact, LAYOUT.exact_error)] in drawn
+        assert [(line.exact, EXACT_ERROR)] in drawn
     assert drawn.count([(4.0, 0.1)]) == 2
     assert [text.get_text() for text in axes.texts] == [str(h) for h in HARMONICS]  # of the slowest line
     (legend,) = figure.legends

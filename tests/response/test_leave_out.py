@@ -7,12 +7,14 @@ import pytest
 
 import fcm
 from fcm.reduction import negligible_parts
-from fcm.reduction.linear import change, comparison_frequencies, linear_response
+from fcm.reduction.linear import change, comparison_frequencies
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.static_modes import condensed
 from fcm.response import trace
 from fcm.response.options import ResponseOptions, leaving_out
 from fcm.scene import scene_from_dict
+
+from .linear_response import linear_response
 
 
 def structure(modes, contacts, dofs, top, **more):

@@ -13,7 +13,6 @@ import fcm
 from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Force, Load
-from fcm.reduction.linear import linear_response
 from fcm.response import ResponseError, trace
 from fcm.response.level import trace_levels
 from fcm.scene import load_scene, scene_from_dict
@@ -23,6 +22,7 @@ from fcm.time_domain.energy import energy
 
 from ..program import called
 from ..time_domain.reference import Law, integrate
+from .linear_response import linear_response
 
 YANG = load_scene("yang1998-n5")
 U, V = np.eye(2)

@@ -245,13 +245,6 @@ def without_errors(outline: UncheckedResponse) -> RefinedResponse:
     )
 
 
-def with_estimated_errors(
-    system: System, accuracy: float, progress: Progress | None = None
-) -> RefinedResponse:
-    """The response of a system, with its errors."""
-    return with_errors(unchecked_response(system, progress), accuracy)
-
-
 def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
     """Relative error of the greatest of heights (path, dof) of each degree of freedom.
 

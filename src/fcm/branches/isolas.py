@@ -46,7 +46,7 @@ def level_one_crossings(
     system : System
         Whose level was followed; with many harmonics the folds are followed with a few of them if these have
         such folds, and what they come to is led to all.
-    found : sequence of Found
+    found : sequence of LevelSolutions
         At which frequencies, and where it turned.
     paths : tuple of Path
         The branches that are known.

@@ -34,7 +34,7 @@ class ProblemAtLevel(Protocol):
 class LevelFold(NamedTuple):
     """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's directions before
     and after, which differ at a corner, (unknown + 2,): displacements, frequency, which does not change, and
-    level; short if it turns before it passes the level 1."""
+    level; unfinished if it turns before it passes the level 1."""
 
     level: float
     z: FloatArray

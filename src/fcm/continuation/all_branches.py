@@ -115,7 +115,8 @@ def all_branches(
 def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
     """Whether a path has the ends of one followed before: rounding may hide that its start is on that.
 
-    So it does where a preload is so large that displacements are not known to `PathOptions.same`.
+    So it does where a preload is so large that displacements are not known as well as
+    `PathOptions.solution_tolerance`.
     """
     return path.status is Status.COMPLETE and any(
         contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths
@@ -125,9 +126,9 @@ def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
 def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> bool:
     """Whether a solution z (n + 1,) lies on a path.
 
-    It does where it is a point of that. Segment its points no distance tells, as branches come close to each
-    other: there the branch is found in the plane through the solution across the chord of the path that is
-    next to it, by Newton's method from that chord.
+    It does where it is a point of that. Between the points no distance tells, as branches come close to each
+    other. There Newton's method starts from the nearest chord of the path, in the plane through the solution
+    across that chord.
     """
     problem.measure(z)
     scale = np.array(problem.scale)

@@ -236,8 +236,8 @@ def root(
 ) -> cython.double:
     """Length at which a function changes sign between two lengths, before and after which it is known.
 
-    Where the curve cannot be found, that length is the root of a growth; of a margin it is LOST, as what is
-    there may be another part of a curve that goes back in the corner; of a fold, too: see `bracketed_fold`.
+    Where the curve cannot be found, that length is the root of a growth. Of a margin it is NOT_FOUND: what is
+    there may be another part of a curve that goes back in the corner. So it is of a fold: `bracketed_fold`.
     """
     at: cython.double
     now: cython.double
@@ -284,7 +284,7 @@ def event_at_sample(stepper: Stepper, poll: Sample, mark: int) -> Event:
 
 
 def first_margin(stepper: Stepper) -> float:
-    """Where within the step a margin changes sign first; LOST if the curve is not found there.
+    """Where within the step a margin changes sign first; NOT_FOUND if the curve is not found there.
 
     Of many that change theirs most have not yet done so where another does: their roots are not looked for.
     """

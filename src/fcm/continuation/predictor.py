@@ -18,8 +18,8 @@ from fcm.continuation.problem import Point
 class Predictor:
     """Of the point that is a length from here.
 
-    bend (n + 1,) is the second derivative of the parabola; second and third (n + 1,) those of the cubic, in
-    scaled coordinates; known says whether there is one, cubic whether it is taken.
+    curvature (n + 1,) is the second derivative of the parabola; second and third (n + 1,) are the second and
+    third of the cubic, in scaled coordinates. has_cubic says whether there is one, cubic whether it is taken.
     """
 
     def __init__(self, size: cython.Py_ssize_t, min_cosine: cython.double) -> None:

@@ -47,7 +47,7 @@ class Stepper:
         self.step, self.cosine, self.miss, self.parameter_miss = 0.0, 1.0, 0.0, 0.0
         self.rounding = 0.0  # length, scaled, by which rounding may have moved the point there
         self.next_margin = -1  # the margin of which a change of sign was found last ahead of here
-        self.reset(options)  # close: to the curve, where a step ends
+        self.reset(options)  # tolerance: of the corrector, where a step ends
         self.known_length = 0.0  # up to here the margins beyond a corner are taken as known
         # from the prediction to where the next point is looked for, scaled: to the far side of a corner here
         self.offset = np.zeros(problem.unknowns + 1)
@@ -85,9 +85,10 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def try_step(self, step: cython.double) -> cython.bint:
-        """Find the point there at a step; missed and cosine say how well it was predicted.
+        """Find the point there at a step; `miss` and `cosine` say how well it was predicted.
 
-        strayed is the part of missed, of the length of the step, that the parameter has.
+        miss is the distance of the point from its prediction, over the length of the step; parameter_miss
+        that of the parameter alone.
         """
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns

@@ -24,7 +24,7 @@ from fcm.structure.layout import Layout, layout_of
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
     """About what evaluations of the balance with so many harmonics take, each solved for a step.
 
-    A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
+    A condensed matrix (see `modal_condensation`) is formed first, by 2 multiplications a mode and entry.
     """
     layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
     rank = condensed_size(system, layout.ports, harmonics)
@@ -43,10 +43,10 @@ def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
 class CurveCost(Frozen):
     """What the curves of a scene take that were measured, of 50 to 200 contacts with one harmonic.
 
-    evaluations: of a curve, see `each`. evaluations_per_point: of each point that it has by its longest
-    step, where these are more. overhead: seconds for each of them, contact and coefficient of its motion,
-    of all that comes beside the solution: levels, stability, errors. high_frequency: times the highest
-    frequency of the harmonics, from where on few modes can do for all that are above.
+    evaluations: of a curve; the cost of one is `each`. evaluations_per_point: of each point that the longest
+    step leads to, where these are more. overhead: seconds for each of them, contact and coefficient of its
+    motion, of all that comes beside the solution: levels, stability, errors. high_frequency: times the
+    highest frequency of the harmonics; few modes can do for all those above it.
     """
 
     evaluations: float = 1500.0

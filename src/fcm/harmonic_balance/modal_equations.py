@@ -3,7 +3,7 @@ r"""The linear system of a balance of many contacts by way of the modes, without
 What the structure answers to forces of the contacts, and with that the system closed by a row, with all modes
 and condensed to some of them.
 
-With the notation of `modal_condensation`: `image` is the whole system times a vector, `condensed` the
+With the notation of `modal_condensation`: `multiply` is the whole system times a vector, `condensed` the
 solution with the modes that are condensed to, `correct` that of the whole system by the generalised minimal
 residuals (Saad and Schultz 1986), of which the condensed one is the preconditioner.
 """

@@ -15,8 +15,11 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class ReportedQuantities(Frozen):
-    """What is reported along a path, as of a `Record`; growth (point, dof) of the amplitude along the path's
-    direction; linear (point,) where no contact slips or separates."""
+    """What is reported along a path, as of a `PointRecord`.
+
+    growth (point, dof): of the amplitude along the path's direction. linear (point,): where no contact slips
+    or separates.
+    """
 
     X: ComplexArray
     mean: FloatArray

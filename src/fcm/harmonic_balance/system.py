@@ -50,7 +50,7 @@ class System(Frozen):
     The harmonics of its forces are balanced whatever harmonics are asked for.
 
     With one harmonic the coefficients of a table may be the contacts' law, see `table_balance`: that of
-    this balance if it is not corrected. condensing says when the linear systems of many contacts are
+    this balance if it is not corrected. condensation says when the linear systems of many contacts are
     condensed, options has all other tolerances and limits of the balance. What is computed from it, as its
     branches, has options classes of its own: other_options are those that are not the default.
     """

@@ -20,8 +20,6 @@ _SHAPES = {  # the name of an element, of which letters for its formulation may 
     "B31": ("line", 2), "B32": ("line3", 3), "T3D2": ("line", 2), "T3D3": ("line3", 3),
 }  # fmt: skip
 _KIND = re.compile("(" + "|".join(sorted(_SHAPES, key=len, reverse=True)) + r")[A-Z]*5?", re.ASCII)
-# keyword, options, where it stands, words of each line
-_Block = tuple[str, dict[str, str], str, list[list[str]]]
 
 
 class _Deck:

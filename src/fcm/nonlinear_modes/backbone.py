@@ -39,7 +39,7 @@ class Mode(Frozen):
 
     @property
     def contacts(self) -> FloatArray:
-        """Unknowns of the contacts as in `law`, and the frequency, (point, unknown + 1)."""
+        """Unknowns of the contacts as in `contact_law`, and the frequency, (point, unknown + 1)."""
         count = self.problem.contact_unknowns
         z = [self.problem.contact_motion(z) for z in self.path.z]
         return np.column_stack((np.reshape(z, (-1, count)), self.omega))

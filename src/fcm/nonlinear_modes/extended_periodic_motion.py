@@ -60,7 +60,7 @@ class Motion(Frozen):
 
 
 class AutonomousProblem(Problem):
-    """The unknowns: those of the contacts as in `law`, over a; Re and Im of the kept Q; omega; D.
+    """The unknowns: those of the contacts as in `contact_law`, over a; Re and Im of the kept Q; omega; D.
 
     precision: of Newton's method, in the units of `measure`.
     """
@@ -107,7 +107,7 @@ class AutonomousProblem(Problem):
         return exp(min(max(z[self.n], -self.units.max_log_amplitude), self.units.max_log_amplitude))
 
     def contact_motion(self, z: FloatArray) -> FloatArray:
-        """Displacements of the contacts as in `law`, those at rest among them, (unknown,)."""
+        """Displacements of the contacts as in `contact_law`, those at rest among them, (unknown,)."""
         return self.contacts.rest + self.modal_amplitude(z) * z[: self.contact_unknowns]
 
     def evaluate(self, z: Any) -> int:

@@ -26,9 +26,7 @@ def has_errors(curves: Sequence[DrawnCurve]) -> bool:
     return any(bool((error > 0.0).any()) for error in errors)
 
 
-def draw_errors(
-    figure: Figure, axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float
-) -> None:
+def draw_errors(axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float) -> None:
     """Lines for what the single harmonic leaves out of each curve; an area for the table, of all together."""
     edges, table = _largest(curves)
     axes.stairs(

@@ -88,7 +88,7 @@ def draw_response(
             axes.set_xlim(window)
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
         if below is not None:
-            draw_errors(figure, below, curves, colours, width)
+            draw_errors(below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
         notes = _notes(axes, curves, column, colours[0], width)

@@ -111,8 +111,6 @@ class Layout(Frozen):
     negligible_bar: float = 1e-3  # of the greatest: numbers that do less are not drawn
     surface_ticks: int = 5  # intervals of an axis in space, at most
     surface_levels: int = 12  # bands of filled contours, at most
-    exact_error: float = 1e-6  # where the exact motion is drawn, as it is what errors are measured against
-    package_error: float = 1e-12  # what is less is drawn here
     table_error: float = 1e-300  # in the place of 0, which has no logarithm
 
 

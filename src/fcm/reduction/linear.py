@@ -32,14 +32,6 @@ def resonances(scene: Scene, springs: FloatArray) -> FloatArray:
     return linear_of(scene).stiffened(springs)
 
 
-def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> ComplexArray:
-    """Amplitudes (driven frequency, dof) with springs (port,) for contacts, of one driven harmonic after the
-    other."""
-    linear = linear_of(scene)
-    found = [_Driven(linear, k, omega, springs).response for k in range(len(linear.driven))]
-    return np.concatenate([modes @ linear.dofs for modes in found])
-
-
 def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
     """Greatest relative change of the response with springs (port,) for contacts, all modes in the place of
     fewer ones: to first order in what these leave out.
@@ -50,7 +42,7 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
     linear, few = linear_of(full), linear_of(fewer)
     worst = 0.0
     for k, h in enumerate(linear.driven):
-        driven = _Driven(few, k, omega, springs)
+        driven = DrivenModes(few, k, omega, springs)
         ports = driven.response @ few.ports
         compliance = _compliance(linear, h * omega[:, None])
         moved = compliance * (_force(linear, k, omega) - (springs * ports) @ linear.ports.T)
@@ -64,9 +56,11 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
     return worst
 
 
-class _Driven:
-    """A structure with springs for contacts at frequencies; response (frequency, mode) to its forces number
-    k."""
+class DrivenModes:
+    """The modes with springs (port,) for contacts at frequencies omega (frequency,).
+
+    response (frequency, mode): their amplitudes under the forces number k, of harmonic `linear.driven[k]`.
+    """
 
     def __init__(self, linear: Linear, k: int, omega: FloatArray, springs: FloatArray) -> None:
         stiffness = 1.0 / _compliance(linear, linear.driven[k] * omega[:, None])

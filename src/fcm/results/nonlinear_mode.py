@@ -29,7 +29,7 @@ class MotionOfMode(Frozen):
 
     amplitude: float  # modal
     frequency: float  # [rad/s]
-    contacts: FloatArray  # (unknown + 1,) displacements of the contacts as in `law`, and the frequency
+    contacts: FloatArray  # (unknown + 1,) displacements as in `contact_law`, and the frequency
     modes: npt.NDArray[np.complex128]  # (mode, 1 + harmonic) of Im(q exp(i h omega t)), the mean first
 
 

@@ -54,7 +54,7 @@ def partly_stuck_motions(
 ) -> list[PartlyStickingOrbit]:
     """Those that belong to no family that is known, at a frequency [rad/s]; of the scene with what is held.
 
-    Of more contacts than `MOST` none.
+    None are sought of more contacts than `options.linear.max_combined`.
     """
     whole, found, families = scene.whole(), list[PartlyStickingOrbit](), list(known)
     system = System(whole, omega)

@@ -178,7 +178,7 @@ class _BranchSearch:
         """Paths, and those of others that the converged balance and the level of the forces lead to.
 
         The level is not followed where each end and peak of that balance leads to a motion as high. What led
-        to none is added to `unreached`, see `Along`. apart as of `converged_balance`.
+        to none is added to `unreached`, see `BalanceOrbits`. apart as of `converged_balance`.
         """
         problem, bounded, scene = self.problem, self.bounded, self.problem.scene
         high = True

@@ -245,7 +245,7 @@ def member_at_start(
     shot : Shot
         A motion that closes.
     wanted : (contact,)
-        The slip motions w of the contacts where the scene starts: `Shooting.resting`.
+        The slip motions w of the contacts where the scene starts: `residual_traction.resting`.
     """
     begin, end = -residual_of(shot), shot.system.k_u * wanted
     done, share = 0.0, 1.0

@@ -120,8 +120,8 @@ class PathClassification:
         """The places from one point to another of which there is a classification, in order."""
         return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]
 
-    def same_on_both_sides(self, a: float, b: float) -> bool:
-        """Whether what is told on both sides of the unknown way that a or b ends is the same."""
+    def same_on_both_sides(self, a: float) -> bool:
+        """Whether the known classifications nearest to the place a, before and after, are the same."""
         k = bisect_left(self._places, a)
         before = next((t for t in reversed(self._places[: k + 1]) if self._is_known(t)), None)
         after = next((t for t in self._places[k + 1 :] if self._is_known(t)), None)

@@ -68,9 +68,9 @@ def predicted_minimum(
 
     Parameters
     ----------
-    low, high : Seen
+    low, high : MultiplierSample
         Between which it is looked for; both stable or both not.
-    places : sequence of Seen
+    places : sequence of MultiplierSample
         These and their neighbours in order, three or four.
     divided : int
         Times that the way between places was.

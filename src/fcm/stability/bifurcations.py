@@ -185,7 +185,7 @@ class _BifurcationSearch:
         """A place between one that is known and one that is not: this may be the edge of a window."""
         classified = self.classified
         apart = self.options.windows.edge_distance < b - a <= 1.0
-        if classified.grows(a) == classified.grows(b) or not apart or not classified.same_on_both_sides(a, b):
+        if classified.grows(a) == classified.grows(b) or not apart or not classified.same_on_both_sides(a):
             return None
         return classified.find(
             0.5 * (classified.multiplier_sample(a).length + classified.multiplier_sample(b).length)

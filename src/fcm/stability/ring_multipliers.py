@@ -136,7 +136,7 @@ class RingMultipliers(Multipliers):
         without_neighbour: Sequence[bool],
         sufficient: Sequence[float] = (),
     ) -> list[Classification]:
-        """As `Multipliers.classified`; in a part of a period multipliers turn by as much less towards -1."""
+        """As `Multipliers.classify_all`; in an n-th of a period multipliers turn n times less towards -1."""
         found = Multipliers.classify_all(self, z, at_fold, without_neighbour, sufficient)
         n = self.ring.period
         return [one._replace(angle_to_flip=min(one.angle_to_flip * n, np.pi)) for one in found]

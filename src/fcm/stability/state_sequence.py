@@ -111,7 +111,7 @@ class BalancedSequence(StateSequence):
     contact : (contact, 4)
         mu, k_u, k_v, n_0.
     harmonics : list of int
-        Of the motions; unknowns as in `law`.
+        Of the motions; unknowns as in `contact_law`.
 
     Attributes
     ----------

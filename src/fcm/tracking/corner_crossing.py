@@ -77,14 +77,6 @@ class CornerCrossing:
         varied.set_parameter(float(z[-1]))
         return np.sign(values(varied.balance.laws, z, varied.harmonics, self.setup.options))
 
-    def _outside(self, s: float) -> bool:
-        low, high = self.setup.span
-        return (
-            not low - self.options.kink_length * self.smooth.span
-            < s
-            < high + self.options.kink_length * self.smooth.span
-        )
-
     def _leaves(self) -> bool:
         """Whether the way leads out of the span from an end of it, however little the number changes."""
         low, high = self.setup.span

@@ -40,7 +40,7 @@ class Condition(NamedTuple):
 
     kind: Kind
     which: int = -1  # degree of freedom, or contact
-    onset: str = ""  # one of `onset.KINDS`
+    onset: str = ""  # one of `onset_functions.KINDS`
     omega: float = 0.0  # of an end of the range
 
 

@@ -2,7 +2,7 @@
 
 Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
 value of the number where they have a kink, at a corner of the response, where another extreme of the cycle
-becomes the greatest. `CornerCrossing` finds the way on from there, as `corner` and `circle` say.
+becomes the greatest. `CornerCrossing` finds the way on from there, as `corner_crossing` and `kinks` say.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Tolerances and limits of tracked curves, and of searches for the least peak over numbers of a scene.
 
-`TrackingOptions` has all of the curves. It is a field of `Way`, which all curves of one run share.
+`TrackingOptions` has all of the curves. It is a field of `TrackingSetup`, which all curves of one run share.
 """
 
 from __future__ import annotations
