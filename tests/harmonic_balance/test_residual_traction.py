@@ -56,6 +56,28 @@ def test_a_residual_force_shifts_the_preload_of_the_contact_beside():
     assert expected > 0.005 and at_most == pytest.approx(expected, rel=1e-2)
 
 
+@pytest.mark.parametrize(
+    ("preload", "changes"),
+    [(5.0, np.sqrt(2.01 / 1.01) - 1.0), (-5.0, 1.0 - np.sqrt(1.01 / 2.01)), (80.0, 0.0), (-120.0, 0.0)],
+)
+def test_a_kept_force_that_opens_or_closes_a_stop_changes_a_peak_that_is_linear(preload, changes):
+    """A spring of 1, a stop of 1 at a preload, a contact of 0.01 that sticks with up to 100: this moves
+    the mean by 50 or 99. Open or closed all through, the peak is F / (c omega): the derivative of it is zero.
+    """
+    stop = {"name": "stop", "tangential": "v", "normal": "u", "mu": 0.0, "k_u": 0.0, "k_v": 1.0}
+    rub = {"name": "rub", "tangential": "u", "normal": "v", "mu": 1.0, "k_u": 0.01, "k_v": 0.01, "n_0": 100.0}
+    given = scene_from_dict(
+        {
+            "modal": {"dofs": ["u", "v"], "frequency": [1.0, 3.0], "damping": 0.005, "shapes": np.eye(2)},
+            "contact": [stop | {"n_0": preload}, rub],
+            "force": [{"dof": "u", "amplitude": 0.001}],
+            "response": {"frequency": [0.5, 2.0], "harmonics": 1},
+        }
+    )
+    told = fcm.respond(given).peak_residual_change.sel(dof="u").item()
+    assert told == pytest.approx(changes, rel=1e-3, abs=1e-9)
+
+
 def test_in_a_plane_the_residual_force_points_where_it_changes_most():
     """The normal of A is between two directions in which B may keep a force of any direction."""
     held = HELD | {"tangential": ["b", "d"]}

@@ -119,11 +119,13 @@ def short(value: float | None) -> str:
 
 
 def share_of(change: float) -> str:
-    """A share in percent, two digits; 0 below a thousandth of a percent.
+    """A share in percent, two digits; 0 below a thousandth of a percent, and no digits beyond ten times.
 
-    >>> share_of(0.0234), share_of(1.306), share_of(1e-7)
-    ('2.3 %', '130 %', '0')
+    >>> share_of(0.0234), share_of(1.306), share_of(1e-7), share_of(4200.0)
+    ('2.3 %', '130 %', '0', '> 1000 %')
     """
+    if change > 10.0:
+        return "> 1000 %"
     return f"{float(f'{100.0 * change:.2g}'):g} %" if change >= 1e-5 else "0"
 
 

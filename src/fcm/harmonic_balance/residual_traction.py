@@ -10,6 +10,9 @@ so that it changes most where each t_i is at its limit, along g_i or against it.
 are balanced exactly, with the limits of their own motion and along its g, and their peaks found. As others
 may be further off, this is an estimate and no bound.
 
+Where all else is linear the peak is the same for every t, and g is zero, until another contact opens, closes
+or slips. Then g is that of the mean load of the contact that comes nearest to it.
+
 On a line t_i is a number and its limits an interval; in a plane it is a vector, within what all discs share.
 """
 
@@ -145,9 +148,14 @@ class _FixedTractionBalance:
         return row if self.solved(z, row) is None or edge else np.array(self.newton.tangent)
 
     def peak(self, z: FloatArray, row: FloatArray, dof: int) -> FloatArray | None:
-        """The peak of a degree of freedom next to a point, uphill on the curve as far as the range goes."""
+        """The peak of a degree of freedom next to a point, uphill on the curve as far as the range goes.
+
+        Across the row there may be none after a change of state, but at the same frequency.
+        """
         low, high = self.system.scene.frequency_range
         options, here = self.options, self.solved(z, row)
+        if here is None:
+            here = self.solved(z, np.eye(z.size)[-1])
         if here is None:
             return None
         ahead, length = np.array(self.newton.tangent), options.initial_step
@@ -191,9 +199,15 @@ class _FixedTractionBalance:
         self.solved(peak, ahead)  # for the tangent there
         return peak
 
-    def derivatives(self, z: FloatArray, row: FloatArray, ports: npt.NDArray[np.intp]) -> FloatArray:
-        """Of the amplitudes by the mean friction forces at some ports, (port, dof), along a row."""
-        balance, scale = self.balance, self.scale
+    def derivatives(
+        self, z: FloatArray, row: FloatArray, ports: npt.NDArray[np.intp]
+    ) -> tuple[FloatArray, FloatArray]:
+        """By the mean friction forces at some ports, along a row.
+
+        Of the amplitudes (port, dof), and of the mean normal displacements (port, contact).
+        """
+        balance, scale, layout = self.balance, self.scale, self.system.layout
+        normal = np.asarray(balance.layout.mean_at)[layout.directions - 1 :: layout.directions]
         balance.evaluate(z)
         force = np.zeros((balance.unknowns, ports.size))
         force[np.asarray(balance.layout.mean_at)[ports], np.arange(ports.size)] = 1.0
@@ -213,7 +227,7 @@ class _FixedTractionBalance:
         for k, direction in enumerate(right.T):
             balance.report(z, np.ascontiguousarray(direction * scale))
             found[k] = balance.growth
-        return found
+        return found, (right * scale[:, None])[normal].T
 
 
 class _Family:
@@ -246,10 +260,11 @@ class _Family:
             return nothing
         most = np.zeros(before.size)
         for sense in (1.0, -1.0):
-            after = self._extreme(base, row, own, sense)
-            if after is None:
+            visited = self._visited(base, row, own, sense)
+            if visited is None:
                 return nothing
-            most = np.maximum(most, np.abs(after - before) / np.where(before > 0.0, before, 1.0))
+            for after in visited:
+                most = np.maximum(most, np.abs(after - before) / np.where(before > 0.0, before, 1.0))
         return most
 
     def _row(self, row: FloatArray) -> FloatArray:
@@ -258,34 +273,67 @@ class _Family:
     def _top(self, z: FloatArray, row: FloatArray) -> FloatArray | None:
         return self.members.solved(z, row) if self.edge else self.members.peak(z, row, self.dof)
 
-    def _extreme(self, z: FloatArray, row: FloatArray, mean: FloatArray, sense: float) -> FloatArray | None:
-        """Amplitudes (dof,) of the member with the greatest, or the least, peak."""
-        members = self.members
+    def _visited(
+        self, z: FloatArray, row: FloatArray, mean: FloatArray, sense: float
+    ) -> list[FloatArray] | None:
+        """Amplitudes (dof,) of the members on the way to the greatest, or the least, peak; None without one.
+
+        Beyond a change of state a derivative may point the wrong way: each member at its limits counts.
+        """
+        members, visited = self.members, list[FloatArray]()
         members.fix(self.contacts, mean)
-        best, moved = members.amplitudes(z, row)[0], False
+        best = members.amplitudes(z, row)[0]
         for _ in range(self.options.max_rounds):
-            by = members.derivatives(z, row, self.ports)[:, self.dof].reshape(-1, self.along)
+            amplitudes, normal = members.derivatives(z, row, self.ports)
+            by = amplitudes[:, self.dof].reshape(-1, self.along)
             by[self.fixed] = 0.0
             size = np.linalg.norm(by, axis=1, keepdims=True)
             room = size[:, 0] @ np.array([self._reach(i, z) for i in self.contacts.tolist()])
             if room <= self.options.min_change * best[self.dof]:
-                return best
+                towards = None if visited else self._by_nearest_load(z, normal)
+                if towards is None:
+                    return visited
+                by, size = towards, np.linalg.norm(towards, axis=1, keepdims=True)
             limits = self._limits(z, -sense * by / np.where(size > 0.0, size, 1.0))
             if limits is None:  # one slips there
-                return best
+                return visited
             limits = np.where(size > 0.0, limits, mean)
             if np.abs(limits - mean).max() <= self.options.traction_tolerance * np.abs(limits).max():
-                return best
+                return visited
             found = self._moved(z, row, mean, limits)
             if found is None:
-                return best if moved else None
-            moved = True
+                return visited or None
             z, mean, row = found, limits, self._row(row)
             height = members.amplitudes(z, row)[0]
+            visited.append(height)
             if sense * (height[self.dof] - best[self.dof]) <= 0.0:
-                return best
+                return visited
             best = height
-        return best
+        return visited
+
+    def _by_nearest_load(self, z: FloatArray, normal: FloatArray) -> FloatArray | None:
+        """The derivative (contact, direction) of a load by the friction forces: of that contact which they
+        bring nearest to a change of state, or beyond. None where they bring none to it.
+
+        normal (port, contact): those of the mean normal displacements.
+        """
+        members, layout = self.members, self.members.system.layout
+        laws, blocks = members.free, layout.blocks(z[None])[0]
+        mu, k_u, k_v, n_0 = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws]).T
+        size = np.linalg.norm(
+            blocks[:, layout.directions :].reshape(len(laws), -1, layout.directions, 2), axis=3
+        )
+        load = n_0 + k_v * blocks[:, layout.directions - 1]
+        friction = k_u * size[:, :, :-1].sum(axis=(1, 2))
+        to_slip = np.divide(friction, mu, out=np.zeros_like(mu), where=(mu > 0.0) & (load > 0.0))
+        margin = np.maximum(np.abs(load) - k_v * size[:, :, -1].sum(axis=1) - to_slip, 0.0)
+        by = (k_v * normal.reshape(-1, self.along, len(laws))).transpose(2, 0, 1)
+        by[:, self.fixed] = 0.0
+        limits = (mu * np.maximum(load, 0.0))[self.contacts]
+        change = np.linalg.norm(by, axis=2) @ limits
+        near = int(np.argmax(np.where(change > 0.0, change / np.maximum(margin, 1e-300), 0.0)))
+        found: FloatArray = by[near]
+        return found if change[near] > margin[near] else None
 
     def _limits(self, z: FloatArray, towards: FloatArray) -> FloatArray | None:
         """The mean friction forces (contact, direction) of sliders that began unstressed, or far beyond their

@@ -10,7 +10,6 @@ from fcm.model.question import Question
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.errors import counted
-from fcm.scene.friction_damping import friction_damping
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 
@@ -43,6 +42,8 @@ def listing(scene: Scene) -> dict[str, Any]:
     """
     if scene.ring is not None:
         return _of_ring(scene, scene.ring)
+    from fcm.scene.friction_damping import friction_damping  # for this list alone
+
     modal, directions = scene.modal, _directions(scene)
     motion = {name: modal.shapes @ direction / np.sqrt(modal.mass) for name, direction in directions.items()}
     shares = {name: _shares(modal.frequency, along) for name, along in motion.items()}
