@@ -1,27 +1,19 @@
 """Standard errors, intervals and what is not told, of rows that are known functions."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from fcm.fit.estimate import estimated
 from fcm.fit.least_squares_rows import Rows
+from fcm.fit.parameters import Parameters
 
 POINTS = 40
 
 
 def parameters(count):
     """Numbers that are their own unknowns."""
-    ones = np.ones(count)
-    return SimpleNamespace(
-        rates=lambda values: ones,
-        unknowns=lambda values: values,
-        log=np.zeros(count),
-        unit=ones,
-        low=np.full(count, -np.inf),
-        high=np.full(count, np.inf),
-    )
+    zeros, ones = np.zeros(count), np.ones(count)
+    return Parameters(None, (), zeros, np.full(count, -np.inf), np.full(count, np.inf), zeros, ones)
 
 
 def line(rng, spread=0.1):

@@ -227,7 +227,7 @@ def with_nearest(
         if not rows.size or not pieces:
             continue
         now, error, contact_loads = amplitude[rows], every[k].amplitude.copy(), every[k].contact_loads.copy()
-        even = path.orientation[rows] * np.sign(path.direction[rows, -1])
+        even = path.parity[rows]
         there = nearest(pieces, path.parameter[rows], even, now)
         off = np.abs(there[:, :dofs] - now)
         error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])

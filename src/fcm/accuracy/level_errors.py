@@ -47,7 +47,7 @@ def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_])
 
 def evenness(path: Path) -> npt.NDArray[np.bool_]:
     """Whether the number of real multipliers above 1 is even at the points of a curve of levels."""
-    even: npt.NDArray[np.bool_] = path.orientation * np.sign(path.direction[:, -1]) > 0.0
+    even: npt.NDArray[np.bool_] = path.parity > 0.0
     return even
 
 

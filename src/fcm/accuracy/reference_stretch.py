@@ -184,7 +184,7 @@ class StretchFollower:
         odd or even number of real multipliers above 1 as it has."""
         prolongation, curve = self.prolongation, self.curve
         guess = self.finer.extended(curve.z[i], self.fewer)
-        even = curve.orientation[i] * np.sign(curve.direction[i, -1])
+        even = curve.parity[i]
         known = self._passed(float(curve.z[i, -1]))
         for one in sorted(
             known, key=lambda one: float(np.linalg.norm((one - guess) / prolongation.newton.scale))

@@ -15,6 +15,7 @@ from fcm.compare.lines import Line
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
 from fcm.compare.startup import Startup
 from fcm.files import replacing
+from fcm.results.condensed_curves import worst
 from fcm.results.variable_meanings import variable_names
 from fcm.units import UNIT
 
@@ -84,7 +85,7 @@ def _reference(out: Comparison, name: str) -> Json:
         "points": sum(line.points for line in one.lines),
         "folds": [len(line.folds) for line in one.lines],
         "complete": all(line.complete for line in one.lines),
-        "own_error": {measure: _greatest(values) for measure, values in one.own.items()},
+        "own_error": {measure: worst(values) for measure, values in one.own.items()},
     }
 
 
@@ -117,11 +118,6 @@ def _split(shown: dict[str, Shown]) -> Json:
         "errors": {measure: one.value for measure, one in shown.items()},
         "below": {measure: one.below for measure, one in shown.items() if one.below is not None},
     }
-
-
-def _greatest(values: Any) -> float | None:
-    known = values[np.isfinite(values)]
-    return float(known.max()) if known.size else None
 
 
 def _number(value: float) -> float | None:

@@ -150,17 +150,23 @@ def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions =
 
 def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]:
     """The chords between points next to which the origin lies, the nearest first, and where on them."""
-    chord = np.diff(points, axis=0)
-    square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
-    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
-    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
+    length, part, off = distances_from_chords(points)
     near = np.argsort(off)[: options.nearest_chords].tolist()
     return [
         (i, float(part[i]))
         for i in near
-        if options.solution_tolerance < np.sqrt(square[i])
-        and off[i] < options.max_distance_ratio * np.sqrt(square[i])
+        if options.solution_tolerance < length[i] and off[i] < options.max_distance_ratio * length[i]
     ]
+
+
+def distances_from_chords(points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of each chord (point - 1,) between points: its length, the place next to the origin as a part of that,
+    from 0 to 1, and the distance of that place from the origin."""
+    chord = np.diff(points, axis=0)
+    square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
+    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
+    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
+    return np.sqrt(square), part, off
 
 
 def branch_through(

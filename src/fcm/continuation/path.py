@@ -80,6 +80,13 @@ class Path(Frozen):
         """The parameter at each point."""
         return self.z[:, -1]
 
+    @property
+    def parity(self) -> FloatArray:
+        """Sign (point,) of det dr/dx, of the equations r by the unknowns x alone: 0 where the path is normal
+        to the parameter."""
+        sign: FloatArray = self.orientation * np.sign(self.direction[:, -1])
+        return sign
+
     def where(self, mark: int) -> npt.NDArray[np.intp]:
         """The points that have a mark."""
         return np.flatnonzero(self.mark & mark)

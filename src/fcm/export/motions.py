@@ -18,7 +18,7 @@ from fcm.frozen import Frozen
 from fcm.harmonic_balance.response_quantities import ContactRecord, amplitudes_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Modal, Scene
-from fcm.reduction.restore import unknowns
+from fcm.reduction.restore import corrected, unknowns
 from fcm.response.request import ResponseError
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
@@ -125,7 +125,7 @@ class _Solver(Frozen):
             of.setdefault(int(np.nanargmax(amplitude[:, d])), []).append(dofs[d])
         for point, names in of.items():
             z = self._unknowns(point)
-            solved = self._solved(z, along=True)
+            solved = corrected(self.newton, z)
             if solved is None or abs(solved[-1] - z[-1]) > options.max_drift * z[-1]:
                 raise ResponseError(
                     f"{self.scene.name}: the peak of {names[0]} at {z[-1]:.6g} rad/s is no solution "
@@ -146,7 +146,7 @@ class _Solver(Frozen):
             share = 0.0 if k == after else (omega - one[-1]) / (other[-1] - one[-1])
             z = one + share * (other - one)
             z[-1] = omega
-            solved = self._solved(z, along=False)
+            solved = corrected(self.newton, z, along=False)
             if solved is None:
                 raise ResponseError(
                     f"{self.scene.name}: no solution was found at {omega:.6g} rad/s between two points of "
@@ -159,18 +159,6 @@ class _Solver(Frozen):
     def _unknowns(self, point: int) -> FloatArray:
         z: FloatArray = unknowns(self.curve, self.scene, np.array([point]), self.curve.harmonics)[0]
         return z
-
-    def _solved(self, z: FloatArray, along: bool) -> FloatArray | None:
-        """The solution nearest to a point: across the curve, or at its frequency."""
-        newton = self.newton
-        newton.problem.measure(z)
-        newton.scale[:] = newton.problem.scale
-        newton.z[:] = z
-        newton.row[:] = np.eye(z.size)[-1]
-        if along and newton.take_tangent():
-            newton.row[:] = newton.tangent
-        newton.z[:] = z
-        return np.array(newton.z) if newton.correct(1.0) else None
 
     def _motion(self, number: int, z: FloatArray, stable: float, of: tuple[str, ...]) -> Motion:
         modal = None

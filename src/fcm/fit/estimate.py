@@ -59,7 +59,7 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     reach = student.ppf(0.5 + 0.5 * options.confidence, freedom) * spread
     x = parameters.unknowns(values)
     with np.errstate(over="ignore", invalid="ignore"):
-        ends = np.column_stack((_values(parameters, x - reach), _values(parameters, x + reach)))
+        ends = np.column_stack((parameters.values(x - reach), parameters.values(x + reach)))
     without = np.ones(count)
     without[told] = 0.0
     relative = np.where(
@@ -83,11 +83,6 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
         at_bound=(close[0] | close[1]).astype(float),
         alike=alike,
     )
-
-
-def _values(parameters: Parameters, x: FloatArray) -> FloatArray:
-    """The numbers of unknowns that may be without an end."""
-    return np.where(parameters.log > 0.0, np.exp(np.where(parameters.log > 0.0, x, 0.0)), x * parameters.unit)
 
 
 def _covariance(residual: FloatArray, J: FloatArray, freedom: int, rank: float) -> FloatArray:

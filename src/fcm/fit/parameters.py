@@ -44,7 +44,7 @@ class Parameters(Frozen):
         return np.where(self.log > 0.0, logs, values / self.unit)
 
     def values(self, x: FloatArray) -> FloatArray:
-        """The numbers of unknowns."""
+        """The numbers of unknowns, which may be infinite."""
         return np.where(self.log > 0.0, np.exp(np.where(self.log > 0.0, x, 0.0)), x * self.unit)
 
     def rates(self, values: FloatArray) -> FloatArray:

@@ -74,6 +74,11 @@ class Contact(Frozen):
         return replace(self, tangential=self.tangential[used], second=second, normal=self.normal[used])
 
 
+def has_friction(contact: Contact) -> bool:
+    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
+    return contact.mu > 0.0 and contact.k_u > 0.0
+
+
 class Force(Frozen):
     """External force amplitude * omega^power * sin(harmonic omega t + phase) on ``direction @ x``."""
 

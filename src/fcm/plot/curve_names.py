@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.labels import curve_label, symbols
+from fcm.plot.labels import curve_label, plain, symbols
 from fcm.plot.style import LAYOUT, colour_bar
 
 if TYPE_CHECKING:
@@ -142,6 +142,6 @@ def varying(
     title = symbols(parameters[0], units)
     for i, (key, name) in enumerate(zip(parameters[0], symbols(parameters[0]), strict=True)):
         if key in same:
-            unit = units.get(key, "").replace("$", r"\$")
+            unit = plain(units.get(key, ""))
             title[i] = f"{name} = {curve_label({key: same[key]}, False)} {unit}".rstrip()
     return [{key: one[key] for key in one if key not in same} for one in parameters], title

@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.plot.errors import PlotError
 from fcm.plot.history_file import DrawnHistory, DrawnMotion
-from fcm.plot.labels import curve_label, frequency_label
+from fcm.plot.labels import curve_label, frequency_label, plain
 from fcm.plot.read import FloatArray
 from fcm.plot.style import LAYOUT, house_style, new_figure
 
@@ -43,7 +43,7 @@ def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
             axes.set_xlim(shown)
             axes.minorticks_on()
             named = curve_label(motion.parameters, units=history.units)
-            name = f"Displacement {history.dof}".replace("$", r"\$")
+            name = plain(f"Displacement {history.dof}")
             axes.set_ylabel("\n".join(filter(None, (name, *named.split(", ")))))
         panels[-1].set_xlabel("Time (s)" if history.axis == "time" else "Cycles")
         _name_phases(panels[0], history, shown)

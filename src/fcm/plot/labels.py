@@ -15,6 +15,11 @@ _SYMBOLS = {"n_0": "$n_{0}$", "k_u": "$k_{u}$", "k_v": "$k_{v}$", "mu": "$\\mu$"
 _WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping", "level"}
 
 
+def plain(text: str) -> str:
+    """Text of the user's, none of it read as mathematics."""
+    return text.replace("$", r"\$")
+
+
 def short_names(keys: Iterable[str]) -> dict[str, str]:
     """Of each key its last part, if that says enough; where two would be the same, the whole key.
 
@@ -51,7 +56,7 @@ def symbols(keys: Iterable[str], units: Mapping[str, str] | None = None) -> list
     ['$n_{0}$ (N)', '$\\\\mu$']
     """
     return [
-        with_unit(_SYMBOLS.get(name, name.replace("$", r"\$")), _unit(key, units))
+        with_unit(_SYMBOLS.get(name, plain(name)), _unit(key, units))
         for key, name in short_names(keys).items()
     ]
 
@@ -73,7 +78,7 @@ def curve_label(
 
 def _unit(key: str, units: Mapping[str, str] | None) -> str:
     """Of a key, as text beside mathematical text."""
-    return (units or {}).get(key, "").replace("$", r"\$")
+    return plain((units or {}).get(key, ""))
 
 
 def with_unit(text: str, unit: str) -> str:

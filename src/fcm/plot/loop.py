@@ -11,7 +11,7 @@ from fcm.contact.loop import Loop
 from fcm.contact.periodic.loop import PeriodicLoop
 from fcm.contact.sampled import Part, parts, shown_degrees, transitions
 from fcm.frozen import Frozen
-from fcm.plot.labels import power_to_label
+from fcm.plot.labels import plain, power_to_label
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
@@ -57,7 +57,7 @@ class LoopAxes(Frozen):
     @classmethod
     def with_units(cls, units: tuple[str, str] | None, from_greatest: bool) -> LoopAxes:
         """Axes of displacement and force in units of length and force, named if they are known."""
-        length, force = (f" ({_plain(unit)})" for unit in units) if units else ("", "")
+        length, force = (f" ({plain(unit)})" for unit in units) if units else ("", "")
         return cls(
             f"Displacement $u${length}",
             f"Friction force $f${force}",
@@ -112,11 +112,6 @@ def _panels(count: int, titled: bool) -> tuple[Figure, list[tuple[Axes, Axes]]]:
 def _same_scale(loops: Sequence[DrawnLoop]) -> bool:
     """Whether all loops have the same amplitude and stiffness, and are to be compared."""
     return len({(drawn.amplitude, drawn.force) for drawn in loops}) == 1
-
-
-def _plain(text: str) -> str:
-    """Text of the user's, none of it read as mathematics."""
-    return text.replace("$", r"\$")
 
 
 def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:

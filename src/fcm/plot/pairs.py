@@ -11,7 +11,7 @@ from fcm.mesh import MeshError
 from fcm.mesh.pairing import fitted_plane
 from fcm.model.interface import Interface
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import with_unit
+from fcm.plot.labels import plain, with_unit
 from fcm.plot.read import FloatArray
 from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
 
@@ -116,7 +116,7 @@ def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
     )  # fmt: skip
     for side, colour, name in zip((one.alone, one.other_alone), _ALONE, one.sets[:2], strict=False):
         if len(side):
-            label = f"{name}, alone ({len(side)})".replace("$", r"\$")
+            label = plain(f"{name}, alone ({len(side)})")
             axes.scatter(*(side @ along.T).T, c=colour, marker="x", s=size, label=label)
     if axes.get_legend_handles_labels()[0]:
         axes.legend()

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.at_rest import RestOptions, at_rest
 from fcm.contact.plane.loop import PlanarLoop
 from fcm.frozen import Frozen
-from fcm.plot.labels import power_to_label
+from fcm.plot.labels import plain, power_to_label
 from fcm.plot.loop import STATES
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
@@ -195,10 +195,5 @@ def _only(values: FloatArray, which: npt.NDArray[np.bool_]) -> FloatArray:
 def _of_direction(symbol: str, name: str, unit: str) -> str:
     """The label of a displacement, as a number of its unit or a part of another; a long name is left out."""
     scaled, short = unit.startswith("$"), len(name) <= LAYOUT.direction_name
-    named = f"{unit if scaled else ''} = {_plain(name)}" if short else ""
+    named = f"{unit if scaled else ''} = {plain(name)}" if short else ""
     return f"Displacement {symbol}{named}{unit}"
-
-
-def _plain(text: str) -> str:
-    """Text of the user's, none of it read as mathematics."""
-    return text.replace("$", r"\$")

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Status
 from fcm.harmonic_balance.static_equilibrium import RestError
-from fcm.model.scene import Contact, Held, Scene
+from fcm.model.scene import Contact, Held, Scene, has_friction
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
@@ -23,7 +23,6 @@ from fcm.shooting.harmonic_balance_branches import every_balance
 from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting
-from fcm.time_domain.equations import has_friction
 from fcm.time_domain.state import State
 
 IntArray = npt.NDArray[np.intp]

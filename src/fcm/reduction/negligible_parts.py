@@ -13,9 +13,9 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.frozen import Frozen
-from fcm.model.scene import Contact, Modal, Scene
+from fcm.model.scene import Contact, Modal, Scene, has_friction
 from fcm.reduction.options import REDUCTION, ReductionOptions
-from fcm.reduction.sentences import has_friction, named
+from fcm.reduction.sentences import named
 from fcm.reduction.static_modes import with_static_modes
 from fcm.scene.errors import counted
 

@@ -111,7 +111,7 @@ def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
     low, high = scene.frequency_range
     worst = 0.0
     for z, before in zip(unknowns(curve, scene, at, curve.harmonics), _amplitudes(curve, at), strict=True):
-        moved = _corrected(newton, z)
+        moved = corrected(newton, z)
         if moved is None:
             return np.inf
         X = amplitudes_at(system, moved[None])[0][0]
@@ -121,13 +121,16 @@ def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
     return worst
 
 
-def _corrected(newton: Newton, z: FloatArray) -> FloatArray | None:
-    """The point of the curve in the plane through z normal to it."""
+def corrected(newton: Newton, z: FloatArray, along: bool = True) -> FloatArray | None:
+    """The point of the curve in the plane through z normal to it, or else at the frequency of z.
+
+    None where Newton's method does not converge.
+    """
     newton.problem.measure(z)
     newton.scale[:] = newton.problem.scale
     newton.z[:] = z
     newton.row[:] = np.eye(z.size)[-1]
-    if newton.take_tangent():
+    if along and newton.take_tangent():
         newton.row[:] = newton.tangent
     newton.z[:] = z
     return np.array(newton.z) if newton.correct(1.0) else None

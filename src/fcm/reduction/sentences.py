@@ -23,11 +23,6 @@ def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
     return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[: REDUCTION.max_names])}{more}"
 
 
-def has_friction(contact: Contact) -> bool:
-    """Whether a contact resists sliding."""
-    return contact.mu > 0.0 and contact.k_u > 0.0
-
-
 def on_modes(lighter: ReducedScenes, shift: float) -> str:
     """What was replaced, with the bound that the check gives."""
     modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fcm.at_rest import RestOptions
-from fcm.model.scene import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.response.coexisting_search import CoexistingMotions, Search
 from fcm.response.options import COEXISTING
 from fcm.response.resumable_branches import TimeOver
@@ -16,7 +16,6 @@ from fcm.results.orbits import Stuck
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.partly_sticking_orbits import partly_stuck_motions
 from fcm.shooting.traction_families import Family, family
-from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError
 
 REST = RestOptions()

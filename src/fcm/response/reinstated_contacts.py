@@ -16,11 +16,10 @@ from fcm.continuation import Checkpoint, Path
 from fcm.continuation.checkpoint import stepper_state
 from fcm.continuation.problem import Points, Stored
 from fcm.continuation.step_control import Stepper
-from fcm.model.scene import FloatArray
+from fcm.model.scene import FloatArray, has_friction
 from fcm.response.options import CONTACT_CHANGES
 from fcm.response.resumable_branches import SavedPath, kind_of
 from fcm.shooting.problem import OrbitProblem
-from fcm.time_domain.equations import has_friction
 
 
 class ReinstatedContacts:

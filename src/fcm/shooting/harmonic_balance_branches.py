@@ -82,7 +82,7 @@ def _tops(
     """Where degrees of freedom are highest, of points inside the range with an even number of real
     multipliers above 1; and which points (point,) have that.
     """
-    even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
+    even = path.parity > 0.0
     inside = (path.parameter > path.parameter.min()) & (path.parameter < path.parameter.max())
     places = np.flatnonzero(even & inside)
     if not places.size:

@@ -11,9 +11,8 @@ import numpy.typing as npt
 from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
 from fcm.harmonic_balance.contact_law import SingleHarmonicLaw
-from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.model.scene import Contact, FloatArray, Scene, has_friction
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System

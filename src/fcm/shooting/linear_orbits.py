@@ -17,12 +17,11 @@ import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.wave_extremes import greatest
-from fcm.model.scene import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import unloaded
 from fcm.shooting.residual_traction import resting
 from fcm.signals import undisturbed
-from fcm.time_domain.equations import has_friction
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 

@@ -13,7 +13,7 @@ from itertools import combinations, product
 import numpy as np
 
 from fcm.frozen import Frozen
-from fcm.model.scene import FloatArray, Held, Scene
+from fcm.model.scene import FloatArray, Held, Scene, has_friction
 from fcm.shooting.linear_orbits import linear_answer, sticking
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import (
@@ -28,7 +28,6 @@ from fcm.shooting.periodic_orbit import (
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import always_stuck, resting, resting_at
 from fcm.shooting.traction_families import Family, family
-from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State

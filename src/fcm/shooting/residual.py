@@ -7,13 +7,12 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fcm.model.scene import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.shooting.floquet_multipliers import floquet_of
 from fcm.shooting.period_derivative import period_derivative
 from fcm.shooting.residual_traction import Choice, choices, one_sided_slips, resting, stuck_of
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Displaced, Scanned, displaced, scanned
-from fcm.time_domain.equations import has_friction
 from fcm.time_domain.flow import STICKING
 from fcm.time_domain.simulation import march_from
 from fcm.time_domain.state import State

@@ -113,8 +113,7 @@ class _BifurcationSearch:
 
     def _is_even(self) -> npt.NDArray[np.bool_]:
         """Whether the number of real multipliers above 1 is even, folds included on that side."""
-        sign = self.path.orientation * np.sign(self.path.direction[:, -1])
-        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.classified.fold
+        even: npt.NDArray[np.bool_] = (self.path.parity > 0.0) | self.classified.fold
         return even
 
     def _judge(self, first: int, last: int) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.model.scene import Contact, FloatArray, Held, Scene
+from fcm.model.scene import FloatArray, Held, Scene, has_friction
 
 if TYPE_CHECKING:
     from fcm.time_domain.system import System
@@ -120,8 +120,3 @@ def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
     if has_friction(contact):
         force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
     return load, force
-
-
-def has_friction(contact: Contact) -> bool:
-    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
-    return contact.mu > 0.0 and contact.k_u > 0.0

@@ -12,10 +12,10 @@ from weakref import ref
 import numpy as np
 import numpy.typing as npt
 
-from fcm.model.scene import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.structure.loads import driven_harmonics, loads_of
 from fcm.time_domain.contact_states import Codes, made
-from fcm.time_domain.equations import has_friction, held_as_springs, held_limits, held_rows, matrices_of
+from fcm.time_domain.equations import held_as_springs, held_limits, held_rows, matrices_of
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.flow import Flows
 from fcm.time_domain.integrator import March

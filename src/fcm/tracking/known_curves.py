@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.continuation.all_branches import distances_from_chords
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve
@@ -33,11 +34,7 @@ def passes(curve: SpecialPointCurve, condition: Condition, point: TrackedPoint, 
 
 def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
     """The chords between points next to which the origin lies, the nearest first."""
-    chord = np.diff(points, axis=0)
-    length = np.linalg.norm(chord, axis=1)
-    square = np.maximum(length * length, np.finfo(float).tiny)  # of two points that are one
-    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
-    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
+    length, _, off = distances_from_chords(points)
     order = np.argsort(off)
     near: npt.NDArray[np.intp] = order[
         off[order] < options.known.max_chord_part * length[order] + options.known.point_tolerance
