@@ -1,4 +1,4 @@
-"""How wrong it is what the contacts bear along a curve of a balance: estimated by its embedded pair."""
+"""Errors of the contact loads along a curve of a balance, estimated by its embedded pair."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def contact_load_errors(
 
 
 def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: PairOptions) -> FloatArray:
-    """Changes of what contacts bear relative to that, of which most is the greatest along the curve.
+    """Changes of the contact loads relative to these, of which most is the greatest along the curve.
 
     Of nothing a change is infinite, unless it is nothing, too.
     """

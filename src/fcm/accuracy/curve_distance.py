@@ -1,8 +1,9 @@
 """Where a curve lies beside another, at the same parameter and near the same place along it.
 
-What is known at some points is known of those between, with how far that is off (`PartialInterpolant`).
-What the other curve has at the same parameter is found along it (`ReferenceCurveData`), and what a reference
-with more harmonics has near a point by Newton's method in the normal plane (`PointwiseDisplacement`).
+What is known at some points is known of those between, with how far that is off (`PartialInterpolant`). The
+point of the other curve at the same parameter is found along it (`ReferenceCurveData`). The point of a
+reference with more harmonics near a point is found by Newton's method in the normal plane
+(`PointwiseDisplacement`).
 """
 
 from __future__ import annotations

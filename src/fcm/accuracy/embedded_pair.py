@@ -46,18 +46,23 @@ class Errors(Frozen):
     amplitude (point, dof): by how much the reference differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
     is_same_curve (point,): whether the reference's own branch comes to that frequency. Where it does not, as
-    beside a fold that it has elsewhere, errors are the distance to the nearest motion that the reference has
-    there. ends_before (point,): where the reference has fewer motions of the branch than the curve, as it
-    turns back before. peak (dof,): of the height of the greatest amplitude; peak_frequency (dof,): of the
-    frequency of that peak. height (dof,): the greatest amplitude of the reference, as an amplitude.
-    fold (fold,): of the frequencies of the folds, in their
-    order. share (harmonic,), from the first to the greatest that can be asked for: what each harmonic left
-    out would have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to
-    which it matters most. reference: the harmonics with which it is followed elsewhere. contact_loads (point,
-    contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative to itself;
-    infinite where it is nothing, and something in the reference. greatest (contact, 4): of the greatest of
-    each along the path. contacts: what those of the path itself do and bear. pieces: what is known of the
-    reference's curve; motions: those of the reference that were found.
+    beside a fold that it has elsewhere, errors are the distance to the nearest motion of the reference there.
+    ends_before (point,): where the reference has fewer motions of the branch than the curve, as it turns back
+    before.
+    peak (dof,): of the height of the greatest amplitude.
+    peak_frequency (dof,): of the frequency of that peak.
+    height (dof,): the greatest amplitude of the reference, as an amplitude.
+    fold (fold,): of the frequencies of the folds, in their order.
+    share (harmonic,): of each harmonic left out, from the first to the greatest that can be asked for. It is
+    its amplitude without feedback, at peaks and folds, over the greatest amplitude of the degree of freedom
+    to which it matters most.
+    reference: the harmonics with which it is followed elsewhere.
+    contact_loads (point, contact, 4): of the contact loads, see `response_quantities.cycles`, each relative
+    to itself; infinite where it is 0, but not in the reference.
+    greatest (contact, 4): of the greatest of each along the path.
+    contacts: states and loads of the contacts of the path itself.
+    pieces: what is known of the reference's curve.
+    motions: those of the reference that were found.
     """
 
     amplitude: FloatArray
@@ -204,14 +209,16 @@ def with_nearest(
     first: int = 0,
     options: PairOptions = PAIR,
 ) -> tuple[Errors, ...]:
-    """Errors of the paths of a response, where the reference's own branch does not come to a frequency the
-    distance to the nearest motion that it is known to have there: a motion that it has on another branch, or
-    that the branch has turned back to. So is that of a fold to the nearest.
+    """Errors of the paths of a response, with the nearest motions where the reference's own branch has none.
 
-    That is another motion, and a degree of freedom in which it happens to be the same says nothing: each has
-    at least the distance of the greatest. Of a peak that the reference has nowhere beside it, what differs is
-    the greatest amplitude of the reference, as far as that is known at every frequency of the path. The paths
-    before the first have theirs already.
+    Where that branch does not come to a frequency, the error is the distance to the nearest motion of the
+    reference that is known there. It may be on another branch, or where the branch has turned back. The error
+    of a fold is the distance to the nearest fold.
+
+    As that is another motion, a degree of freedom in which it happens to be the same says nothing: each has
+    at least the distance of the greatest. A peak that the reference has nowhere beside it is compared with
+    the greatest amplitude of the reference, where that is known at every frequency of the path. The paths
+    before the first have their errors already.
     """
     if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
         return tuple(errors)
@@ -266,7 +273,7 @@ def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[Curve
 
 
 def _flat(contact_loads: FloatArray) -> FloatArray:
-    """What contacts bear (point, contact, 4) as columns (point, 4 contact)."""
+    """The contact loads (point, contact, 4) as columns (point, 4 contact)."""
     return contact_loads.reshape(len(contact_loads), -1)
 
 
@@ -330,9 +337,9 @@ def _set_errors_of_peaks(
 ) -> tuple[FloatArray, Mask]:
     """Greatest amplitudes (dof,) of the reference, and whether their errors are known.
 
-    error (point, dof), in units of the reference's curve, has then at the greatest amplitudes by how much
-    these differ: of a peak in height, at an end of the path at the same frequency. What a reference with
-    still more harmonics differs by counts, too.
+    error (point, dof), in units of the reference's curve, is then filled at the greatest amplitudes. Of a
+    peak it is the difference in height, at an end of the path that at the same frequency. The difference of a
+    reference with still more harmonics counts, too.
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
     tops, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])

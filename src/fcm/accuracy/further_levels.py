@@ -1,9 +1,9 @@
 """Levels of the forces at frequencies that the branches found so far tell of.
 
-Where a low harmonic comes to the highest peak, or between that and the nearest resonance: a contact that
-opens and closes twice or thrice a period may keep that going on a closed branch, beside one on which it
-stays closed. And in ranges in which no motion that was found is stable: there another one is approached, on a
-branch that was not found or that repeats after several periods or never.
+The first are where a low harmonic comes to the highest peak, or between that and the nearest resonance. There
+a contact that opens and closes two or three times a period may do so on a closed branch, beside one on which
+it stays closed. The others are in ranges in which no motion that was found is stable. The steady motion there
+is another one: on a branch that was not found, of several periods, or aperiodic.
 """
 
 from __future__ import annotations

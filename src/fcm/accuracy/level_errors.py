@@ -24,8 +24,8 @@ from fcm.stability.floquet import multipliers_of
 
 
 class LevelPoints(NamedTuple):
-    """Points of a curve of levels: z (point, unknown + 1) and level (point,), amplitudes (point, dof),
-    what its contacts bear (point, contact, 4), and even (point,) of `evenness`."""
+    """Points of a curve of levels: z (point, unknown + 1) and level (point,), amplitudes (point, dof), its
+    contact loads (point, contact, 4), and even (point,) of `evenness`."""
 
     z: FloatArray
     level: FloatArray
@@ -54,8 +54,8 @@ def evenness(path: Path) -> npt.NDArray[np.bool_]:
 def errors_at_levels(
     system: System, points: LevelPoints, options: PairOptions = PAIR
 ) -> tuple[FloatArray, FloatArray]:
-    """By how much the reference's amplitudes and what its contacts bear differ from those of points at the
-    same levels, relative.
+    """By how much the reference's amplitudes and contact loads differ from those of points at the same
+    levels, relative.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
@@ -85,7 +85,7 @@ def errors_at_levels(
 def _balanced(
     system: System, finer: System, z: FloatArray, level: FloatArray, even: npt.NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
-    """Amplitudes (point, dof) with the harmonics of another system, and what its contacts bear.
+    """Amplitudes (point, dof) with the harmonics of another system, and contact loads (point, contact, 4).
 
     NaN where Newton's method finds none that is as the point is, with an even or odd number of real
     multipliers above 1.

@@ -139,7 +139,7 @@ class _Search:
         """First a piece from each, then on from where most is told."""
         left = list[_Front]()
         for k, i in self._places(interval):
-            if self.unknown[k].sought[i]:  # it leads nowhere
+            if self.unknown[k].sought[i]:  # it was tried before
                 continue
             self.unknown[k].sought[i] = True
             for front in self._fronts(k, i, by_level=False):

@@ -1,5 +1,5 @@
-"""The reference of a curve: point by point normal to it, interpolated in between, followed where that
-leads nowhere."""
+"""The reference of a curve: point by point normal to it, interpolated in between, followed where
+Newton's method diverges."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class FollowedStretch(Frozen):
 
 
 class ComparedQuantities(Frozen):
-    """What is compared of a curve with its reference: amplitudes, and then what the contacts bear.
+    """What is compared of a curve with its reference: amplitudes, and then contact loads.
 
     value, growth along the curve, unit (point, column); change (point, 1 + column) to the reference, that of
     the frequency first, the others in their unit.
@@ -96,10 +96,11 @@ class ReferenceCurve:
     """Relative displacements from the points of a path to its reference: of the frequency, then of
     amplitudes.
 
-    unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
-    freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
+    unit (point, dof): what the displacements of amplitudes are relative to. It is the amplitude or, of a
+    degree of freedom that hardly moves, a part of the greatest amplitude, as its own rounding would hide the
+    others.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
-    contact_loads (point, 4 contact): what the contacts bear.
+    contact_loads (point, 4 contact): of its contacts.
     ends_before (point,): whose frequency the reference passes less often, as it turns back.
     """
 
@@ -123,7 +124,7 @@ class ReferenceCurve:
         self.finding = PointwiseDisplacement(prolongation)
         self.stretches = StretchFollower(system, finer, prolongation, path, options, budget)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
-        self.second: SecondReference | None = None  # its own reference, if that is not too dear
+        self.second: SecondReference | None = None  # its own reference, if that is not too expensive
         self.is_costly = False
         self.failed, self.before = budget.seconds / self.each, prolongation.newton.evaluations
         count, dofs = self.amplitude.shape
@@ -136,9 +137,10 @@ class ReferenceCurve:
         self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
-        """Displacements (point, 1 + dof): found at special points, at every so many, next to linear
-        parts, and between two of these where the middle one is not what they lead to expect; interpolated
-        elsewhere."""
+        """Displacements (point, 1 + dof), found at some points and interpolated elsewhere.
+
+        They are found at special points, at every so many, next to linear parts, and between two of these
+        where the middle one is not as interpolated."""
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
         even = np.arange(0, count, self.options.point_interval)
@@ -229,7 +231,7 @@ class ReferenceCurve:
 
     @property
     def may_have_second(self) -> bool:
-        """Whether a reference of its own is not too dear already with no more harmonics than it has."""
+        """Whether a reference of its own is not too expensive already with no more harmonics than it has."""
         finer = self.stretches.finer
         return 2 * finer.layout.ports * len(finer.harmonics) <= self.options.max_second_unknowns
 
@@ -247,11 +249,13 @@ class ReferenceCurve:
         return off
 
     def errors_at_peaks(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
-        """What the reference lacks at tops, in their order: by how much (top, dof) the amplitudes of a
-        reference of its own differ, and by how much the harmonics that this lacks, too, would change them.
+        """Errors (top, dof) of the reference itself at tops, in their order, and of what is left out even
+        then.
 
-        Normal to its curve inside of that, beside the nearest point that has both, else at the frequency of
-        the end. Nothing of the first where there is none. Of tops closely together as at the first.
+        The first are differences from the amplitudes of a reference with still more harmonics; 0 where there
+        is none. The second are by how much the harmonics that this lacks, too, would change them. Where a top
+        is inside the curve, the points compared lie normal to it, at the nearest point that has both; else at
+        the frequency of the end. Tops closely together have the errors of the first.
         """
         each = np.zeros((2, len(tops), self.amplitude.shape[1]))
         alone = distinct(self.place[tops], self._near)
@@ -386,8 +390,8 @@ class ReferenceCurve:
         return float(self.options.peak_spacing * (self.place[-1] - self.place[0]))
 
     def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
-        """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and what the contacts bear
-        in units of the greatest along the curve; its changes are interpolated as those of amplitudes are."""
+        """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and the contact loads in units
+        of the greatest along the curve; its changes are interpolated as those of amplitudes are."""
         most = self.contact_loads.max(axis=0)
         unit = np.tile(np.where(most > 0.0, most, 1.0), (len(self.contact_loads), 1))
         found = np.zeros((len(change), 1 + self.contact_loads.shape[1]))
@@ -425,9 +429,10 @@ class ReferenceCurve:
     def _fill_beyond_folds(
         self, compared: ComparedQuantities, followed: list[FollowedStretch], shift: FloatArray
     ) -> None:
-        """Of points that are missing although the reference is known there, as it turns back: fill those
-        whose frequency both pass but once, and remember those that it passes less often, where all of it is
-        known.
+        """Fill points that are missing although the reference is known there, as it turns back.
+
+        Filled are those whose frequency curve and reference pass but once. Those that the reference passes
+        less often, where all of it is known, are remembered.
         """
         missing = np.isnan(shift).any(axis=1) & np.isfinite(compared.change).all(axis=1)
         whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in followed)
@@ -507,13 +512,14 @@ class ReferenceCurve:
         return curve_piece(self.stretches.finer, piece)
 
     def contact_loads_of(self, piece: ReferencePiece) -> FloatArray:
-        """What the contacts bear along a piece (point, 4 contact)."""
+        """The contact loads along a piece (point, 4 contact)."""
         return contact_loads_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
     def _passing_numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
-        """Which passing of the reference (row,) belongs to points of a stretch with folds: the same in
-        their order where both have as many, the nearest (-1) where the reference has more, none (-2) where it
-        has fewer."""
+        """Which passing of the reference (row,) belongs to points of a stretch with folds.
+
+        It is the same in their order where both have as many, the nearest (-1) where the reference has more,
+        and none (-2) where it has fewer."""
         own, omega = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2], self.path.parameter[rows]
         offset, of_curve = rows[0] - max(rows[0] - 1, 0), passings(own, omega)
         of_reference = sum(
@@ -532,7 +538,7 @@ class ReferenceCurve:
 
 
 def curve_piece(finer: System, piece: ReferencePiece) -> CurvePiece:
-    """A piece of the reference that was followed, with what the contacts bear."""
+    """A piece of the reference that was followed, with the contact loads."""
     contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
     return piece_of(ReportedPath(piece.path, piece.quantities, contact_loads))
 

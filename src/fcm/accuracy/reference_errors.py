@@ -5,9 +5,9 @@ forces times the receptance. Feedback makes
 
     e_reference = g sum_h s_h
 
-of it. The gain g is that of a reference of its own, at a few points where this may be more than what is told:
-where amplitudes of curve and reference cross, or harmonics converge slowly. No error is less than
-e_reference.
+of it. The gain g is that of a second reference, with more harmonics, at a few points where e_reference may
+exceed the error that the first one gives. These are where amplitudes of curve and reference cross, or
+harmonics converge slowly. No error is less than e_reference.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ class CurvePiece(Frozen):
 
 
 class ReportedPath(Frozen):
-    """A path that was followed, what is reported of it, and what its contacts bear (point, 4 contact)."""
+    """A path that was followed, what is reported of it, and its contact loads (point, 4 contact)."""
 
     path: Path
     quantities: ReportedQuantities

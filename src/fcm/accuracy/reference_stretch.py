@@ -1,7 +1,7 @@
 """Stretches of the reference that are followed: beside them no point of it lies normal to the curve.
 
-Where a corner or a pair of folds has moved, Newton's method in the normal plane leads nowhere. But it does on
-both sides, and from one of them the reference can be followed to the other.
+Where a corner or a pair of folds has moved, Newton's method in the normal plane diverges. But it does on both
+sides, and from one of them the reference can be followed to the other.
 """
 
 from __future__ import annotations
@@ -139,8 +139,10 @@ class StretchFollower:
         return [piece] if len(piece.path.z) > 1 else []
 
     def start(self, i: int, by_level: bool) -> FloatArray | None:
-        """A motion of the reference at the frequency of a point, if one is found as the work allows: what the
-        motion there leads to, or that the level of the forces passes."""
+        """A motion of the reference at the frequency of a point, if one is found within the work allowed.
+
+        It is the one that Newton's method finds from the motion there, or one that the level of the forces
+        passes."""
         before = self.prolongation.newton.evaluations
         begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
         new = int(self.prolongation.newton.evaluations - before)

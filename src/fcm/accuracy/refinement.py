@@ -98,13 +98,13 @@ def refined_response(
 ) -> RefinedResponse:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
-    As long as a peak of a degree of freedom, or a fold, differs from the reference's by more than the
-    accuracy (relative), the harmonics are added that the spectrum names, and all is traced again: from what
-    the branches before, and their stable peaks, lead to with more. Only with what is foreseen to be enough
-    the level of the forces is followed, which may lead to branches that fewer harmonics do not have. What
-    would take longer, with all before it, than anyone waits is not begun, see `WorkOptions`, and what does
-    take longer is given up. Whether the branches are complete is another question, see their status. What has
-    been traced goes to on_traced, before more is.
+    While a peak of a degree of freedom, or a fold, differs from the reference's by more than the accuracy
+    (relative), the harmonics that the spectrum names are added, and all is traced again. Starts are the
+    solutions with more harmonics near the branches traced before, and near their stable peaks. The level of
+    the forces is followed only with as many harmonics as are predicted to be enough; it may lead to branches
+    that fewer harmonics do not have. What would take longer in all than `WorkOptions` allows is not begun,
+    and what does take longer is given up. Whether the branches are complete is another question, see their
+    status. What has been traced goes to on_traced, before more is.
     """
     found: UncheckedResponse = unchecked_response(system, progress)
     if on_traced is not None and found.quantities:
@@ -167,9 +167,10 @@ def unchecked_with_given_harmonics(
 ) -> UncheckedResponse:
     """The response with the harmonics that a system has, of whose errors none is known.
 
-    Traced with one of them first, then with those that tell how far the level of all is to be followed, then
-    with half: what is beside its stable peaks with more is a start, too, as the level of the forces may not
-    lead to it. A branch that is isolated with three harmonics may be connected with the others with one.
+    It is traced with one of them first, then with those that tell how far the level of all is to be followed,
+    then with half. Solutions with more harmonics beside the stable peaks are starts, too, as the level of the
+    forces may not lead to them. A branch that is isolated with three harmonics may be connected with the
+    others with one.
     """
     counts = sorted({1, few_harmonics(system), max(len(system.harmonics) // 2, few_harmonics(system))})
     before, peaks = None, tuple[FoundPeak, ...]()

@@ -1,8 +1,8 @@
 r"""How far the frequencies at which stability is lost are from where more harmonics have them.
 
 Places of the curve around a crossing are displaced to the curve of the balance with those further harmonics
-that would do most there, and the growth of disturbances is looked at on that: where it changes its sign is
-the crossing of more harmonics.
+that would change it most. The crossing of more harmonics is where the growth of disturbances changes its sign
+on that curve.
 """
 
 from __future__ import annotations
@@ -104,8 +104,8 @@ class _ReferenceGrowth:
     def growth(self, place: float) -> float:
         """Of disturbances on the curve of more harmonics beside a place; NaN where it is not known.
 
-        The finer motion of so many harmonics tells it: to balance its own as well would be dear, and is done
-        only where it does not tell.
+        The finer motion of so many harmonics tells it: to balance its own as well would be expensive, and is
+        done only where it does not tell.
         """
         k = min(int(place), len(self.path.z) - 2)
         z, direction = self.path.z[k], self.path.direction[k]
@@ -125,9 +125,9 @@ class _ReferenceGrowth:
     def crossing(self, one: MultiplierCrossing, fine: float) -> float:
         """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
 
-        To within `StabilityLimitOptions.tolerance`, or until two looks are at frequencies that differ by
-        less than fine, relative, or by less than `StabilityLimitOptions.relative_tolerance` of how far they
-        are from the crossing."""
+        It is within `StabilityLimitOptions.tolerance`. The search also ends where two frequencies differ by
+        less than fine, relative, or by less than `StabilityLimitOptions.relative_tolerance` of their distance
+        from the crossing."""
         near = self._enclosed(one.place)
         if near is None:
             return math.nan

@@ -1,4 +1,4 @@
-"""A balance's response whose errors are not known, and that with more harmonics, as long as nobody waits.
+"""A balance's response without its errors, and with more harmonics, within the time that it may take.
 
 To see which harmonics it takes the branches will do that those of fewer lead to. The levels of the forces,
 which take about as long as these, are followed at last, with the harmonics that are enough

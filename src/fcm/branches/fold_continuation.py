@@ -1,14 +1,16 @@
 r"""Folds of the level of the forces, followed as curves in (frequency, level).
 
 At a fixed frequency the level of the forces turns back at folds; where the frequency varies these make
-curves, on which the test function g of `surface` is zero. Such a curve is followed by predictor and
-corrector on the surface of all solutions: the zero of g on an arc of a circle ahead is the next place
-(Allgower and Georg, "Introduction to Numerical Continuation Methods", SIAM 2003; Rheinboldt, Numer. Math. 53
-(1988) 165, for the local axes of a surface). Only the sign of g counts, so that nothing is differentiated
-twice, and a fold that lies in a corner of the solutions, where g jumps, is followed like any other. Cusps,
-where two folds meet, are ordinary places of such a curve; where their curves touch on the surface, and the
-strip between them vanishes, the curve goes back on the other side of the strip. A place is found to a small
-part of the width of such a strip, and steps are short beside wider ones: a curve would else go on as another.
+curves, on which the test function g of `surface` is zero. Such a curve is followed by predictor and corrector
+on the surface of all solutions: the next place is the zero of g on an arc of a circle ahead. See Allgower and
+Georg, "Introduction to Numerical Continuation Methods", SIAM 2003, and Rheinboldt, Numer. Math. 53 (1988)
+165, for the local axes of a surface. Only the sign of g counts, so that no second derivatives are needed. A
+fold that lies in a corner of the solutions, where g jumps, is followed like any other.
+
+Cusps, where two folds meet, are ordinary places of such a curve. Where their curves touch on the surface, and
+the strip between them vanishes, the curve goes back on the other side of the strip. A place is found to a
+small part of the width of such a strip, and steps are short beside wider ones, so that the curve does not go
+over to another.
 """
 
 from __future__ import annotations
@@ -74,8 +76,8 @@ def folds_from(
     start : (n + 2,)
         A fold.
     across : sequence of (n + 2,)
-        Directions of the surface across the curve there, as of the solutions at that frequency: of which the
-        first is taken that both sides of the fold can be seen by.
+        Directions of the surface across the curve there, as of the solutions at that frequency. The first is
+        taken along which solutions are found on both sides of the fold.
     span : (low, high)
         Of the frequency [rad/s].
     paid : callable

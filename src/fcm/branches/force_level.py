@@ -1,9 +1,9 @@
 r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
 
-At both ends of the range, at the resonances inside it that the structure has with its contacts all stuck, as
-at rest, and all open, in the middle of the widest interval between these, and in wide gaps through which a
-resonance moves, the level is followed. It goes from nearly nothing until it is well beyond every level at
-which a contact can change what it does. Every passing of the level 1 is a solution.
+The level is followed at both ends of the range, and at the resonances inside it of the structure with its
+contacts all stuck, as at rest, and all open. So it is in the middle of the widest interval between these, and
+in wide gaps through which a resonance moves. It goes from nearly 0 until it is well beyond every level at
+which a contact can change its sequence of states. Every passing of the level 1 is a solution.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def turned_back(path: Path, options: LevelReachOptions) -> bool:
 def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
     """The same from the curve that systems of other preloads have, too, if it goes as far.
 
-    That is followed to its end, which is dear where fewer harmonics tell that less is enough.
+    That is followed to its end, which is expensive where fewer harmonics tell that less is enough.
     """
     if not system.preload_unit or top >= LINEAR_LIMITS.max_level:
         return None
@@ -409,8 +409,8 @@ def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple
     """Harmonics of a system, and the lowest where with these other solutions are reached from rest.
 
     found: where solutions were looked for with those of the system, and what was found. With one harmonic the
-    level of the forces may turn back just above 1, or go on, and with three turn just below 1: its curve then
-    shows nothing of what is there, and its errors are those of another motion.
+    level of the forces may turn back just above 1, or not at all, where with three it turns just below 1.
+    Then its curve shows nothing of the further solutions, and its errors are those of another motion.
     """
     low = min(system.option(LEVEL_CURVE).reliable_harmonics, few_harmonics(system))
     few = tuple(sorted({*system.harmonics, *range(1, low + 1)}))

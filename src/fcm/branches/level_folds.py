@@ -1,8 +1,9 @@
 """Where the level of the forces turns back before 1, and what solutions come of that at other frequencies.
 
-The level of the forces at which its curve turns is another at each frequency. Where it comes to be 1 a window
-of several solutions begins or ends: a fold of the response, and maybe of a closed branch that lies between
-the frequencies at which the level was followed, and that none of them tells of but by a turn near 1.
+The level of the forces at which its curve turns is another at each frequency. Where it is 1 a window of
+several solutions begins or ends: a fold of the response. It may be a fold of a closed branch that lies
+between the frequencies at which the level was followed. All that their curves show of such a branch is a turn
+near 1.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ class SurfaceOptions(Frozen):
     tolerance: float = 1e-4  # a step that ends them: about its square is left
     singular_step: float = 1e-7  # a step along which the matrix does not change,
     singular_fraction: float = 1e-3  # or this share of the way from the centre
-    diverged_step: float = 1e6  # a step that leads nowhere
+    diverged_step: float = 1e6  # a step at which Newton's method diverges
 
 
 SURFACE = SurfaceOptions()
@@ -85,7 +85,7 @@ class ProlongationOptions(Frozen):
     spaced_points: int = 9  # points along the branch
     max_change: float = 0.5  # of a solution's size: what moves further has come to another one
     same_point: float = 1e-6  # of the greatest unknown: a point nearer to a corner or a fold is at it
-    harmonics_factor: int = 3  # as many harmonics at once, where all at once lead nowhere
+    harmonics_factor: int = 3  # as many harmonics at once, where Newton's method diverges with all
     tolerance: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
 
 

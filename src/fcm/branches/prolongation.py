@@ -30,8 +30,8 @@ def prolongated(
     """Solutions (unknown + 1,) of a system within its range, near points of paths of fewer harmonics.
 
     First one of each path, then the next of each, so that most branches are known before their other points;
-    then the last before those that lead nowhere: there the branch of more harmonics leaves that of few, and
-    may be another one than elsewhere.
+    then the last before those from which Newton's method diverges: there the branch of more harmonics leaves
+    that of few, and may be another one than elsewhere.
     """
     low, high = system.scene.frequency_range
     ways = _harmonic_stages(system, tuple(fewer), options)
@@ -60,7 +60,7 @@ class _ProlongatedPath:
         return z
 
     def ends(self) -> Iterator[FloatArray]:
-        """The solutions near the last points before those that lead nowhere, by bisection."""
+        """The solutions near the last points before Newton's method diverges, by bisection."""
         for here, there in pairwise(sorted(self.leads)):
             low, high = (here, there) if self.leads[here] else (there, here)
             if self.leads[here] == self.leads[there]:
@@ -110,7 +110,7 @@ def _prolongation(
 def _prolongated_by_stages(
     way: Sequence[Prolongation], z: FloatArray, direction: FloatArray
 ) -> FloatArray | None:
-    """The solution near a point of a curve by one step after the other; None where one leads nowhere."""
+    """The solution near a point of a curve by one step after the other; None where one diverges."""
     for prolongation in way:
         if not (prolongation.find_normal(z, direction) and prolongation.newton.correct(1.0)):
             return None
@@ -124,8 +124,8 @@ def _prolongated_by_stages(
 def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
     """The points of a path that are prolongated: its peaks, ends and folds, and some between them.
 
-    In the place of a corner or a fold, or of a peak there, a point beside it: while contacts rest that of
-    more harmonics is the same, and from there no branch can be begun at its frequency.
+    A corner, a fold, or a peak at one, is replaced by a point beside it. While contacts rest the point with
+    more harmonics is the same, and no branch can be begun there at its frequency.
     """
     count = len(path.z)
     marked = [path.where(Mark.PEAK), np.array([0, count - 1]), path.where(Mark.FOLD)]

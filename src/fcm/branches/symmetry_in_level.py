@@ -1,8 +1,8 @@
 """Unsymmetric motions that leave symmetric ones as the level of the forces grows.
 
-At a fixed frequency the motion from rest is symmetric as long as the level is low, and may lose its symmetry
-at a branch point of the curve of the level. What leaves it there may pass the level 1 where the symmetric
-response itself has no branch point: then its branch is closed.
+At a fixed frequency the motion from rest is symmetric while the level is low. It may lose its symmetry at a
+branch point of the curve of the level. The branch that leaves there may pass the level 1 where the symmetric
+response itself has no branch point: then it is a closed branch of the response.
 """
 
 from __future__ import annotations

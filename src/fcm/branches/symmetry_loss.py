@@ -72,8 +72,9 @@ def _loss_of(
 
 
 def _differing(finer: Path, coarser: Path, options: BranchingOptions) -> list[tuple[int, int]]:
-    """The points before and at the end of stretches of a path where its sign is another with fewer harmonics,
-    and which are wider than a branch point may be displaced by."""
+    """The points before and at the end of stretches of a path where its sign is another with fewer harmonics.
+
+    Only stretches that are wider than the possible displacement of a branch point."""
     differ, wide = finer.orientation * coarser.orientation < 0.0, list[tuple[int, int]]()
     ends = np.flatnonzero(np.diff(differ, prepend=False, append=False)).tolist()
     for first, end in zip(ends[::2], ends[1::2], strict=True):

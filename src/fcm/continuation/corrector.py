@@ -194,8 +194,9 @@ class Newton(BorderedSystem):
         """`correct`, from the guess once more, by half steps first; false also where these grow.
 
         Where the equations begin as the root of a distance d > 0, as where a circle begins to slip, a whole
-        step leads from d to 2 sqrt(d d0) - d, beyond the corner if d > 4 d0; half a step to sqrt(d d0). So
-        half steps approach d0 from any distance, and the whole ones converge from less than 4 d0.
+        step leads from d to 2 sqrt(d d0) - d. That is beyond the corner if d > 4 d0. Half a step leads to
+        sqrt(d d0). So half steps approach d0 from any distance, and the whole ones converge from less than 4
+        d0.
         """
         count: cython.int
         i: cython.Py_ssize_t
@@ -356,8 +357,9 @@ def correct_with_kept_jacobian(newton: Newton, most: float) -> bool:
 def _chord_steps(
     newton: Newton, before: cython.double, most: cython.int, ratio: cython.double
 ) -> cython.bint:
-    """Whether at most so many steps with the same Jacobian, each shorter than the one before by a ratio, lead
-    from z, to which a step has led, to the curve."""
+    """Whether at most so many steps with the same Jacobian lead from z, the end of a step, to the curve.
+
+    Each has to be shorter than the one before by a ratio."""
     count: cython.int
     step: cython.double
     for count in range(most):  # noqa: B007

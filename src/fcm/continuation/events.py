@@ -169,8 +169,8 @@ class Events(Frozen):
     values : sequence of float
         Each is an event, marked `Mark.USER_POINT`, wherever the curve passes it.
     narrow : sequence of (float, float)
-        Values with a width, at which the curve may have a peak that no point away from them tells of: steps
-        end there where the width is less than the longest step.
+        Values with a width, at which the curve may have a peak that no point farther away shows. Steps end
+        there where the width is less than the longest step.
     ends : sequence of End
         The curve ends at the first of these, with the status EVENT.
     last : int
@@ -461,8 +461,8 @@ def bracketed_fold(stepper: Stepper) -> Event:
 def user_point_crossings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
     """Where the parameter passes a value: once on the way, or on either side of a fold.
 
-    At a value next to a fold the equations have two solutions close together, either of which may be found,
-    or none, so that there the point is looked for along the step.
+    At a value next to a fold the equations have two solutions close together. Newton's method may find
+    either, or none, so there the point is looked for along the step.
     """
     n: cython.Py_ssize_t = stepper.problem.unknowns
     begin: float = stepper.here.z[n] - value

@@ -1,8 +1,8 @@
 """Roots of functions along a step of a problem whose points are costly: folds and peaks.
 
-A fold or a peak is the extreme of a value of which the slope is known too, so the cubic through both ends of
-the interval that holds it tells where it is, far better than the slopes alone. Where the curve has a corner
-the slope jumps, and no polynomial tells; but both sides are nearly straight close to it, and they meet there.
+A fold or a peak is the extreme of a value whose slope is known too. So the cubic with the values and slopes
+at both ends of its interval gives its place far better than the slopes alone. At a corner of the curve the
+slope jumps, and no polynomial holds; but both sides are nearly straight close to it, and they meet there.
 """
 
 from __future__ import annotations

@@ -1,15 +1,14 @@
 r"""Follow a curve by steps along its arc; everything that happens on it is a point of it.
 
-A step is predicted by a parabola, corrected in the plane normal to the tangent, and accepted if the curve
-turned gently and was where it was predicted. What happens within an accepted step - a fold, a peak of
-something reported, a value of the parameter that was asked for - is the root of a function along it
-(`events`).
+A step is predicted by a parabola and corrected in the plane normal to the tangent. It is accepted if the
+curve turned gently and was where it was predicted. An event within an accepted step is the root of a function
+along it (`events`): a fold, a peak of a reported quantity, or a value of the parameter that was asked for.
 
 Where a margin of the problem changes sign the curve may have a corner. It is not approached by shorter and
-shorter steps: the margins are known functions, so the step ends just beyond where the prediction crosses one,
-the corner is landed on, and the curve is left in the direction that the equations have just beyond, with the
-orientation that a piecewise smooth curve keeps (Allgower and Georg, "Introduction to Numerical Continuation
-Methods").
+shorter steps. As the margins are known functions, the step ends just beyond where the prediction crosses one,
+and the corner is landed on. The next step follows the tangent of the equations just beyond the corner, with
+the orientation that a piecewise smooth curve keeps (Allgower and Georg, "Introduction to Numerical
+Continuation Methods").
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@ A label is what hybrid systems call the discrete state: the number of the regime
 
 The length of a step is chosen by how far from its prediction the curve is, in the curve's own size: what is
 smaller than that is passed. A step that is good has no corner in it, whatever its labels are. One that is
-short and still not good has: the change of label is approached until it is met, and the curve is left in the
-direction that the equations have beyond it.
+short and still not good has. Then the change of label is approached until it is met. The next step follows
+the tangent of the equations beyond it.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class NewtonOptions(Options):
     max_iterations : int
         Steps before a guess is judged too far away.
     max_step : float
-        A longer one leads nowhere.
+        A longer one counts as divergence.
     tolerance : float
         Error that a point may have, estimated from the convergence.
     preliminary_tolerance : float
@@ -111,7 +111,7 @@ class NewtonOptions(Options):
     last_chord_step : float
         A step after which a last one takes the Jacobian from before it.
     divergence_ratio : float
-        Part of the step before, above which the fourth and later steps of a costly problem lead nowhere.
+        Part of the step before, above which the fourth and later steps of a costly problem diverge.
     small_second_step : float
         Part of the greatest first step: a second step this short is no sign of failure.
     max_rounding : float
@@ -148,7 +148,7 @@ class StepOptions(Options):
     Attributes
     ----------
     initial_step, min_step : float
-        The first step; one that is still too long then leads nowhere.
+        The first and the shortest step; the curve ends where the shortest is still too long.
     max_steps : int
         Steps of a curve.
     min_cosine : float

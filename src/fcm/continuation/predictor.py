@@ -1,8 +1,8 @@
 """Where the next point of a curve is looked for: along its tangent, with what the way here tells of its bend.
 
-By a parabola: the tangent here, and the bend on the way of the last step. Where a problem is labelled, and so
-every point costly, the cubic through the last point and here with both tangents is the other predictor, and
-that one is taken which would have foretold the last step better.
+The predictor is a parabola, with the tangent here and the curvature over the last step. Where a problem is
+labelled, and so every point expensive, there is another one: the cubic through the last point and here with
+both tangents. That one is taken which would have predicted the last step better.
 """
 
 from __future__ import annotations

@@ -127,9 +127,11 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def revisits_user_point(self) -> cython.bint:
-        """Whether the last point, a user point, was passed before in its direction, or the curve began there,
-        with folds in between and elsewhere: a step that ends there may keep it, and the next one once more,
-        and a curve may turn twice next to it."""
+        """Whether the last point, a user point, was passed before in its direction, or the curve began there.
+
+        A fold has to be in between, and a point elsewhere. A step that ends at the point may keep it, and the
+        next one once more, and a curve may turn twice next to it.
+        """
         store: PointStore = self.store
         n: cython.Py_ssize_t = self.n
         last: cython.Py_ssize_t = store.count - 1
@@ -433,8 +435,8 @@ def close_to_prediction(stepper: Stepper, length: cython.double) -> cython.bint:
 def without_sign_change(stepper: Stepper, length: cython.double) -> cython.bint:
     """Whether no margin changes its sign within a length from where the corrector is.
 
-    A circle that starts to slip leaves its limit as the square of the length: what is found first may be
-    beside that by rounding, on the side from where the curve comes.
+    A circle that starts to slip leaves its limit as the square of the length. So the point that is found
+    first may be off by rounding, on the side from where the curve comes.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t

@@ -4,12 +4,12 @@
 then corrected. Lengths are measured in the problem's scale at the point `here`. A point at the length s lies
 in the plane through here + s tangent whose normal is that tangent.
 
-A step is good if the curve was where the parabola foretold it, turned gently, kept its orientation, and if
-what is reported changed as foreseen. The next step aims at what `StepOptions` says of turn, miss
-and unevenness.
+A step is good if the curve was where the parabola predicted it, turned gently, kept its orientation, and if
+the reported quantities changed as predicted. The length of the next step aims at the turn, miss and
+unevenness of `StepOptions`.
 
-Switching functions (margins) that change their sign twice within it, or a parameter or output that turns back
-twice, show in what both ends tell of the way between them.
+A switching function (margin) may change its sign twice within a step, or a parameter or output may turn back
+twice. Values and slopes at both ends show that.
 """
 
 from __future__ import annotations
@@ -375,8 +375,9 @@ def parameter_reversal(stepper: Stepper) -> cython.double:
 def parameter_is_even(stepper: Stepper) -> cython.bint:
     """Whether the parameter goes on so evenly that corners within the step hide no pair of folds.
 
-    Beyond a corner its slope may change as a root, and back at the next one: the slope at the ends then
-    differs, or the way does from that at their mean. Either alone vanishes somewhere.
+    Beyond a corner its slope may change as a root, and back at the next one. Then the slopes at the ends
+    differ, or the change over the step differs from that at their mean. Either difference alone vanishes
+    somewhere.
     """
     n: cython.Py_ssize_t = stepper.problem.unknowns
     unit: cython.double = stepper.step * stepper.newton.scale[n]
@@ -574,10 +575,9 @@ def acceptable(stepper: Stepper) -> cython.bint:
 def passes_branch_point(stepper: Stepper) -> cython.bint:
     """Whether a short step that changes the orientation leads across a point where branches meet.
 
-    Where they only nearly meet they are hyperbolas: a step from one to the other misses it, and turns, by
-    about the square of their distance over that of its length. Where they meet it does by what the curve
-    bends, and by rounding, which grows as the branch point comes near; at corners that nearly are one by what
-    these turn.
+    Where they only nearly meet they are hyperbolas. A step from one to the other misses it, and turns, by
+    about the square of their distance over that of its length. Where they meet the miss is by the curvature,
+    and by rounding, which grows near the branch point. At corners that nearly coincide it is by their angles.
     """
     turned: cython.double = sqrt(max(1.0 - stepper.cosine * stepper.cosine, 0.0))
     return stepper.step * sqrt(stepper.miss + turned) <= stepper.options.step.max_branch_distance

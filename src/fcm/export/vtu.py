@@ -69,7 +69,7 @@ def _shares(scene: Scene, rows: Rows, nodes: IntArray) -> FloatArray:
 
 
 def _at_nodes(motion: Motion, share: FloatArray) -> dict[str, FloatArray]:
-    """What contacts bear, and their states, at the nodes that they join."""
+    """The contact loads, and the states of the contacts, at the nodes that they join."""
     assert motion.contact_loads is not None
     normal, _, slip, energy = motion.contact_loads.T
     state, joined = contact_states(motion.states), share > 0.0

@@ -1,13 +1,14 @@
 """What a contact is to the balance: forces, their tangent, and margins, from its block of the unknowns.
 
-Of one contact the unknowns are the mean and amplitudes of its displacement along each of its directions, the
-last of which is its normal, laid out as in `fcm.structure.layout`. Its forces on the structure are laid out
-alike: the friction along its tangential directions, and the normal force, which is that beyond the preload,
-n - max(n_0, 0), in equilibrium with the structure at rest.
+The unknowns of a contact are the mean and amplitudes of its displacement along each of its directions, laid
+out as in `fcm.structure.layout`. The last direction is its normal. Its forces on the structure are laid out
+alike: the friction along its tangential directions, and n - max(n_0, 0) along its normal. The preload is left
+out, as it is in equilibrium with the structure at rest.
 
 How many directions there are, which harmonics its forces have, and where they are not smooth is for the law
-to say; nothing else knows. There are laws of the contact on a line and in a plane, exact for a mean and any
-harmonics, and in closed form of one on a line with a mean and one harmonic (section 4 of the paper).
+to say; nothing else knows. The laws of a contact on a line (`LineLaw`) and in a plane (`PlanarLaw`) are exact
+for a mean and any harmonics. That of a contact on a line with a mean and one harmonic (`SingleHarmonicLaw`)
+is a closed form (section 4 of the paper).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What a balance of more harmonics would take, so that what takes too long is said and not begun.
 
-It is told in seconds of a core on which numpy's sine takes 10 ns a number, from the size of the balance and
-not from a clock: the same scene has the same answer on every machine.
+It is in seconds of a core on which numpy's sine takes 10 ns a number. It follows from the size of the
+balance, not from a clock, so that the same scene has the same answer on every machine.
 """
 
 from __future__ import annotations

@@ -9,18 +9,19 @@ derivative by the parameter and a row that closes the system,
 
 of the same determinant, and no worse conditioned at a fold.
 
-A mode far above the harmonics is stiff beside the contacts: with modal mass 1 and shapes p on the ports it
-yields sum_p k_p p^2 / (w^2 - (H omega)^2) of what a contact's spring k does. Modes of which that is small are
-left out of the condensed system, which then is the preconditioner of the whole one, with all modes: of that
-the solution is, after few iterations, as what is left out changes little. With what is left out the spectrum
-is within 1 and 1 + y, with y the greatest yield of these modes, so that an iteration leaves the part
+A mode far above the harmonics is stiff beside the contacts. With modal mass 1 and shapes p on the ports it
+yields y = sum_p k_p p^2 / (w^2 - (H omega)^2) times as much as the contacts' springs k. Modes of which that
+is small are left out of the condensed system. This is then the preconditioner of the whole one, with all
+modes, whose solution takes few iterations. With y the greatest yield of the modes left out, the spectrum is
+within 1 and 1 + y, so that an iteration leaves the part
 
     (sqrt(1 + y) - 1) / (sqrt(1 + y) + 1)
 
 of an error (Saad 2003, 6.11). As many modes are kept as make factorisation and iterations cheapest.
 
-Where most contacts stay stuck or open, the forces of the others may be fewer than these modes: then they are
-condensed to, see `fcm.harmonic_balance.linear_contacts`. A small condensed system is solved as fast as it is.
+Where most contacts stay stuck or open, the forces of the others may be fewer than these modes. Then the
+system is condensed to these forces, see `fcm.harmonic_balance.linear_contacts`. A small system is solved as
+fast as it is.
 """
 
 from __future__ import annotations

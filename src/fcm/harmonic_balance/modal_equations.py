@@ -1,11 +1,11 @@
 r"""The linear system of a balance of many contacts by way of the modes, without arrays of ports by ports.
 
-What the structure answers to forces of the contacts, and with that the system closed by a row, with all modes
-and condensed to some of them.
+The answer of the structure to forces of the contacts, and with it the system closed by a row, are formed with
+all modes, and condensed to some of them.
 
-With the notation of `modal_condensation`: `multiply` is the whole system times a vector, `condensed` the
-solution with the modes that are condensed to, `correct` that of the whole system by the generalised minimal
-residuals (Saad and Schultz 1986), of which the condensed one is the preconditioner.
+The notation is that of `modal_condensation`. `multiply` is the whole system times a vector, and `condensed`
+the solution of the condensed system. `correct` solves the whole system by GMRES (Saad and Schultz 1986), with
+the condensed system as the preconditioner.
 """
 
 from __future__ import annotations

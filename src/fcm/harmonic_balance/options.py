@@ -244,7 +244,7 @@ class DampedOptions(Frozen):
     max_steps : int
         After so many a guess is judged too far away.
     min_damping : float
-        A step that is shortened to this part leads nowhere.
+        A step that is shortened to this part counts as divergence.
     min_factor, max_factor : float
         By this a step is shortened at most at once, and longer than the one before.
     final_step : float
@@ -285,7 +285,7 @@ class ProlongationOptions(Frozen):
     chord_contraction : float
         Part of the step before, that each of these may be.
     first_step_ratio : float
-        Times `max_change`, beyond which the first step of a costly problem leads nowhere.
+        Times `max_change`, beyond which the first step of a costly problem counts as divergence.
     damped : DampedOptions
         Of many contacts.
     """

@@ -1,6 +1,6 @@
 """Harmonic balance of means and any harmonics, condensed to the contacts, as a problem to be followed.
 
-The modes are summed into the receptance G(h omega) between the contacts' ports, so that the unknowns are the
+The modes are summed into the receptance G(h omega) between the contacts' ports. So the unknowns are the
 relative displacements of the contacts alone, whatever the number of modes:
 
     X_h = X_external,h - G(h omega) F_h,    x_0 = x_rest - G(0) f_0
@@ -9,7 +9,7 @@ with x_rest the answer to static loads alone, of which `share` is applied. The r
 displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
 
 The answer G F of the structure to forces of its contacts is laid out as the unknowns, see
-`fcm.structure.layout`: each harmonic is answered by its own receptance, the mean by the static one.
+`fcm.structure.layout`. Each harmonic has its own receptance, the mean the static one.
 """
 
 from __future__ import annotations

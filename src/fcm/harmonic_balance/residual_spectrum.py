@@ -1,7 +1,7 @@
 r"""What harmonics that a balance leaves out would do, were there no feedback.
 
-The exact friction and normal forces of a motion of few harmonics have all harmonics; what one of them does is
-its coefficient times the receptance of the structure at its frequency,
+The exact friction and normal forces of a motion of few harmonics have all harmonics. The response to one of
+them is its coefficient times the receptance of the structure at its frequency,
 
     X_h = -G(h omega) F_h
 
@@ -10,12 +10,12 @@ so that it is the structure as much as the contact that decides which harmonics 
 A balanced motion with these harmonics (`EnrichedMotion`) is nearer to the true one: the multipliers about it
 err five to ten times less, and what they change of them says how wrong they may be.
 
-A structure that resists less than its contacts do, as the halves of a joint, would so answer with many times
-the motion itself: where |G K| > 1 at a port the contacts resist, too, as they do in the mean over the cycle,
+A structure that is softer than its contacts, as the halves of a joint, would so respond with many times the
+motion itself. Where |G K| > 1 at a port the mean stiffness of the contacts over the cycle resists, too,
 
     (1 + G(h omega) K) X_h = -G(h omega) F_h,
 
-with K the mean of their stiffnesses: on a line of k_u while they stick, of k_v while they are closed, and of
+with K the mean of their stiffnesses. On a line these are k_u while they stick, k_v while they are closed, and
 +-mu k_v, by the normal displacement, while they slip.
 """
 
@@ -235,11 +235,11 @@ def enriched_harmonics(
 class EnrichedMotion:
     """`at` a point z of the balance fills x, the unknowns of the finer motion.
 
-    shift is the greatest amplitude that was added to a displacement of a contact, along it or normal to it,
-    relative to the greatest that there was of the same: a small normal motion opens and closes a contact as
-    much as a large one does. Not so beside a deep mean indentation, or a wide gap, to which it is relative
-    where that is more; and across the motion in its plane a small one turns the slip by little.
-    laws (contact,) have the balance's motion, and forces of the finer harmonics.
+    shift is the greatest amplitude that was added to a displacement of a contact, tangential or normal,
+    relative to the greatest amplitude of the same displacement. For a small normal motion opens and closes a
+    contact as much as a large one does. Beside a deep mean indentation, or a wide gap, it does not: shift is
+    relative to that where it is more. And across the motion in its plane a small one turns the slip by
+    little. laws (contact,) have the balance's motion, and forces of the finer harmonics.
     """
 
     def __init__(

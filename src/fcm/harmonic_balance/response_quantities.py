@@ -180,7 +180,7 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
 
 
 def contact_loads_along(system: System, z: FloatArray) -> FloatArray:
-    """What the contacts bear, (point, contact, 4), as of `cycles`."""
+    """The contact loads (point, contact, 4), as of `cycles`."""
     contact_loads = np.zeros((len(system.scene.contacts), z.shape[0], 4))
     for _ in _solved_contacts(system, z, contact_loads):
         pass

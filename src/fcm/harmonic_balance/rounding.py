@@ -1,8 +1,8 @@
 r"""Digits of displacements where contacts are much stiffer than the structure.
 
-The balance x = X - G F of displacements subtracts nearly equal numbers where a contact hardly moves: as many
-digits are lost as k |G| has before its point, in a displacement that is small beside others even all of them.
-Where every contact only sticks or is open, the same motion is
+The balance x = X - G F of displacements subtracts nearly equal numbers where a contact hardly moves. As many
+digits are lost as k |G| has before its point. A displacement that is small beside others may lose all of
+them. Where every contact only sticks or is open, the same motion is
 
     (H + k) x = f,    H = G^-1,    f = H X,
 

@@ -1,10 +1,10 @@
 """Contacts so much stiffer than the structure that rounding decides what they do: what to take instead.
 
 A contact's force is its stiffness times a difference of displacements, of which one rounding stays. Beside
-the force that the structure bears this is k |G| roundings, and where the force changes from stick to slip no
-curve is followed through more than some 1e-9 of it. Long before, the contact is nearly rigid: what its
-spring adds falls with the root of the stiffness at the latest, as where a mass is turned round by it. How
-nearly is the structure's to say, where a resonance or a bounce makes much of that.
+the force that the structure bears this is k |G| roundings. Where the force changes from stick to slip no
+curve is followed through more than some 1e-9 of it. Long before, the contact is nearly rigid: the effect of
+its compliance falls at least as the root of the stiffness, as where a mass bounces on it. How nearly depends
+on the structure, where a resonance or a bounce magnifies that effect.
 """
 
 from __future__ import annotations

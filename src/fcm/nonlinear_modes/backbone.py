@@ -190,8 +190,8 @@ def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, Floa
 
 
 def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple[FloatArray, FloatArray]:
-    """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and
-    what the contacts bear with these, (point, contact, 4).
+    """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and the
+    contact loads with these, (point, contact, 4).
 
     Relative, of the damping to the greatest of the mode; NaN where there is no such motion, and of many
     unknowns at the points where it is unknown. By the options of the mode, if no others are given.

@@ -71,7 +71,7 @@ class ManyContactsOptions(Frozen):
 
 
 class RestartOptions(Frozen):
-    """How a mode is taken up again beyond a corner where its steps lead nowhere.
+    """How a mode is taken up again beyond a corner where its steps make no progress.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class RestartOptions(Frozen):
     max_reports, min_progress : int, float
         Reports of progress, of 16 steps each, within which ln a has to move by that part of its span.
     end_fraction : float
-        Part of the way to where steps lead nowhere, by which the part before ends short of that.
+        Part of the way to where steps make no progress, by which the part before ends short of that.
     restart_lengths : tuple of float
         Of the unit of ln a, by which the mode is taken up further on: the first that leads to a solution,
     max_distance_ratio : float

@@ -1,7 +1,7 @@
 """Frequencies of a ring of sectors against the nodal diameter, and what an engine order meets (SAFE diagram).
 
-At the rotor speed W an engine order n has the frequency n W, and as seen by the sectors a nodal diameter: the
-lines of all engine orders run up and down between the diameters 0 and half of the sectors.
+At the rotor speed W an engine order n has the frequency n W, and the sectors see it as a nodal diameter. The
+lines of all engine orders run up and down between the diameters 0 and half of the number of sectors.
 """
 
 from __future__ import annotations

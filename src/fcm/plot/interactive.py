@@ -163,7 +163,7 @@ _SYMBOLS = ("circle", "triangle-up", "square", "circle-open")  # by state, as in
 def _of_contacts(
     points: Sequence[InterfacePoint], k: int, head: str, top: float, heights: bool
 ) -> dict[str, Any]:
-    """The button that shows what contacts bear, by heights or colours."""
+    """The button that shows the contact loads, by heights or colours."""
     values = [one.contact_loads[k] for one in points]
     change: dict[str, Any] = {"marker.color": values, "marker.cmax": top}
     change |= {"y": values} if heights else {}

@@ -111,8 +111,8 @@ def _choices(scene: Scene, high: BoolArray, options: ReductionOptions) -> Iterat
 def _linear_error(full: Scene, fewer: Scene) -> float:
     """Greatest relative change of the linear responses: contacts all open, all stuck, and in part.
 
-    Where contacts begin to slip the friction bends from one to the next but does not jump: as of springs that
-    are none in the first half of the contacts, grow over a quarter, and are whole in the rest.
+    Where contacts begin to slip, the friction changes gradually from one to the next. So the springs in part
+    are 0 in the first half of the contacts, grow over a quarter, and are whole in the rest.
     """
     springs = contact_stiffnesses(full)
     along = np.arange(springs.size) / springs.size

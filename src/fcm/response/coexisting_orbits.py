@@ -77,9 +77,10 @@ def _coexisting_at(
 ) -> list[OrbitRecord]:
     """Those at one frequency that are not known.
 
-    Where no periodic motion is near a guess, or one that is left by turns, the motion is simulated from
-    there, and from rest: unless one that repeats after several periods, or not at all, is known, as that may
-    lead to it, or a mode has no damping, so that what it begins with may stay.
+    Where no periodic motion is near a guess, or one with a multiplier below -1 or a complex pair outside the
+    unit circle, the motion is simulated from there, and from rest. It is not where a motion of several
+    periods, or an irregular one, is known: the simulation may come to that. Nor is it where a mode has no
+    damping, as its transient may stay.
     """
     found, damped = list[OrbitRecord](), bool((problem.scene.modal.damping > 0.0).all())
     for guess in (*guesses, None):

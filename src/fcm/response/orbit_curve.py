@@ -187,7 +187,7 @@ def _rows(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> Floa
 
 
 def _contact_loads(points: Sequence[OrbitRecord | None], empty: Curve) -> FloatArray:
-    """What the contacts bear at each point, (point, contact, 4)."""
+    """The contact loads at each point, (point, contact, 4)."""
     none = np.full(empty.cycle.shape[1:], np.nan)
     return np.array([none if p is None else p.contact_loads for p in points]).reshape(
         len(points), *none.shape

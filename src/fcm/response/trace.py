@@ -262,7 +262,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
 
 
 def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatArray:
-    """What contacts bear (point, contact, 4), with NaN for the way of the slip where the law is one's own."""
+    """The contact loads (point, contact, 4), with NaN for the slip path where the law is the user's own."""
     own = [i for i, one in enumerate(scene.contacts) if one.law is not None]
     if own:
         contact_loads = contact_loads.copy()

@@ -1,10 +1,10 @@
 """Motions found by raising the level of the forces from rest, with the exact motion itself.
 
-At the frequencies at which a balance follows it (`branches.force_level`), the level is followed from nearly
-nothing, where the motion is linear, until it is well beyond where that of a few harmonics comes back to 1.
-Every passing of the level 1 is a motion, and an exact one straight away. From motions that are known there
-and that this curve does not pass, or where it stalls does not come to, it is followed as well, both ways.
-Where it turns back below 1 the window of several motions may be at other frequencies (`level_folds`).
+The level is followed at the frequencies at which a balance follows it (`branches.force_level`). It goes from
+nearly 0, where the motion is linear, until it is well beyond the last passing of 1 by the balance of a few
+harmonics. Every passing of the level 1 is an exact motion straight away. The level is also followed, both
+ways, from motions known there that this curve does not pass, or does not reach as it stalls. Where it turns
+back below 1 the window of several motions may be at other frequencies (`level_folds`).
 """
 
 from __future__ import annotations

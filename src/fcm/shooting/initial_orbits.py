@@ -83,8 +83,10 @@ def find_initial_orbits(problem: OrbitProblem, poll: Poll = never_interrupt) -> 
 
 
 class BalanceOrbits(NamedTuple):
-    """What the branches of a balance lead to: points, whether each is as high as there, and the frequencies
-    [rad/s] and heights of tops at which the balance is stable and nothing as high was found."""
+    """What the branches of a balance lead to: points, and whether each is as high as the balance there.
+
+    unreached: frequencies [rad/s] and heights of tops at which the balance is stable, but no orbit as high
+    was found."""
 
     points: list[FloatArray]
     near_balance: bool

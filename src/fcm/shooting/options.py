@@ -20,7 +20,7 @@ class ClosureOptions(Frozen):
     max_iterations : int
         At most.
     min_step : float
-        Part of a step; a shorter one leads nowhere.
+        Part of a step; a shorter one counts as divergence.
     rank_tolerance : float
         Relative singular value, below which nothing changes along a direction, as where a contact never
         slips.

@@ -1,4 +1,4 @@
-"""The search for what leads to further branches, as long as nobody waits for it."""
+"""The search for what leads to further branches, within the time that it may take."""
 
 from __future__ import annotations
 

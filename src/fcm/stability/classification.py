@@ -152,10 +152,10 @@ def is_uncertain(
     """Whether a classification may be another once the motion has changed further, as it did from plain to
     fine.
 
-    That is so where it is none, of a decay that is less than its change, of a growth that is less than some
-    times that, and (meetings) where a pair turns so fast that it may meet at -1, of which one multiplier
-    leaves by a flip; and of what decays but for a multiplier, of either, that is taken to be far on the wrong
-    side of 1.
+    That is so where nothing is told; of a decay that is less than its change; and of a growth that is less
+    than some times that. So it is (meetings) where a pair turns so fast that it may meet at -1, where one
+    multiplier leaves by a flip. And so it is where all decays but for a multiplier, plain or fine, that is
+    taken to be far on the wrong side of 1.
     """
     if math.isnan(found.stable):
         return True
@@ -222,8 +222,9 @@ def growth_is_linear(
 def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
     """How far a pair is from -1, and the logarithm of its size; nan if there is none that is not small.
 
-    The pair's sum over its size, plus 2: the square of the angle that is left until both meet, or, less than
-    0, that of the logarithm by which they have parted along the axis. It changes evenly where they do so.
+    The distance is the pair's sum over its size, plus 2. It is about the square of the angle that is left
+    until both meet; where it is negative, minus that of the logarithm by which they have parted along the
+    axis. It changes evenly where they meet.
     """
     pairs = [
         value

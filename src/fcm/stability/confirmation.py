@@ -58,12 +58,12 @@ def confirmed_stable(
     to_confirm : (point,) bool
         Those to be confirmed.
     far : (point,) bool, optional
-        Those, to be confirmed or not, at whose frequency the same branch has a motion with more harmonics:
-        where none is found from the solution, it is sought along the branch from the points beside them.
+        Those, to be confirmed or not, at whose frequency the same branch has a motion with more harmonics.
+        Where none is found from the solution, it is sought along the branch from the points beside them.
     options : StabilityOptions, optional
-        Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart, or of many contacts
-        its ends; and between two of these the middle, until all three agree and their growths lie on a line:
-        then so does what is between them. None is where a contact has a law of its own.
+        Of a row of points some are confirmed, `ConfirmationOptions.point_interval` apart, or of many contacts
+        its ends. Between two of these the middle follows, until all three agree and their growths lie on a
+        line; then so do the points between them. None is confirmed where a contact has a law of its own.
     motions : KnownMotions, optional
         Of the same branch with more harmonics, from which those of the far points are sought first.
     """

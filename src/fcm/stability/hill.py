@@ -11,8 +11,8 @@ several times, moved by i k omega; the one whose p(t) lies most evenly about its
 harmonics left out (Lazarus and Thomas, Comptes Rendus Mecanique 338, 2010). Multipliers are
 exp(2 pi s / omega).
 
-T is that of motions that repeat themselves: of a law that remembers, such as friction, it is exact for
-disturbances that last, and errs for those that grow or decay within a period.
+T is the derivative for periodic motions. Of a law with memory, such as friction, it is exact for disturbances
+that neither grow nor decay, and errs for those that do within a period.
 """
 
 from __future__ import annotations

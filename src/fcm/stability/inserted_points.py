@@ -40,8 +40,9 @@ class InsertedPoint(Frozen):
 
 
 class MultiplierCrossing(InsertedPoint):
-    """A point of the curve at which stability changes without a fold, of which it is unknown: a disturbance
-    neither grows nor dies out there, but by what more harmonics make of that."""
+    """A point of the curve at which stability changes without a fold; whether it is stable itself is unknown.
+
+    A disturbance neither grows nor dies out there, but for the effect of more harmonics."""
 
     stable: float = math.nan
     kind: Bifurcation = Bifurcation.NEIMARK_SACKER

@@ -9,14 +9,14 @@ coefficients that are constant between the events. With modes of mass 1 and shap
     slip        df = +-mu k_v dv,   dn = k_v dv
     separation  df = dn = 0
 
-The forces are continuous, so events do not make q or q' jump, and their instants do not matter but where they
-decide what the slider remembers: at the end of a slip dw = du -+ mu k_v dv / k_u, as the limit is at its
-extreme; at a closing w = u where the load vanishes, so dw = du - u' dv / v'.
+The forces are continuous, so q and q' do not jump at events. The instants of events matter only where they
+decide what the slider remembers. At the end of a slip dw = du -+ mu k_v dv / k_u, as the limit is at its
+extreme. At a closing w = u where the load vanishes, so dw = du - u' dv / v'.
 
 In a ring of n sectors whose motion repeats after no fewer, after 2 pi / n each sector does what the one j
 sectors ahead did before. So the disturbances of a travelling wave after that time, counted from j sectors
-behind, obey the same equations again: that map, n times over, is the monodromy, and takes an n-th of the time
-(`RingMonodromy`).
+behind, obey the same equations again. The n-th power of that map is the monodromy matrix, so that
+it takes an n-th of the time (`RingMonodromy`).
 
 With many contacts (`ManyMonodromy`) the events of a period are many, and each changes the state of one
 contact alone. So what the contacts add to the modes is not put together anew for every state, but changed by

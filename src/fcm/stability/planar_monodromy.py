@@ -23,9 +23,9 @@ regular. A slider that never slips stays where it is.
 
 Between events the equations are collocated at Radau's points, as that of the direction is (see `Panel`), in
 steps as long as polynomials resolve the velocities. The equation of s, with r before s', has no singular
-point where the load vanishes. What the modes answer to forces at the points is known beforehand, and so is
-what s answers to displacements: what is left are equations of the closed contacts' displacements at the
-points of a step, or of the modes' where these are fewer, solved for all disturbances at once.
+point where the load vanishes. The answers of the modes to forces at the points, and of s to displacements,
+are known beforehand. What is left are equations for the displacements of the closed contacts at the points of
+a step, or of the modes where these are fewer. They are solved for all disturbances at once.
 """
 
 from __future__ import annotations
@@ -200,8 +200,9 @@ class VariationalSteps:
     def propagate(self, theta: cython.double, length: cython.double, opens: cython.bint) -> cython.bint:
         """Carry the disturbances from an angle on, in steps; false where no step is short enough.
 
-        Where a contact opens that slipped, s varies as a power of the angle that is left, and where it closes
-        and slips, s has one coefficient less: what polynomials leave out there disturbances err by.
+        Where a slipping contact opens, s varies as a power of the angle that is left. Where it closes and
+        slips at once, s has one coefficient less. The error of disturbances there is what polynomials leave
+        out of that.
         """
         left: cython.double = length
         closed: cython.bint = False

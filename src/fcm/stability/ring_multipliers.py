@@ -2,9 +2,9 @@ r"""Floquet multipliers of a wave that travels around a ring of sectors.
 
 The motion repeats after n sectors, n = sectors / gcd(engine_order, sectors), and so do the disturbances that
 are looked at: with n = sectors these are all that there are. Their growth in the n-th part of a period, seen
-from the wave, is an eigenvalue of `RingMonodromy`, in a plane of `RingPlanarMonodromy`; one that is real and
-above 1 leaves at a fold of the curve of travelling waves, another one breaks up the wave, even where it is a
-real multiplier of the whole period.
+from the wave, is an eigenvalue of `RingMonodromy`, in a plane of `RingPlanarMonodromy`. A real one crosses 1
+at a fold of the curve of travelling waves. Any other outside the unit circle breaks up the wave, even where
+it is a real multiplier of the whole period.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """The states of the contacts over a period of a motion: which contact changes its state when, and into which.
 
-All that the small disturbances of a motion depend on, be the motion balanced or exact.
+The small disturbances of a motion, balanced or exact, depend on these alone.
 
 Of a balanced motion they come from the located events of its contacts (`BalancedSequence`). Of contacts in a
-plane the disturbances also depend on what holds at any angle in between (`PlanarSequence`): the direction of
-slip, how fast the displacements change, and the radius of the disc. The states have the same numbers there.
+plane the disturbances also depend on quantities at every angle in between (`PlanarSequence`). These are the
+direction of slip, the rates of the displacements, and the radius of the disc. The states have the same
+numbers there.
 """
 
 from __future__ import annotations

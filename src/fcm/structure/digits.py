@@ -1,8 +1,8 @@
 """How many digits the entries of a matrix were written with, and what that leaves uncertain of its modes.
 
-A program that writes a matrix as text rounds every entry, and one of single precision does too. The elastic
-energy of a rigid-body motion, whose terms cancel, is then no longer zero but some sum of those roundings:
-independent of each other but for those of equal entries, uniform within half a unit of the last digit.
+A program that writes a matrix as text rounds every entry, and one of single precision does too. The terms of
+the elastic energy of a rigid-body motion cancel; with rounded entries it is a sum of these roundings instead
+of 0. They are uniform within half a unit of the last digit, and independent but for equal entries.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """The flexibility of the modes that are left out, kept as a few modes of high frequency.
 
 Seen through loads P and displacements P^T x, the modes left out answer P^T (K - w^2 M)^-1 P less the part of
-the kept modes. Their answer is sought among the residual attachment modes, the static displacements under P
-without the part of the kept modes (MacNeal, Rubin), and under the inertia of those, and so on (a block Krylov
-space); Galerkin's method on it gives again modes, of modal mass 1, that are orthogonal to the kept ones. With
-b blocks the first 2 b terms of the answer's series in w^2 are exact.
+the kept modes. Their answer is sought in a block Krylov space. It begins with the residual attachment modes,
+the static displacements under P without the part of the kept modes (MacNeal, Rubin); the static displacements
+under the inertia of those come next, and so on. Galerkin's method on it gives modes again, of modal mass 1
+and orthogonal to the kept ones. With b blocks the first 2 b terms of the answer's series in w^2 are exact.
 
 How far it is off is bounded, not estimated. Below the first mode left out, lambda_h, the operator is positive
 definite on what is left out, and there K - w^2 M >= (lambda_h - w^2) / (lambda_h - s) (K - s M) with the
@@ -14,9 +14,9 @@ shift s < 0 at which the stiffness is factorised. So with the residual r of Gale
 
 and between two different loads the error is at most the geometric mean of theirs (Cauchy, Schwarz).
 
-Where every mode has the same damping ratio z, what is left out also damps: of its answer to a load p with
-itself the imaginary part is -2 z w m_3, with m_s = sum (phi_i^T p)^2 / w_i^s over the modes left out. Those
-that stand for them have the true m_2, m_4 (from two blocks on also m_6), but another m_3, of which is known
+Where every mode has the same damping ratio z, what is left out also damps. To a load p it answers p^T u with
+the imaginary part -2 z w m_3, where m_s = sum (phi_i^T p)^2 / w_i^s over the modes left out. The modes that
+stand for them have the true m_2, m_4 (from two blocks on also m_6), but another m_3. Of the true one is known
 
     m_4^(3/2) / m_6^(1/2) <= m_3 <= (m_2 m_4)^(1/2),    m_6 <= m_4 / lambda_h
 

@@ -7,8 +7,8 @@ With modes of mass 1, shapes P on the ports, those of the first contact first, a
 and the derivatives by omega.
 
 Of a ring in which a wave travels there is one structure for each harmonic. Harmonic h of the motion of sector
-k is X_h exp(i h k phi), so it meets the modes of one nodal diameter, with complex shapes P on the ports, in
-which the next sector counts exp(i h phi) times (`TravellingReceptance`):
+k is X_h exp(i h k phi), so it meets the modes of one nodal diameter (`TravellingReceptance`). These have
+complex shapes P on the ports, in which the next sector counts exp(i h phi) times:
 
     G(h omega) = sum_i P_i P_i^H c_i = A + B + i (D - D^T),    P = a + i b
 

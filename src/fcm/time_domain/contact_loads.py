@@ -1,4 +1,4 @@
-"""What contacts bear over cycles of an exact motion: greatest forces, way of the slip, energy."""
+"""The contact loads over cycles of an exact motion: greatest forces, way of the slip, energy."""
 
 from __future__ import annotations
 

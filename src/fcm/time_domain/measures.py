@@ -532,8 +532,8 @@ class Scan(Walk):
     def _may_exceed(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
         """Whether step k may go beyond the extremes so far, by the slopes at its ends.
 
-        A step is a part of the fastest motion in which no slope grows to more than twice those at its ends:
-        what rises and falls by no more goes no further from the middle of its ends than it.
+        With r the greater slope per step at the ends, no slope within the step exceeds 2 r: the step is a
+        short part of the fastest motion. So the motion goes no further than r from the mean of its ends.
         """
         middle: cython.double = 0.5 * (self._values[0, k, r] + self._values[0, k + 1, r])
         reach: cython.double = max(fabs(self._values[1, k, r]), fabs(self._values[1, k + 1, r]))

@@ -52,9 +52,9 @@ SPAN = 2**DOUBLINGS
 class Segments:
     """Arrays over segments, of which the first `count` are there.
 
-    A segment begins at the time `start` [s] with the state vector `y` (d,), lasts for `length` steps of the
-    flow of its `states` (contact,), and is `ended` by that exit of it, or (-1) by the end of the motion.
-    While it lasts, the exits of each contact are no less than `slack` (contact,).
+    A segment begins at the time `start` [s] with the state vector `y` (d,). It lasts for `length` steps of
+    the flow of its `states` (contact,). `ended` is the exit that ends it, -1 where the motion ends. While it
+    lasts, the exits of each contact are no less than `slack` (contact,).
     """
 
     def __init__(self, size: int, contacts: int, capacity: int = 16) -> None:

@@ -183,7 +183,7 @@ class System:
 
 class _Latest(local):
     """What the systems of the scene that this thread came to last have in common, as long as that is there:
-    flows are dear to make."""
+    flows are expensive to make."""
 
     of: Callable[[], Scene | None] = staticmethod(lambda: None)
     common: dict[str, Any] | None = None

@@ -8,10 +8,13 @@ with the frequency it is the saltation matrix
 with g the row that vanishes there and R the derivative of what the transition does to the state.
 
 Along one flow the derivative by the start is the exponential of the flow's matrix (`VariationalFlow`). The
-frequency acts on the forces alone, which may also grow with it: at a fixed time the derivatives of sin(h
-omega t) and cos(h omega t) are h t cos(h omega t) and -h t sin(h omega t), and that of the columns of the
-forces is known with the flow. Of the motion itself only the angle of the forces is needed. The level of the
-forces, a factor of sin and cos, acts as a start does at which they alone differ.
+frequency acts on the forces alone, whose amplitudes may also depend on it. At a fixed time t
+
+    d sin(h omega t) / d omega = h t cos(h omega t),    d cos(h omega t) / d omega = -h t sin(h omega t)
+
+and the derivative of the columns of the forces is known with the flow. Of the motion itself only the angle of
+the forces is needed. The level of the forces, a factor of sin and cos, acts as a start does at which they
+alone differ.
 
 Along one direction the derivative is known at many instants (`Directional`). Instants within one step share
 its series, as those of the extremes of many displacements do.

@@ -5,9 +5,9 @@ scene. One equation g = 0 is added to the balance R = 0. With the tangent t of t
 
     [dR/d(x, omega); row] t = (0, 1),
 
-it is t_omega = 0 of a fold and grad a . t = 0 of a peak of the amplitude a. Its derivatives by any unknown
-are those of w^T dR t, with w the adjoint of the same matrix, so that two more evaluations of the exact
-Jacobian, a little way along t, give all of them.
+it is t_omega = 0 of a fold and grad a . t = 0 of a peak of the amplitude a. Its derivatives by the unknowns
+are those of w^T dR t, with w the adjoint of the same matrix. So two more evaluations of the exact Jacobian, a
+little way along t, give all of them.
 """
 
 from __future__ import annotations
@@ -138,8 +138,8 @@ class ExtendedSystem(Problem):
     def measure(self, z: FloatArray) -> int:
         """As the balance; s by the span. The row becomes the tangent of the response curve.
 
-        A peak is from here on that of the extremes that are the greatest of the cycle here: they are followed
-        as theirs, as the amplitude has a kink where others become greater.
+        A peak is from here on the peak of those extremes that are the greatest of the cycle here. The
+        amplitude itself has a kink where others become greater.
         """
         z = np.asarray(z)
         self.varied.set_parameter(float(z[-1]))

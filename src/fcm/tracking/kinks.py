@@ -1,10 +1,11 @@
 r"""How a curve of special points goes on from a point at which its equations have a kink.
 
-The solutions of the balance at all frequencies and values of s are a surface, and what is special of a point
-is zero along lines on it. Where a contact begins to do something within its cycle, the slopes of its forces
-jump, or change as a root does, and so does what is special: the line goes on in another direction, which no
-derivative on this side of the kink foretells, or along the jump. So the changes of its sign are looked for on
-a small circle on the surface about the point: one is that on the way that was come, another is the way on.
+The solutions of the balance at all frequencies and values of s are a surface, and the condition of a special
+point is zero along lines on it. Where a contact begins to slip, open or close within its cycle, the slopes of
+its forces jump, or change as a root does, and so does that condition. The line then goes on in another
+direction, or along the jump, which no derivative on this side of the kink predicts. So the changes of its
+sign are looked for on a small circle on the surface about the point. One is where the curve came from,
+another is where it goes on.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """The least peak over a range of one number: follow the highest peaks, look where they are lowest, again.
 
-What was followed is nowhere above the response. So where the response, traced at the lowest point of what
-was followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
-Only ordinary curves at such points are traced, at both ends of the range, and in the middle of a part where
-nothing was followed: if all is far above the least there, it is not sought in that part. A higher or a lower
-peak may be one that cannot be followed, of a motion with many states: then only what ordinary curves show can
-be believed, see `by_trials`.
+What was followed is nowhere above the response. So where the response, traced at the lowest point of what was
+followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
+Ordinary curves are traced only at such points, at both ends of the range, and in the middle of a part where
+nothing was followed. If all is far above the least there, it is not sought in that part. A higher or a lower
+peak may be one that cannot be followed, of a motion with many states. Then only ordinary curves tell, see
+`by_trials`.
 """
 
 from __future__ import annotations

@@ -4,13 +4,13 @@ With the peaks A_i(q), each followed along straight lines in the numbers q, the 
 
     minimise t  subject to  A_i(q) <= t,  bounds on q
 
-is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It
-is solved by sequential quadratic programming. At its end the response is traced anew: where other peaks than
-were followed are higher than where the way began, it is traced half of the way back, until it is lower; the
-way goes on with the peaks that are there. Where a contact sticks throughout, its friction changes
-nothing and no way leads down. So the least peak is then sought along the whole range of each number alone,
-as of one number, by trials where not all peaks can be followed, and the way down is taken again from there as
-long as that finds less.
+is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It is
+solved by sequential quadratic programming. At its end the response is traced anew. Where peaks that were not
+followed are higher than the greatest at the start, the step is halved until they are lower; the next step
+follows the peaks that are there. Where a contact sticks throughout, its coefficient of friction has no effect
+and no direction of descent. So the least peak is then sought along the whole range of each number alone, as
+of one number; by trials where not all peaks can be followed. The descent begins again from there, as long as
+that finds less.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A special point of a response as a curve in a number of its scene: smooth pieces, and how these are joined.
 
 Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
-value of the number where they have a kink, at a corner of the response, where another extreme of the cycle
+value of the number where they have a kink, at a corner of the response, or where another extreme of the cycle
 becomes the greatest. `CornerCrossing` finds the way on from there, as `corner_crossing` and `kinks` say.
 """
 
@@ -112,7 +112,7 @@ class Pieces(CornerCrossing):
                 ending is Ending.STALLED
                 and np.linalg.norm(self._off(self.z - first)) < self.options.short_step
             ):
-                return self.points[:1], ending  # short steps about a kink, which lead nowhere
+                return self.points[:1], ending  # short steps about a kink, without progress
             if isinstance(ending, Ending) or len(self.points) > self.options.max_points:
                 return self.points, ending if isinstance(ending, Ending) else Ending.LONG
         return self.points, Ending.LONG

@@ -85,8 +85,8 @@ def values(
 ) -> FloatArray:
     """The functions of all contacts at all unknowns: separation and closing, slip, and limits if none slips.
 
-    Also of those that cannot slip, or whose load does not vary, as a number may pass by the value that makes
-    them so: they are then negative, or change sign with another one.
+    They include contacts that cannot slip, or whose load does not vary, as a number may pass through the
+    value at which that is so. Their functions are then negative, or change sign with another one.
     """
     if not laws:
         return np.zeros(0)

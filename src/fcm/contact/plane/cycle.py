@@ -1,9 +1,9 @@
 """Kernel: one steady cycle of a contact in its plane, its forces summed.
 
 A contact that opens has forgotten everything when it closes again. One that does not open remembers where its
-slider was a period ago: the steady cycle is a fixed point of the map P of that place over a period, which no
-two places leave farther apart than they were. Newton's method finds it, with the derivative of P that comes
-with the slip; where that does not help, a period more is taken as it is.
+slider was a period ago. So the steady cycle is a fixed point of the map P of that place over a period, which
+is nonexpansive: |P(a) - P(b)| <= |a - b|. Newton's method finds it, with the derivative of P that comes with
+the slip; where that does not help, a period more is taken as it is.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 r"""Kernel: integrals over a cycle in the plane, of the forces' harmonics (`Sums`), and their `Derivatives`.
 
 A friction force is U less the place of the slider while the contact sticks, and R times the direction while
-it slips. U and R are trigonometric polynomials, so what is needed are the integrals of exp(-i m theta) over
-all sticks, in closed form, and of both parts of the direction times that over all slips, by Radau's rule on
-the panels by which the direction was found.
+it slips. U and R are trigonometric polynomials. So two kinds of integrals are needed: of exp(-i m theta) over
+all sticks, in closed form, and of both components of the direction times exp(-i m theta) over all slips. The
+latter are by Radau's rule on the panels by which the direction was found.
 
 Their derivatives by the coefficients of the motion go through every piece of the cycle. The forces are
 continuous, so the instants of events do not enter their integrals. What the slider remembers does. With U the

@@ -3,10 +3,11 @@
 The slider rests at any W with |U - W| <= R at every angle: a place common to all discs. It began unstressed;
 it is taken to rest there if the discs allow that, else at the nearest place that is common to them all.
 
-Two small convex problems, each with a disc for every angle: the least t by which all discs have to grow until
-they have a place in common (that of the smallest enclosing circle, with weights), and that nearest place. A
-solution is held by three discs, or two, at most. Both are solved by exchange: the disc that is missed most
-joins those that hold it, and the best that these allow takes its place, until none is missed.
+These are two small convex problems, each with a disc for every angle. One is for the least t by which all
+discs have to grow until they have a place in common, as of the smallest enclosing circle, with weights. The
+other is for that nearest place. A solution is held by three discs, or two, at most. Both are solved by
+exchange: the disc that is missed most joins those that hold it, and the best that these allow takes its
+place, until none is missed.
 
 The disc that is missed most is sought among nodes first. That it is no other is proved by
 
