@@ -40,8 +40,8 @@ def one_here() -> AbstractContextManager[object]:
 class one_thread:  # noqa: N801
     """``with one_thread():`` in a process of others, where numpy has been imported with as many as it likes.
 
-    The number is the whole process's: the first of the
-    threads that are inside sets it, the last gives it back.
+    The number is the whole process's: the first of the threads that are inside sets it, the last gives it
+    back.
     """
 
     _lock, _inside = threading.Lock(), 0

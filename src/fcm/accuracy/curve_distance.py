@@ -527,11 +527,10 @@ class PointwiseDisplacement:
     ) -> None:
         """Displacements (point, 1 + dof) of some points that are not known; then they are.
 
-        z, direction (point, unknown + 1); the first displacement is that of the frequency, relative,
-        the others
-        are those of amplitude (point, dof) in their unit (point, dof). reference_unknowns (point, reference's
-        unknown + 1) is the reference there. NaN where Newton's method finds no point of the reference near,
-        and where more than the most evaluations were spent on such points.
+        z, direction (point, unknown + 1); the first displacement is that of the frequency, relative, the
+        others are those of amplitude (point, dof) in their unit (point, dof). reference_unknowns (point,
+        reference's unknown + 1) is the reference there. NaN where Newton's method finds no point of the
+        reference near, and where more than the most evaluations were spent on such points.
         """
         n: cython.Py_ssize_t = z.shape[1] - 1
         p: cython.Py_ssize_t

@@ -98,8 +98,8 @@ def refined_response(
 ) -> RefinedResponse:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
-    While a peak of a degree of freedom, or a fold, differs from the reference's by more than the accuracy
-    (relative), the harmonics that the spectrum names are added, and all is traced again. Starts are the
+    All is traced again, with the harmonics added that the spectrum names, until no peak of a degree of
+    freedom, and no fold, differs from the reference's by more than the accuracy (relative). Starts are the
     solutions with more harmonics near the branches traced before, and near their stable peaks. The level of
     the forces is followed only with as many harmonics as are predicted to be enough; it may lead to branches
     that fewer harmonics do not have. What would take longer in all than `WorkOptions` allows is not begun,

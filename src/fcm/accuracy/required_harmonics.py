@@ -42,9 +42,9 @@ class RequiredHarmonics(Frozen):
 
 
 class _SpecialPoint(Frozen):
-    """A peak or a fold: places of a path where the reference is looked for, one after the other, and
-    which of the
-    frequency and the amplitudes (1 + dof,) count there."""
+    """A peak or a fold: places of a path where the reference is looked for, one after the other.
+
+    With them, which of the frequency and the amplitudes (1 + dof,) count there."""
 
     path: Path
     amplitude: FloatArray

@@ -8,8 +8,8 @@ Along a branch closed by its own tangent t the determinant of
 changes its sign where a real eigenvalue passes zero without a fold: another branch crosses (Keller,
 "Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977; Allgower and Georg, chapter 8).
 The singular vector there leads to it: the solutions at a distance along that, across the branch, are looked
-for by Newton's method in a bordered system. A corner of the response may change the
-sign by a jump, and is treated alike.
+for by Newton's method in a bordered system. A corner of the response may change the sign by a jump, and is
+treated alike.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The solutions of a balance at all frequencies and levels of the forces: a surface, and its folds.
 
-With the displacements x, the frequency omega and the level lambda the n equations F(x, omega, lambda) = 0
-have a surface of solutions, also where they are singular in x alone. A place on it is found in the plane
-through a known place, of two axes e_1, e_2 in the scaled unknowns z = (x, omega, lambda):
+The solutions of the n equations F(x, omega, lambda) = 0 for the displacements x, the frequency omega and the
+level lambda are a surface, also where dF/dx is singular. A place on it is found in the plane through a known
+place, of two axes e_1, e_2 in the scaled unknowns z = (x, omega, lambda):
 
     F(z) = 0,   e_1 . (z - c) = a,   e_2 . (z - c) = b.
 

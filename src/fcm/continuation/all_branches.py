@@ -160,8 +160,10 @@ def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int,
 
 
 def distances_from_chords(points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Of each chord (point - 1,) between points: its length, the place next to the origin as a part of that,
-    from 0 to 1, and the distance of that place from the origin."""
+    """Length of each chord (point - 1,) between points, its place next to the origin, and the distance of
+    that.
+
+    The place is a part of the chord, from 0 to 1; the distance is from the origin."""
     chord = np.diff(points, axis=0)
     square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
     part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)

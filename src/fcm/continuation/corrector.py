@@ -168,8 +168,7 @@ class Newton(BorderedSystem):
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
         than the most, or the second neither slight nor half as long, it is given up; moved is then the first.
-        Converged is what is close, for convergence of the order 1.5, that of a force whose
-        slope changes as a root.
+        A point counts as converged by the order 1.5, that of a force whose slope changes as a root.
         """
         i: cython.Py_ssize_t
         for i in range(self.z.shape[0]):  # a copy of all at once takes ten times as long

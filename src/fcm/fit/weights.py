@@ -79,9 +79,8 @@ def _errors(
 ) -> tuple[float, FloatArray]:
     """How unlikely the distances are, and sigma (point,) with which they have these squares.
 
-    components : (point,) of each, that are independent; share: whether a share alone is
-    looked at. A floor alone, a share alone, or both; a further number must earn its place (Schwarz's
-    criterion).
+    components : (point,) of each, that are independent; share: whether a share alone is looked at. A floor
+    alone, a share alone, or both; a further number must earn its place (Schwarz's criterion).
     """
     top = float(amplitude.max())
     typical = max(float(np.sqrt(square.mean())), least * top)

@@ -7,8 +7,9 @@ them is its coefficient times the receptance of the structure at its frequency,
 
 so that it is the structure as much as the contact that decides which harmonics matter.
 
-A balanced motion with these harmonics (`EnrichedMotion`) is nearer to the true one: the multipliers about it
-err five to ten times less, and what they change of them says how wrong they may be.
+A balanced motion with these harmonics (`EnrichedMotion`) is nearer to the true one. The errors of its
+multipliers are five to ten times smaller, and their differences from those of the balance estimate the errors
+of the latter.
 
 A structure that is softer than its contacts, as the halves of a joint, would so respond with many times the
 motion itself. Where |G K| > 1 at a port the mean stiffness of the contacts over the cycle resists, too,

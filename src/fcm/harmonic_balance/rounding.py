@@ -267,8 +267,10 @@ def moved_across_curve(
 def _ways(
     balance: Balance, matrix: FloatArray | None, row: FloatArray, scale: FloatArray, errors: FloatArray
 ) -> FloatArray:
-    """The ways (way, unknown + 1) by which errors of the equations (way, unknown) move a point, in units of
-    scale: by the matrix, or where there is none by the condensed system."""
+    """Displacements (way, unknown + 1) of a point, in units of scale, by errors (way, unknown) of the
+    equations.
+
+    They are solved for with the matrix, or where there is none with the condensed system."""
     if matrix is not None:
         right = np.vstack((errors.T, np.zeros(len(errors))))
         return np.asarray(np.linalg.solve(matrix, right).T, dtype=np.float64)

@@ -27,8 +27,8 @@ def harmonic_state(
 ) -> State:
     """The state at the forces' angle 0 of the motion mean + amplitude sin(omega t + phase) (section 4.3).
 
-    The motion is known at the degrees of freedom, of which there may be fewer than modes: the contacts'
-    balanced forces (27), (29) follow from it, and the modes from these.
+    The motion is known at the degrees of freedom, which may be fewer than the modes. The contacts' balanced
+    forces (27), (29) follow from it, and the modes from these.
 
     Parameters
     ----------

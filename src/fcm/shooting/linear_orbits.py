@@ -1,9 +1,9 @@
 """Periodic motions in which no contact changes its state: linear, and found without a search.
 
-A contact that sticks may hold itself closed by its own residual friction, wedged between the structure's
-strains: such a motion may be far from every other, and no branch need lead to it. All that the residual
-friction of the sticking contacts changes is the mean, and linearly; so whether any of it keeps them all from
-slipping and opening, and the open ones open, is a linear programme.
+A contact that sticks may hold itself closed by its own residual friction, wedged in the strained structure.
+Such a motion may be far from every other, and no branch need lead to it. All that the residual friction of
+the sticking contacts changes is the mean, and linearly; so whether any of it keeps them all from slipping and
+opening, and the open ones open, is a linear programme.
 """
 
 from __future__ import annotations

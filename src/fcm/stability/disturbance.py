@@ -7,8 +7,8 @@ the angle and the places of the sliders obey
 
 with constant coefficients: they are carried by the exponential of that system.
 
-K is the stiffness of the modes, of mass 1, with contacts of which each sticks, slips or is open, in the angle
-theta = omega t (`Stiffness`). w are the places where the sliders that stick have come to rest. Of many modes
+K is the stiffness of the modes, of mass 1, in the angle theta = omega t, with contacts of which each sticks,
+slips or is open (`Stiffness`). w are the places where the sliders that stick have come to rest. Of many modes
 that system is decomposed by its eigenvalues. In time, not in angle, it does not depend on the frequency,
 
     q' = v,    v' = -K q - D v + B w,

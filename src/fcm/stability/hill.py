@@ -1,8 +1,8 @@
 r"""Stability by Hill's method: where the sequence of a contact's states is not known.
 
-A disturbance exp(s t) p(t) of a periodic motion is balanced with the harmonics of the motion itself. With
-modes of mass 1, shapes P on the ports, D the derivative by time of means, cosines and sines, and T the
-derivative of the contacts' forces by the motion,
+A disturbance exp(s t) p(t) of a periodic motion is balanced with the harmonics of the motion itself. The
+modes are of mass 1, with shapes P on the ports. D is the derivative by time of means, cosines and sines, and
+T that of the contacts' forces by the motion:
 
     ((s + D)^2 + 2 zeta_i w_i (s + D) + w_i^2) q_i + P_i T P^T q = 0,
 

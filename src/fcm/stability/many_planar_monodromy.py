@@ -1,8 +1,8 @@
 r"""What becomes of a small disturbance of a motion with many contacts that slide in a plane, within a period.
 
-The same equations as in `planar_monodromy`, collocated at the same points. But with K the springs of all
-contacts as if they stuck, S the flexibility of the modes far above, and P the shapes of the others, the
-structure with these springs is put together once:
+The equations are those of `planar_monodromy`, collocated at the same points. But the structure with the
+springs K of all contacts, as if they stuck, is put together once. With S the flexibility of the modes far
+above, and P the shapes of the others,
 
     d = R^-1 P^T q + R^-1 S g,    R = 1 + S K,    q'' + .. + (w^2 + P K R^-1 P^T) q = (R^-1 P^T)^T g
 
@@ -18,9 +18,10 @@ the structure, until another one opens or closes:
 
     d = (R^-1 P^T + (R^-1 S)_o T (R^-1 P^T)_o) q + (R^-1 S + (R^-1 S)_o T (R^-1 S)_o) g
 
-What depends on one angle alone is found at each point by itself, by (q, s): e . du - dr of the contacts that
-slip, what their s feels, and the forces on the modes. With these a step of the length h leaves equations of
-p = q' and s at all its points; A and D are the rule's matrices, q_0, p_0 and s_0 at the beginning:
+What depends on one angle alone is found at each point by itself, from (q, s). These are e . du - dr of the
+contacts that slip, the right sides for their s, and the forces on the modes. With these a step of the length
+h leaves equations for p = q' and s at all its points. With the rule's matrices A and D, and q_0, p_0 and s_0
+at the beginning,
 
     q = q_0 + h A p,    p = p_0 + h A (forces - K q - C p),    r (D s + d s_0) + h lambda s = what s feels
 """

@@ -38,7 +38,7 @@ changes by a product of its columns and rows. What the sliders push the modes wi
 alone, too. Contacts that keep their state through the period are no ports. All is told from the state where
 every contact sticks, which is put together once.
 
-Where the modes that follow are fewer than these ports, they take their place (`by_modes`): with all of them,
+Where the modes that follow are fewer than these ports, they take their place (`by_modes`). Then, with
 K_ab = W_ab^2 + P_a D P_b^T, B = K_ff^-1 and p_f = P_f phi,
 
     d = P^T q + P_f^T q_f,   q_f = B (p_f - K_fm q)

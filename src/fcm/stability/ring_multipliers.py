@@ -1,10 +1,10 @@
 r"""Floquet multipliers of a wave that travels around a ring of sectors.
 
-The motion repeats after n sectors, n = sectors / gcd(engine_order, sectors), and so do the disturbances that
-are looked at: with n = sectors these are all that there are. Their growth in the n-th part of a period, seen
-from the wave, is an eigenvalue of `RingMonodromy`, in a plane of `RingPlanarMonodromy`. A real one crosses 1
-at a fold of the curve of travelling waves. Any other outside the unit circle breaks up the wave, even where
-it is a real multiplier of the whole period.
+The motion repeats after n sectors, n = sectors / gcd(engine_order, sectors). So do the disturbances that are
+considered: with n = sectors these are all. Their growth in the n-th part of a period, seen from the wave, is
+an eigenvalue of `RingMonodromy`, in a plane of `RingPlanarMonodromy`. A real one crosses 1 at a fold of the
+curve of travelling waves. Any other outside the unit circle breaks up the wave, even where it is a real
+multiplier of the whole period.
 """
 
 from __future__ import annotations

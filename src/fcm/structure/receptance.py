@@ -38,9 +38,9 @@ class Receptance:
     force (driven, mode) acts at the harmonics driven; forced (harmonic,) is the number of the force at each
     of the list, -1 where there is none, and first the place of harmonic 1 in the list.
 
-    mean_at, wave_at (port,), stride : where the mean of a port and the real part of its first harmonic are
-    among numbers laid out as the unknowns of a balance, and how far on that of each next one is: see
-    `fcm.structure.layout`. contacts says of how many the ports are."""
+    mean_at, wave_at (port,): indices of the mean of a port and of the real part of its first harmonic among
+    the unknowns of a balance, see `fcm.structure.layout`. stride: from the index of one harmonic to the next.
+    contacts: how many the ports belong to."""
 
     def __init__(
         self,

@@ -5,11 +5,10 @@ The state vector is
     y = (q, q', f, n, 1, sin(h theta), cos(h theta) ...),    d = 2 modes + 2 contacts + 1 + 2 waves numbers,
 
 with the modal displacements and velocities q, q', the friction forces f, the changes n = k_v v of the normal
-loads from their preloads, and the phase angle theta = omega t of the forces at
-each of their harmonics h, of which the first is 1. Then y' = A y in every
-combination of states, forcing and preload included. The forces of the contacts are states of their own:
-k_u (u - w) of a stiff contact, computed from displacements, would lose as many digits as it is stiffer than
-the structure.
+loads from their preloads, and the phase angle theta = omega t of the forces at each of their harmonics h, of
+which the first is 1. Then y' = A y in every combination of states, forcing and preload included. The forces
+of the contacts are states of their own: k_u (u - w) of a stiff contact, computed from displacements, would
+lose as many digits as it is stiffer than the structure.
 
 Over a step h = 1 / rate the series of exp(A h) is complete to rounding after `ORDER` terms, whatever A is:
 defective, singular, resonant without damping. Whole steps are powers of exp(A h). The functions that end a

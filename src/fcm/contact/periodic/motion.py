@@ -1,7 +1,7 @@
 """Kernel: a contact's periodic motion as trigonometric polynomials: its load and its two limits.
 
-With forces instead of displacements, everything divided by the greatest
-amplitude, the limits between which the slider k_u w is held are
+In forces instead of displacements, and over the greatest amplitude, the limits between which the slider k_u w
+is held are
 
     lower(theta) = k_u u - mu n,   upper(theta) = k_u u + mu n,   n = n_0 + k_v v where that is positive.
 

@@ -124,9 +124,9 @@ def planar_gradients(
 
     Notes
     -----
-    By the variational equation of the slip direction, and through all that the slider remembers; measured
-    against differences, 1e-8 of the stiffness. Within rounding of the onset of slip,
-    or of opening, a derivative is that of the side on which there is none.
+    The derivatives are by the variational equation of the slip direction, and through all that the slider
+    remembers. They differ from difference quotients by 1e-8 of the stiffness. Within rounding of the onset of
+    slip, or of opening, a derivative is that of the side on which there is none.
 
     Examples
     --------
