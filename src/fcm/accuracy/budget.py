@@ -17,8 +17,8 @@ class Budget:
 
     @classmethod
     def of(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:
-        """In proportion to the work that the response itself took, so that its error never takes much more;
-        for a part of it the same part.
+        """The budget in proportion to the work that the response itself took, so that its error never takes
+        much more; for a part of it the same part.
 
         >>> from fcm.harmonic_balance.work_budget import WorkCount
         >>> work = WorkCount()

@@ -97,7 +97,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def cubic(self, k: cython.Py_ssize_t, place: cython.double, j: cython.Py_ssize_t) -> cython.double:
-        """From known point k to the next, or beyond the last."""
+        """The value on the cubic from known point k to the next, or beyond the last."""
         last: cython.Py_ssize_t = self.known_points - 1
         k = min(k, last - 1)
         begin: cython.double = self.place[self.number[k]]
@@ -111,7 +111,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def slope(self, k: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.double:
-        """At known point k; beside a gap by what is there."""
+        """The slope at known point k; beside a gap from the points that are there."""
         one: cython.Py_ssize_t = max(k - 1, 0)
         other: cython.Py_ssize_t = min(k, self.known_points - 2)
         before: cython.double = self.secant(one, j)
@@ -127,7 +127,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def secant(self, k: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.double:
-        """From known point k to the next."""
+        """The secant from known point k to the next."""
         return (self.value[self.number[k + 1], j] - self.value[self.number[k], j]) / self.step(k)
 
     @cython.cfunc
@@ -364,7 +364,7 @@ class ReferenceCurveData:
     @cython.cfunc
     @cython.exceptval(check=False)
     def solve(self, k: cython.Py_ssize_t, wanted: cython.double) -> cython.bint:
-        """Where on a piece the parameter is the one wanted, by halving."""
+        """Part of a piece at which the parameter is the one wanted, by halving."""
         length: cython.double = self.place[k + 1] - self.place[k]
         before: cython.double = self.parameter[k]
         after: cython.double = self.parameter[k + 1]
@@ -472,7 +472,7 @@ def rises(
     tops: cython.Py_ssize_t[::1],
     options: CurveDistanceOptions = CURVE_DISTANCE,
 ) -> FloatArray:
-    """By how much (dof,) a curve is higher between its tops and the points next to them than at its tops.
+    """Rises (dof,) of a curve between its tops and the points next to them, above its tops.
 
     Its amplitudes (point, dof), with growth (point, dof), are moved (point, dof): they follow cubics, what
     they are moved by straight lines. Nothing is told of what lies between a point and a corner.

@@ -41,7 +41,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 class Errors(Frozen):
-    """Of a path; relative; NaN where the pair cannot tell.
+    """Errors of a path; relative; NaN where the pair cannot tell.
 
     amplitude (point, dof): by how much the reference differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
@@ -82,7 +82,7 @@ class Errors(Frozen):
     motions: KnownMotions | None = field(default=None, repr=False)
 
     def part(self, rows: npt.NDArray[np.intp]) -> Errors:
-        """Those of some points of the path."""
+        """The errors of some points of the path."""
         names = ("amplitude", "truncation", "is_same_curve", "ends_before", "contact_loads")
         arrays: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
         return replace(self, **arrays, contacts=self.contacts.part(rows))
@@ -166,7 +166,7 @@ def errors_along(
 def _same_error(
     system: System, reported: ReportedPath, contacts: ContactRecord, share: FloatArray, error: float
 ) -> Errors:
-    """Of a path of which everything has one error: none, where the reference's curve is this one, or NaN."""
+    """Errors that are all the same: 0, where the reference's curve is this one, or NaN."""
     path, amplitude = reported.path, reported.quantities.amplitude
     every, exact = np.full_like(amplitude, error), not np.isnan(error)
     contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), error)

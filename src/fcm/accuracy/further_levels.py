@@ -32,7 +32,7 @@ def with_traced(found: RefinedResponse, traced: Traced, accuracy: float) -> Refi
 
 
 def with_levels_below_peaks(found: RefinedResponse, accuracy: float) -> RefinedResponse:
-    """With the branches that the level leads to where low harmonics come to the highest peaks."""
+    """A response with the branches that the level leads to where low harmonics come to the highest peaks."""
     system, options = found.system, found.system.option(LEVELS)
     looked = list(_level_solutions(system, _excited_frequencies(found, options), options))
     return _with_branches(found, looked, [z for one in looked for z in one.solutions], accuracy)
@@ -70,7 +70,7 @@ def with_levels_where_unstable(
 def _with_branches(
     found: RefinedResponse, looked: Sequence[LevelSolutions], starts: Sequence[FloatArray], accuracy: float
 ) -> RefinedResponse:
-    """With the branches through solutions, and where it was looked for them."""
+    """A response with the branches through solutions, and the frequencies at which these were looked for."""
     if not looked:
         return found
     traced = with_further(found.system, found.traced, looked, starts)

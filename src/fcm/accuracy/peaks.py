@@ -49,8 +49,8 @@ def heights(
 
 
 def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: Indices) -> FloatArray:
-    """By how much (dof,) a curve whose amplitudes are moved (point, dof) is higher between its highest points
-    and the next; places: the indices of the highest.
+    """Rise (dof,) of a curve with displaced amplitudes (point, dof) between its highest points and the next;
+    places: the indices of the highest.
 
     Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
     is told of what lies between a point and a corner.

@@ -179,7 +179,7 @@ class _Search:
         return [_Front(k, z, None, forward) for forward in (True, False)]
 
     def _follow(self, fronts: list[_Front]) -> None:
-        """On from fronts, from that which told most."""
+        """Follow the reference on from fronts, from the one that told most."""
         while fronts and self.is_open:
             best = max(fronts, key=lambda one: one.gain)
             fronts.remove(best)
@@ -251,7 +251,7 @@ class _UnknownError:
 
 
 def _newly_known(piece: CurvePiece, unknown: Sequence[_UnknownError]) -> int:
-    """Of how many points a piece tells, that nothing was told of."""
+    """Number of points that a piece is the first to tell of."""
     count = 0
     for one in unknown:
         passed = piece.passes(one.path.parameter)

@@ -288,7 +288,7 @@ class ReferenceCurve:
         return np.stack((nothing, left))
 
     def _left_out(self, system: System, prolongation: Prolongation, z: FloatArray) -> FloatArray:
-        """By how much (dof,) the harmonics that a system lacks would change a motion of it."""
+        """Changes (dof,) of a motion of a system by the harmonics that it lacks."""
         return changes_left_out(system, prolongation.balance, z, self.options)
 
     def _points_around_peak(self, top: int) -> list[int]:
@@ -571,7 +571,7 @@ def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:
 
 
 def _with_ends(path: Path, linear: Mask) -> Mask:
-    """With the corners at which linear parts end: there rounding decides what a point is."""
+    """The linear points, with the corners at which linear parts end: rounding decides what a corner is."""
     neighbours = np.zeros_like(linear)
     neighbours[1:] |= linear[:-1]
     neighbours[:-1] |= linear[1:]

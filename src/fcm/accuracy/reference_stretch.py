@@ -173,7 +173,8 @@ class StretchFollower:
         return None
 
     def _same_frequency(self, i: int) -> StretchEnd | None:
-        """At the frequency of a point: what its motion leads to."""
+        """The motion of the reference at the frequency of a point that Newton's method finds from the motion
+        there."""
         guess = self.finer.extended(self.curve.z[i], self.fewer)
         return self._found(i) if self.prolongation.find_at_frequency(guess, True) else None
 

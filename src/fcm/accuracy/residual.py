@@ -19,8 +19,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 def changes_left_out(system: System, balance: Balance, z: FloatArray, options: PairOptions) -> FloatArray:
-    """By how much (dof,) the amplitudes of a motion z (unknown + 1,) change by what the balance of a system
-    leaves out.
+    """Changes (dof,) of the amplitudes of a motion z (unknown + 1,) by what the balance of a system leaves
+    out.
 
     Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
     and degrees of freedom only as far as the options allow.

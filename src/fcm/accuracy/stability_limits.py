@@ -102,7 +102,7 @@ class _ReferenceGrowth:
         self.frequency = math.nan  # of the place that was looked at last
 
     def growth(self, place: float) -> float:
-        """Of disturbances on the curve of more harmonics beside a place; NaN where it is not known.
+        """Growth of disturbances on the curve of more harmonics beside a place; NaN where it is not known.
 
         The finer motion of so many harmonics tells it: to balance its own as well would be expensive, and is
         done only where it does not tell.

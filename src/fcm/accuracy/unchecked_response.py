@@ -45,13 +45,13 @@ class UncheckedResponse(Frozen):
     before: UncheckedResponse | None = field(default=None, kw_only=True)
 
     def with_traced(self, traced: Traced) -> UncheckedResponse:
-        """With further branches, which come after its own."""
+        """The response with further branches, which come after its own."""
         further = traced.branches.paths[len(self.quantities) :]
         quantities = (*self.quantities, *(reported_quantities(self.system, path) for path in further))
         return UncheckedResponse(self.system, traced, quantities, self.seconds)
 
     def with_every_branch(self) -> UncheckedResponse:
-        """With isolated branches, and those through branch points."""
+        """The response with isolated branches, and those through branch points."""
         return self.with_traced(with_further_branches(self.system, self.traced))
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:

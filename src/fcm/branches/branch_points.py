@@ -41,7 +41,7 @@ class BranchPoint(Frozen):
 def branch_points(
     system: System, paths: Sequence[Path], options: BranchingOptions = BRANCHING
 ) -> Iterator[BranchPoint]:
-    """Those of paths of a system."""
+    """The branch points of paths of a system."""
     balance: Balance | None = None
     for path in paths:
         for i in sign_changes(path.orientation):
@@ -59,8 +59,8 @@ def sign_changes(orientation: FloatArray) -> list[int]:
 def branch_point_at(
     problem: Problem, balance: Balance, path: Path, i: int, options: BranchingOptions = BRANCHING
 ) -> BranchPoint:
-    """That between point i of a path of a problem and the next; the problem is one of a balance, in its
-    frequency or in the level of its forces."""
+    """The branch point between point i of a path of a problem and the next; the problem is one of a balance,
+    in its frequency or in the level of its forces."""
     z = _located(Segment(problem, path, i), path.orientation[i], options)
     return BranchPoint(z, tuple(_leaving(problem, balance, z, path, i, options)))
 

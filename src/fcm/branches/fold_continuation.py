@@ -43,7 +43,7 @@ class Folds(Frozen):
 
     @property
     def level(self) -> FloatArray:
-        """Of the forces."""
+        """Level of the forces."""
         return self.z[:, -1]
 
     @property

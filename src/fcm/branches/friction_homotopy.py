@@ -81,7 +81,7 @@ class FrictionProblem(Problem):
 
 
 def with_friction_raised(system: System, found: Traced) -> Traced:
-    """With the branches to which raising the friction from none leads, where contacts shake down."""
+    """The branches with those to which raising the friction from none leads, where contacts shake down."""
     paths, scene = found.branches.paths, system.scene
     if not (paths and scene.contacts) or scene.loads or system.own_laws or not may_wedge(scene):
         return found

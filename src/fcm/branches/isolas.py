@@ -39,7 +39,7 @@ class LevelOneCrossings(Frozen):
 def level_one_crossings(
     system: System, found: Sequence[LevelSolutions], paths: tuple[Path, ...]
 ) -> LevelOneCrossings:
-    """Those that lie on none of some paths.
+    """Passings of the level 1 by curves of folds that lie on none of some paths.
 
     Parameters
     ----------

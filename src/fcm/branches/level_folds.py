@@ -45,12 +45,12 @@ class LevelFold(NamedTuple):
 
     @property
     def direction(self) -> FloatArray:
-        """In which displacements and frequency change there, (unknown + 1,)."""
+        """Direction (unknown + 1,) of displacements and frequency there."""
         return self.before[:-1]
 
     @property
     def directions(self) -> tuple[FloatArray, ...]:
-        """In which displacements, frequency and level change there: in the middle, before, after."""
+        """Directions of displacements, frequency and level there: in the middle, before, after."""
         smooth = self.before is self.after
         return (self.before,) if smooth else (self.before + self.after, self.before, self.after)
 
@@ -67,7 +67,7 @@ class LevelFold(NamedTuple):
 
 
 def level_folds(path: Path, omega: float, unit: float = 1.0) -> tuple[LevelFold, ...]:
-    """Where a curve of levels at a frequency turns; its displacements and levels are multiples of a unit."""
+    """The turns of a curve of levels at a frequency; its displacements and levels are multiples of a unit."""
     levels = unit * path.parameter
     rises = np.diff(levels) > 0.0
     found = []
@@ -81,7 +81,7 @@ def level_folds(path: Path, omega: float, unit: float = 1.0) -> tuple[LevelFold,
 
 
 def _direction(path: Path, i: int, unit: float) -> FloatArray:
-    """Of a curve of the level at its point, (unknown + 2,)."""
+    """The direction of a curve of the level at its point, (unknown + 2,)."""
     return unit * np.insert(path.direction[i], -1, 0.0)
 
 

@@ -88,7 +88,7 @@ def at_its_frequency(
 def _harmonic_stages(
     system: System, fewer: tuple[int, ...], options: ProlongationOptions
 ) -> list[list[Prolongation]]:
-    """From fewer harmonics to those of a system: at once, and by some of them."""
+    """Stages of harmonics from fewer to those of a system: at once, and by some of them."""
     more = system.harmonics
     between, count = list[tuple[int, ...]](), len(fewer) * options.harmonics_factor
     while count < len(more):

@@ -18,8 +18,8 @@ from fcm.harmonic_balance.system import System
 
 
 def with_further_branches(system: System, found: Traced, isolated: bool = True) -> Traced:
-    """With isolated branches, and those through branch points, of the response and of levels; and of the
-    motions that friction raised from none leads to.
+    """The branches, with isolated ones, and those through branch points, of the response and of levels; and
+    with the motions that friction raised from none leads to.
 
     Without isolated ones it is noted from where curves of folds would have been followed.
     """
@@ -38,7 +38,7 @@ def _with_connected(system: System, found: Traced, isolated: bool) -> Traced:
 
 
 def with_isolas(system: System, found: Traced) -> Traced:
-    """With the isolated branches that curves of folds come to, and where these curves were lost."""
+    """The branches with the isolated ones that curves of folds come to, and where these curves were lost."""
     met = level_one_crossings(system, found.found, found.branches.paths)
     if met.uncertain != found.folds_lost:
         found = replace(found, folds_lost=met.uncertain)
@@ -70,7 +70,7 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
 
 
 def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:
-    """With the branches that leave others at branch points, of two mirror images one."""
+    """The branches with those that leave them at branch points, of two mirror images one."""
     if not system.scene.contacts:
         return found
     known, left = 0, options.max_starts

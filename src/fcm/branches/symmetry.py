@@ -27,7 +27,7 @@ class Symmetry(Frozen):
     factor: FloatArray
 
     def image(self, z: FloatArray) -> FloatArray:
-        """Of a motion (unknown + 1,)."""
+        """The mirror image of a motion (unknown + 1,)."""
         blocks = z[:-1].reshape(len(self.counterpart), -1)
         return np.append(self.factor * blocks[self.counterpart], z[-1])
 

@@ -27,7 +27,7 @@ from fcm.model.scene import FloatArray
 
 
 class FoundPeak(NamedTuple):
-    """Where a response has a peak: omega [rad/s], and the size of the contacts' displacements."""
+    """A peak of a response: omega [rad/s], and the size of the contacts' displacements."""
 
     omega: float
     size: float
@@ -60,13 +60,13 @@ class Traced(Frozen):
 
     @property
     def own_peaks(self) -> tuple[FoundPeak, ...]:
-        """Those of the branches."""
+        """The peaks of the branches."""
         tops = (path.z[path.where(Mark.PEAK)] for path in self.branches.paths)
         return tuple(FoundPeak(float(z[-1]), float(np.linalg.norm(z[:-1]))) for one in tops for z in one)
 
     @property
     def peaks(self) -> tuple[FoundPeak, ...]:
-        """Those of the branches, then those of fewer harmonics."""
+        """The peaks of the branches, then those of the response with fewer harmonics."""
         return *self.own_peaks, *self.fewer_peaks
 
     def lost_peaks(self, options: LevelCurveOptions) -> tuple[float, ...]:
@@ -172,7 +172,7 @@ def with_further(
 
 
 def _without_images(system: System, found: Traced) -> Traced:
-    """With one of two branches that are mirror images."""
+    """What was traced, with one of two branches that are mirror images."""
     paths, mirrored = without_images(system, found.branches.paths)
     return replace(found, branches=replace(found.branches, paths=paths), mirrored=mirrored)
 

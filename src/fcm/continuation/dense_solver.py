@@ -132,7 +132,7 @@ def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.doub
 @cython.cfunc
 @cython.exceptval(check=False)
 def condense(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.bint:
-    """Of rows [M R], with M (n, n), and [L D] below, R becomes M^-1 R, and D becomes D - L M^-1 R.
+    """Replace the rows [M R], with M (n, n), and [L D] below: R becomes M^-1 R, and D becomes D - L M^-1 R.
 
     False if M is singular or not finite; swapped (n,).
     """
@@ -281,8 +281,7 @@ def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t, count: cython.Py_
 @cython.inline
 @cython.exceptval(check=False)
 def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.double:
-    """Of a row up to n, from the diagonal on, the greatest size: four at a time, that do not wait for one
-    another.
+    """Greatest size in a row up to n, from the diagonal on: four at a time, that do not wait for one another.
 
     What is no number is passed over here, and makes its column none in all rows below: the last has 0.
     """

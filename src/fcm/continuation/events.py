@@ -154,8 +154,8 @@ class Landing:
 
 
 class End(NamedTuple):
-    """Where a function of z (n + 1,), which may jump, becomes negative; or before that by no more than a
-    length."""
+    """The curve ends where a function of z (n + 1,), which may jump, becomes negative; or before that by no
+    more than a length."""
 
     value: Callable[[FloatArray], float]
     within: float = 0.0

@@ -80,7 +80,8 @@ class ExtremumSearch:
         self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 
     def extreme(self, output: int | None) -> Sample:
-        """Where an output is greatest, or without one the parameter, as near as the curve is found."""
+        """The sample where an output is greatest, or without one the parameter, as near as the curve is
+        found."""
         low, high = self._between(output)
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True

@@ -132,7 +132,7 @@ class Follower:
         self.step, self.size = checkpoint.step, checkpoint.size
 
     def checkpoint(self) -> Checkpoint:
-        """Where it is."""
+        """The state from which the curve can go on after an interruption."""
         return Checkpoint(
             step=self.step, size=self.size, **self.recorder.state(), **stepper_state(self.stepper)
         )

@@ -42,7 +42,7 @@ class Follower(Protocol):
 
 
 def step_factor(aim: float, error: float, cubic: bool = False) -> float:
-    """Of a step that has missed the curve by an error, to one that misses it by what is aimed at.
+    """Factor of the next step, after one that missed the curve by an error, for the miss that is aimed at.
 
     The prediction is a parabola, and what it misses grows as the third power; or a cubic: as the fourth.
     """
@@ -141,7 +141,7 @@ class LabelledSwitching:
         return bool(here.tangent[-1] * there[-1] > 0.0 and straight)
 
     def step_vector(self) -> FloatArray:
-        """Of a step, from here to there, in the curve's own size."""
+        """The step from here to there in the size of the curve itself."""
         return np.array((np.array(self.stepper.there.z) - self.stepper.here.z) / self.stepper.newton.scale)
 
     def goes_straight(self) -> bool:

@@ -16,7 +16,7 @@ from fcm.continuation.problem import Point
 
 @cython.cclass
 class Predictor:
-    """Of the point that is a length from here.
+    """Predicts the point at a length from here.
 
     curvature (n + 1,) is the second derivative of the parabola; second and third (n + 1,) are the second and
     third of the cubic, in scaled coordinates. has_cubic says whether there is one, cubic whether it is taken.

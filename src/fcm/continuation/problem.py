@@ -195,7 +195,7 @@ class Point:
         angle: cython.double[::1],
         first: cython.Py_ssize_t,
     ) -> cython.Py_ssize_t:
-        """Of the group from first on the number of that of a kind whose angle is nearest to one given.
+        """Index, in the group from first on, of the margin of a kind whose angle is nearest to a given one.
 
         -1 if there is none near it.
         """

@@ -146,7 +146,7 @@ def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[
 
 
 def _differences(stepper: Stepper, kind: int, z: FloatArray, steps: FloatArray) -> FloatArray:
-    """By how much (n + 1,) the square of a kind is more a step ahead of z in each unknown."""
+    """Differences (n + 1,) of the square of a kind by a step ahead of z in each unknown."""
     value, ahead, found = stepper.problem.square(kind, z), z.copy(), np.empty(len(z))
     for i in range(len(z)):  # a matrix of all would be as large as that of the equations
         ahead[i] += steps[i]

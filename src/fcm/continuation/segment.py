@@ -82,7 +82,7 @@ class Segment:
 
     @property
     def direction(self) -> FloatArray:
-        """Of the curve there, in the units of z."""
+        """Direction of the curve there, in the units of z."""
         direction: FloatArray = np.asarray(self.newton.tangent) * self._scale
         return direction
 

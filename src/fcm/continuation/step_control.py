@@ -246,7 +246,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
     def length(self, point: Point) -> cython.double:
-        """Of the way from here to the plane that a point lies in."""
+        """Length from here to the plane that a point lies in."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
         for i in range(point.z.shape[0]):

@@ -14,8 +14,8 @@ from fcm.model.scene import FloatArray
 def waves(
     harmonics: tuple[float, ...], samples_of_period: int = HARMONIC_BALANCE.extremes.samples
 ) -> tuple[FloatArray, FloatArray]:
-    """Of each harmonic at the samples, so many for each period of the highest, (harmonic, sample); one
-    harmonic alone needs no samples."""
+    """cos(h theta) and sin(h theta) (harmonic, sample) of each harmonic, so many samples for each period of
+    the highest; one harmonic alone needs none."""
     samples = int(samples_of_period * harmonics[-1]) if len(harmonics) > 1 else 0
     angle = np.outer(harmonics, 2.0 * np.pi * np.arange(samples) / max(samples, 1))
     return np.cos(angle), np.sin(angle)

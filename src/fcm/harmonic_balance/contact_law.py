@@ -166,13 +166,13 @@ class KernelLaw(Law):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """And their tangent, if that is wanted."""
+        """Compute the forces, and their tangent if that is wanted."""
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def take_forces(self, forces: cython.double[::1]) -> cython.void:
-        """Those of the kernel, less the preload that the structure at rest balances."""
+        """Take the forces of the kernel, less the preload that the structure at rest balances."""
         i: cython.Py_ssize_t
         for i in range(self.force.shape[0]):
             self.force[i] = forces[i]
@@ -183,7 +183,7 @@ class KernelLaw(Law):
     def take_margins(
         self, count: cython.int, kind: cython.int[::1], value: cython.double[::1], angle: cython.double[::1]
     ) -> cython.int:
-        """So many that were found; the others are none."""
+        """Take as many margins as were found; the others are none."""
         i: cython.Py_ssize_t
         for i in range(self.margins):
             self.kind[i] = kind[i] if i < count else NONE
@@ -193,7 +193,7 @@ class KernelLaw(Law):
 
 
 def kind_of(law: Law, i: int, contact: int) -> int:
-    """Of the margin i of a contact, which it is among those of all contacts; for problems in Python."""
+    """The kind of the margin i of a contact among those of all contacts; for problems in Python."""
     return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)
 
 
@@ -218,7 +218,7 @@ class LineLaw(KernelLaw):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """And their tangent, if that is wanted."""
+        """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
         self.take_forces(self.kernel.forces)
         self.nonlinear = self.kernel.kind == MIXED
@@ -291,7 +291,7 @@ class PlanarLaw(KernelLaw):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """And their tangent, if that is wanted."""
+        """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
         self.take_forces(self.kernel.forces)
         # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
@@ -317,7 +317,8 @@ class PlanarLaw(KernelLaw):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def compute_resistance(self) -> cython.int:
-        """While it sticks k_u, while it slips mu k_v along its direction by the normal displacement."""
+        """The resistance along a direction is k_u while it sticks; mu k_v, by the normal displacement, while
+        it slips."""
         sums = self.kernel.sums
         rubs: cython.bint = self.mu * self.k_u > 0.0
         stick: cython.double = 0.0

@@ -11,14 +11,14 @@ from fcm.model.scene import FloatArray
 
 
 class ContactMotions(Frozen):
-    """Of every point; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
+    """The motions of the contacts at every point; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
 
     motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic) across the contacts
     friction: FloatArray | None  # (point, contact, 2) amplitude of the fundamental of that in a plane
     law: FloatArray  # (contact, 4) mu, k_u, k_v, n_0
 
     def at(self, rows: npt.NDArray[np.intp]) -> ContactMotions:
-        """Of some points, with a gap where an index is -1."""
+        """The motions of some points, with a gap where an index is -1."""
         motion, friction = self.motion[rows], None if self.friction is None else self.friction[rows]
         motion[rows < 0] = np.nan
         if friction is not None:

@@ -13,7 +13,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 def jacobian_of(balance: Balance) -> FloatArray:
-    """Of a balance as it was evaluated last, (unknown, unknown + 1), also of one that is condensed."""
+    """The Jacobian (unknown, unknown + 1) of a balance as it was evaluated last, also of one that is
+    condensed."""
     if not balance.rank:
         return np.array(balance.jacobian)
     tangent, n, w = np.asarray(balance.tangent), balance.unknowns, balance.width

@@ -282,7 +282,7 @@ class Displacements(Extremes):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def sum_modes(self) -> cython.int:
-        """From the modes to the degrees of freedom."""
+        """Sum the modes to displacements of the degrees of freedom."""
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t

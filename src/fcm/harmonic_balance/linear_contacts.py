@@ -133,8 +133,8 @@ class LinearContacts:
 
     @np.errstate(invalid="ignore", over="ignore", divide="ignore")
     def factor(self, row: FloatArray, by: FloatArray) -> float:
-        """Of the system closed by a row (unknown + 1,), by (unknown,) the derivative by the parameter; the
-        sign of its determinant, or 0."""
+        """Factor the system closed by a row (unknown + 1,), by (unknown,) the derivative by the parameter;
+        the sign of its determinant, or 0."""
         h = np.asarray(self.receptance.harmonics)[:, None] * self.receptance.omega
         c = 1.0 / (self.square - h * h + 1j * h * self.rate)
         self.c_re, self.c_im = np.ascontiguousarray(c.real), np.ascontiguousarray(c.imag)

@@ -99,8 +99,8 @@ def modal_compliance(
 def retained_modes(
     yields: FloatArray, ports: int, parts: int, options: CondensationOptions = CONDENSATION
 ) -> int:
-    """To how many modes many contacts are condensed, each in so many parts; 0 where these are not much fewer
-    than the ports.
+    """Number of modes to which many contacts are condensed, each in so many parts; 0 where these are not much
+    fewer than the ports.
 
     >>> modes = np.r_[np.full(40, 10.0), np.full(250, 0.5), np.full(310, 0.1)]
     >>> retained_modes(modes, 600, 7), retained_modes(modes[::5], 120, 3)
@@ -177,7 +177,8 @@ class CondensedSystem:
 
     @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
-        """Of the system closed by a row (unknown + 1,) in units of scale; the sign of its determinant, or 0.
+        """Factor the system closed by a row (unknown + 1,) in units of scale; the sign of its determinant, or
+        0.
 
         by (unknown,) is the derivative by the parameter.
         """

@@ -60,7 +60,7 @@ def sums_of_rows(
 
 @cython.cclass
 class ModalCompliance:
-    """Of a receptance at the frequency that it was put to last; forces are laid out as unknowns.
+    """The compliance of the modes of a receptance at its present frequency; forces are laid out as unknowns.
 
     flexibility (mode, mode): displacements under mean forces. place (part, port): where the mean and the real
     and imaginary part of each harmonic of a port are among the unknowns.
@@ -193,7 +193,8 @@ class ModalEquations:
     def set_closing_row(
         self, row: cython.double[::1], by: cython.double[::1], scale: cython.double[::1]
     ) -> cython.int:
-        """By a row (unknown + 1,) in units of scale; by (unknown,) is the derivative by the parameter."""
+        """Close the system by a row (unknown + 1,) in units of scale; by (unknown,) is the derivative by the
+        parameter."""
         i: cython.Py_ssize_t
         for i in range(self.by.shape[0]):
             self.by[i] = by[i]
@@ -509,7 +510,7 @@ def linear_contacts(
 @cython.cfunc
 @cython.exceptval(check=False)
 def _dot(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
-    """Of vectors, in four sums that do not wait for one another."""
+    """The scalar product of vectors, in four sums that do not wait for one another."""
     n: cython.Py_ssize_t = a.shape[0]
     i: cython.Py_ssize_t = 0
     p: cython.double = 0.0

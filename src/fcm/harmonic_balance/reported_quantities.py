@@ -29,12 +29,12 @@ class ReportedQuantities(Frozen):
     linear: npt.NDArray[np.bool_]
 
     def with_rows(self, after: npt.NDArray[np.intp], other: ReportedQuantities) -> ReportedQuantities:
-        """With the points of another inserted after some points."""
+        """The quantities with those at the points of another inserted after some points."""
         rows = zip(vars(self).values(), vars(other).values(), strict=True)
         return ReportedQuantities(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
 
     def part(self, rows: slice | npt.NDArray[np.intp]) -> ReportedQuantities:
-        """Of some points."""
+        """The quantities at some points."""
         return ReportedQuantities(*(mine[rows] for mine in vars(self).values()))
 
 

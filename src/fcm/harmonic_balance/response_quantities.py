@@ -51,23 +51,23 @@ class ContactRecord(Frozen):
 
     @classmethod
     def at(cls, system: System, z: FloatArray) -> ContactRecord:
-        """At points z (point, unknown + 1)."""
+        """The record at points z (point, unknown + 1)."""
         loop = loops(system, z)
         return cls(loop, *cycles(system, z, loop))
 
     @classmethod
     def joined(cls, parts: Sequence[ContactRecord]) -> ContactRecord:
-        """Of points one after the other."""
+        """The record of the points of several, one after the other."""
         return cls(
             *(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
         )
 
     def part(self, rows: IntArray) -> ContactRecord:
-        """Of some points."""
+        """The record of some points."""
         return ContactRecord(self.loop[rows], self.words[rows], self.contact_loads[rows])
 
     def with_rows(self, after: IntArray, other: ContactRecord) -> ContactRecord:
-        """With the points of another inserted after some points."""
+        """The record with the points of another inserted after some points."""
         at, words = after + 1, self.words.astype(np.result_type(self.words, other.words))
         return ContactRecord(
             np.insert(self.loop, at, other.loop, axis=0),

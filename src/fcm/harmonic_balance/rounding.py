@@ -238,7 +238,7 @@ def _as_balanced(
 def moved_across_curve(
     balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray, options: DigitOptions
 ) -> FloatArray:
-    """By how much errors of the equations (unknown,) move a point across the curve.
+    """Displacements (unknown,) of a point across the curve by errors (unknown,) of the equations, at most.
 
     nan in a corner that the curve does not leave in the direction given. Of many contacts it is no bound but
     some times the root of the mean square, over errors of random signs: no inverse is made of so many.
@@ -283,7 +283,7 @@ def _ways(
 
 
 def _fundamental_positions(balance: Balance) -> npt.NDArray[np.intp]:
-    """Of the real part of each port's fundamental among the unknowns."""
+    """Indices of the real part of each port's fundamental among the unknowns."""
     places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.receptance.first]
     return places
 

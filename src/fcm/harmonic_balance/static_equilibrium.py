@@ -207,7 +207,7 @@ def _found(linear: Linear, held: Held, y: FloatArray) -> AtRest:
 
 
 def normal_forces_at_rest(scene: Scene) -> FloatArray:
-    """Of each contact under the static loads of a scene, (contact,); 0 of those that are open.
+    """Normal force (contact,) of each contact under the static loads of a scene; 0 of those that are open.
 
     Raises
     ------

@@ -140,7 +140,7 @@ class System(Frozen):
 
     @cached_property
     def layout(self) -> Layout:
-        """Where the contacts' displacements are among the unknowns."""
+        """The layout of the contacts' displacements among the unknowns."""
         return self.layout_of(self.harmonics)
 
     def layout_of(self, harmonics: tuple[int, ...]) -> Layout:
@@ -183,7 +183,7 @@ class System(Frozen):
 
     @property
     def shared_stepper(self) -> Stepper:
-        """Of `shared_balance`, for whoever follows it."""
+        """The stepper of `shared_balance`, for whoever follows it."""
         return self._workspace.reset_for(self).stepper
 
     @property

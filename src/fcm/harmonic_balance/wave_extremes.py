@@ -13,7 +13,7 @@ from fcm.structure.linear import ComplexArray
 def half_peak_to_peak(
     X: ComplexArray, harmonics: tuple[int, ...], options: ExtremeOptions = HARMONIC_BALANCE.extremes
 ) -> FloatArray:
-    """Of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof)."""
+    """Half the peak-to-peak (point, dof) of x = Re sum X_h exp(i h theta), X (point, harmonic, dof)."""
     if harmonics == (1,):
         return np.abs(X[:, 0])
     h = np.array(harmonics)

@@ -36,7 +36,7 @@ class Floquet:
             self.monodromy = ManyMonodromy(ports, modal.frequency, modal.damping, none, law, self.states)
 
     def multipliers(self, segments: Segments, duration: float) -> ComplexArray:
-        """Of segments that last for a duration [s], after which the motion repeats.
+        """The multipliers of segments that last for a duration [s], after which the motion repeats.
 
         Of the modal displacements and velocities, and of the sliders that remember where they rest when the
         period begins; infinite where a disturbance grows beyond all numbers.

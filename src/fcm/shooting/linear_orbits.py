@@ -39,7 +39,8 @@ class LinearOrbit(Frozen):
 def linear_motions(
     scene: Scene, omega: float, as_started: bool = False, options: ShootingOptions = SHOOTING
 ) -> list[LinearOrbit]:
-    """Those in which a contact with friction sticks, at a frequency [rad/s]; of the scene with what is held.
+    """Motions in which a contact with friction sticks, at a frequency [rad/s]; of the scene with what is
+    held.
 
     Their residual friction is the nearest to that of the scene's start, or just that.
     """

@@ -51,7 +51,8 @@ def partly_stuck_motions(
     poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> list[PartlyStickingOrbit]:
-    """Those that belong to no family that is known, at a frequency [rad/s]; of the scene with what is held.
+    """Partly sticking motions that belong to no family that is known, at a frequency [rad/s]; of the scene
+    with what is held.
 
     None are sought of more contacts than `options.linear.max_combined`.
     """

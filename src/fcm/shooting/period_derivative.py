@@ -19,7 +19,7 @@ class InstantDerivative(NamedTuple):
 
 
 def derivative_at(system: System, segments: Segments, last: int, position: float) -> InstantDerivative:
-    """At a position (in steps) in a segment."""
+    """The derivative at a position (in steps) in a segment."""
     kernel = system.derivative()
     kernel.begins(segments, system.by_level)
     while (missing := kernel.go(segments, last, position)) >= 0:

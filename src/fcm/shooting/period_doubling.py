@@ -104,7 +104,7 @@ def bifurcations(points: list[OrbitRecord]) -> Iterator[tuple[int, Bifurcation]]
 
 
 def flips(points: list[OrbitRecord]) -> Iterator[int]:
-    """Those where the period doubles."""
+    """The flips, where the period doubles."""
     return (k for k, kind in bifurcations(points) if kind is Bifurcation.PERIOD_DOUBLING)
 
 

@@ -112,7 +112,7 @@ def periodic(
 
 
 def unloaded(scene: Scene) -> State:
-    """At rest, with the residual friction of the scene's [start]."""
+    """The state at rest, with the residual friction of the scene's [start]."""
     rest = State.rest(scene)
     displacement = scene.modal.shapes.T @ rest.q
     pairs = zip(scene.contacts, resting(scene), strict=True)

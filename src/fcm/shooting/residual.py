@@ -60,7 +60,7 @@ class Shot:
 
     @cached_property
     def residual(self) -> float:
-        """By how much it fails to close, relative to its size."""
+        """The closure error, relative to the size of the motion."""
         return float(np.abs(self.closure / self.scale).max(initial=0.0))
 
     @property
@@ -81,7 +81,7 @@ class Shot:
 
     @property
     def derivative(self) -> FloatArray:
-        """Of the state after the period by x: (unknown, unknown)."""
+        """Derivative of the state after the period by x: (unknown, unknown)."""
         return self._differentiated()[0]
 
     @property

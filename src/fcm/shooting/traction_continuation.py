@@ -58,7 +58,8 @@ class TractionPath:
         self.ended |= self.beyond is not None
 
     def _growth(self, new: Shot) -> float:
-        """Of a step to the next: most of it moves the structure where that is softer than the contact."""
+        """Factor from a step to the next: most of it moves the structure where that is softer than the
+        contact."""
         before, self.room = self.room, self._limit_distances(new)
         self.reach = np.maximum(self.reach, before.sum(axis=1))
         used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)

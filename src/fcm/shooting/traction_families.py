@@ -226,7 +226,7 @@ def _extreme_near(near: list[Shot], sense: float, dof: int, middles: _MidpointCa
 
 
 def _directions(count: int, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
-    """In which the family is followed, either way: each contact alone, and all together."""
+    """Directions in which the family is followed, either way: each contact alone, and all together."""
     alone = list(np.eye(count))
     if count == 1:
         return alone

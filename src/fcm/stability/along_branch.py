@@ -70,13 +70,13 @@ class PathClassification:
         return self._classified[t]
 
     def at(self, i: int) -> Classification:
-        """Of a point, which has it then."""
+        """The classification of a point, which is kept."""
         if i not in self._classified:
             self.classify_points((i,))
         return self._classified[i]
 
     def classify_points(self, points: Sequence[int], sufficient: Sequence[float] = ()) -> None:
-        """At several points, which have classifications then; `sufficient` as of `Multipliers.classify`."""
+        """Classify several points and keep that; `sufficient` as of `Multipliers.classify`."""
         new = [i for i in points if i not in self._classified]
         to_confirm = [i for i in new if self.to_confirm[i]]
         for some, accepted in (
@@ -98,7 +98,7 @@ class PathClassification:
         return classified
 
     def classify(self, z: FloatArray, sufficient: Sequence[float] = ()) -> Classification:
-        """Of a solution that is not kept; `sufficient` as of `Multipliers.classify`."""
+        """The classification of a solution, not kept; `sufficient` as of `Multipliers.classify`."""
         self.evaluations += 1
         return self.multipliers.classify(z, sufficient=sufficient)
 

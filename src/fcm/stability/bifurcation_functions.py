@@ -109,7 +109,7 @@ def _relative(logarithms: list[float]) -> list[float]:
 
 
 def _parabola_minimum(s: list[float], f: list[float]) -> tuple[float, float]:
-    """Where the parabola through three points is least, and how much that is; nan if nowhere.
+    """Place and value of the minimum of the parabola through three points; nan if it has none.
 
     >>> _parabola_minimum([0.0, 1.0, 3.0], [4.0, 1.0, 1.0])
     (2.0, 0.0)

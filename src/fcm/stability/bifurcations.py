@@ -235,7 +235,8 @@ class _BifurcationSearch:
         return not (one.is_linear and other.is_linear)
 
     def _crossings(self, places: list[float]) -> Iterator[MultiplierCrossing]:
-        """Where the growth changes sign between places that are known, and what is unknown between them."""
+        """The crossings, where the growth changes sign between places that are known, and what is unknown
+        between them."""
         known = [t for t in places if not math.isnan(self.classified[t].growth)]
         if len({self.classified.grows(t) for t in known}) < 2:
             return
@@ -256,7 +257,7 @@ class _BifurcationSearch:
             yield i
 
     def _crossing(self, a: float, b: float) -> MultiplierCrossing | None:
-        """Where the growth changes sign between two places."""
+        """The crossing, where the growth changes sign between two places."""
         first, found, sufficient = int(a), None, self.classified.sufficient_between(a, b)
         curve = self.classified.curve(first)
         before, after = (

@@ -19,7 +19,7 @@ class Bifurcation(Enum):
 
 
 class Classification(NamedTuple):
-    """Of one solution."""
+    """The classification of one solution."""
 
     stable: float  # 1, 0, or nan where it is unknown
     growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
@@ -95,7 +95,7 @@ class MultiplierSpectrum:
 
 
 def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
-    """By which an unstable motion has lost its stability, if that was not at a fold.
+    """The bifurcation by which an unstable motion has lost its stability, if that was not at a fold.
 
     >>> bifurcation_of([-1.1, 0.3 + 0.2j, 0.3 - 0.2j]).value
     'period doubling'
@@ -250,7 +250,8 @@ def flip_angle(classified: Classification, options: StabilityOptions = STABILITY
 
 
 def combine_one_sided(pushed: Classification, resting: Classification) -> Classification:
-    """Of a motion whose slider, just held by its limit, follows that while it is pushed and rests while not.
+    """The classification of a motion whose slider, just held by its limit, follows that while it is pushed
+    and rests while not.
 
     What grows at rest grows with a little less residual friction, too. What grows only while it is pushed is
     pushed on if it keeps its sign, as through a real multiplier above 1. A flip and a pair change it: then

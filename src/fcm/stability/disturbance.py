@@ -193,7 +193,7 @@ class Stiffness:
     def displacement(
         self, port: cython.Py_ssize_t, X: cython.double[:, ::1], out: cython.double[::1]
     ) -> cython.int:
-        """Of a port, for the columns (q, q', w) of X."""
+        """The displacement of a port, for the columns (q, q', w) of X."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         weight: cython.double
@@ -557,7 +557,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(check=False)
     def add_sliders(self, columns: cython.Py_ssize_t) -> cython.void:
-        """From work what the sliders add, image w."""
+        """Add to work the part of the sliders, image w."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t

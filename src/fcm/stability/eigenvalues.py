@@ -14,7 +14,8 @@ from fcm.model.scene import FloatArray
 
 
 def eigenvalues(matrices: Sequence[FloatArray]) -> list[list[complex] | None]:
-    """Of each matrix (n, n), pairs side by side; None where a number is not finite, or they are not found.
+    """The eigenvalues of each matrix (n, n), pairs side by side; None where a number is not finite, or they
+    are not found.
 
     LAPACK balances a matrix, so that units of rows and columns do not matter. It is called once for all of
     the same size: around a small matrix numpy's own work takes longer than LAPACK's.

@@ -117,7 +117,8 @@ class HillMultipliers:
         sufficient: Sequence[float] = (),
         without_neighbour: bool = False,
     ) -> Classification:
-        """Of a solution with an even number of real multipliers above 1, or of a fold (at_fold)."""
+        """The classification of a solution with an even number of real multipliers above 1, or of a fold
+        (at_fold)."""
         values = self.of(z)
         if values is None:
             return UNKNOWN
@@ -131,7 +132,7 @@ class HillMultipliers:
         without_neighbour: Sequence[bool],
         sufficient: Sequence[float] = (),
     ) -> list[Classification]:
-        """Of several solutions."""
+        """The classifications of several solutions."""
         return [self.classify(*one) for one in zip(z, at_fold, strict=True)]
 
     def confirms(self, z: FloatArray, stable: float) -> bool:

@@ -152,7 +152,8 @@ class Multipliers:
         sufficient: Sequence[float] = (),
         without_neighbour: bool = False,
     ) -> Classification:
-        """Of a solution with an even number of real multipliers above 1, or of a fold (at_fold).
+        """The classification of a solution with an even number of real multipliers above 1, or of a fold
+        (at_fold).
 
         Where the finer motion says what is `sufficient`, stable (1) or unstable (0), it is not confirmed by
         that of the balanced harmonics. Of a solution that is without_neighbour none with further harmonics is
@@ -313,8 +314,8 @@ class Multipliers:
         return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting_decay)
 
     def _rebalanced(self, z: FloatArray, x: FloatArray, persistent: bool) -> Classification | None:
-        """Of the solution with the harmonics of the finer motion x balanced; None where there is none
-        near, or it lacks as much itself."""
+        """The classification with the harmonics of the finer motion x balanced; None where there is no
+        solution near, or it lacks as much itself."""
         refined, multipliers = self._further()
         self.refined_solution = there = refined.rebalance(z, x, persistent)
         if there is None:
@@ -344,8 +345,8 @@ class Multipliers:
         return found is not None and found.stable == stable
 
     def confirmation(self, z: FloatArray) -> Classification:
-        """Of a solution with the further harmonics balanced, too: unknown where there is none near, or those
-        beyond them add much to it."""
+        """The classification of a solution with the further harmonics balanced, too: unknown where there is
+        none near, or those beyond them add much to it."""
         self.finer.at(z)
         self.refined_solution = None
         if self.finer.shift == 0.0:  # it has none

@@ -147,7 +147,7 @@ class RingMultipliers(Multipliers):
 
 
 def _phases(ring: Ring, harmonics: list[int]) -> FloatArray:
-    """By how much each harmonic of a sector is ahead of that of the one before."""
+    """Phase by which each harmonic of a sector is ahead of that of the one before."""
     return 2.0 * np.pi / ring.sectors * np.array([ring.waves(h) for h in harmonics])
 
 

@@ -44,7 +44,8 @@ def without_frequencies(stretches: Iterable[Stretch], frequencies: Iterable[floa
 
 
 def _stable_ranges(frequency: FloatArray, stable: FloatArray) -> Iterator[Stretch]:
-    """From where to where a motion may stay, along each part of a path; a point by itself is no such part."""
+    """The ranges in which a motion may be stable, along each part of a path; a point by itself is no such
+    part."""
     may = np.concatenate(([False], stable != 0.0, [False]))
     ends = np.flatnonzero(may[1:] != may[:-1]).tolist()
     for first, end in zip(ends[::2], ends[1::2], strict=True):

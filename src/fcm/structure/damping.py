@@ -92,7 +92,7 @@ def coupling_effect(
 
 
 def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> FloatArray | None:
-    """Of seen to pushes; None where the dynamic stiffness is singular."""
+    """The response of seen to pushes; None where the dynamic stiffness is singular."""
     try:
         response: FloatArray = seen.conj().T @ np.linalg.solve(dynamic, pushes)
     except np.linalg.LinAlgError:

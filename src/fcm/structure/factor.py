@@ -101,7 +101,7 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
 
 
 def _cholmod(matrix: Matrix) -> Solve | None:
-    """By CHOLMOD; None where the matrix is not positive definite, which others tell more of."""
+    """The factors by CHOLMOD; None where the matrix is not positive definite, which others tell more of."""
     from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
 
     try:
@@ -126,7 +126,8 @@ def _fronts(matrix: Matrix, definite: bool, tree: Tree) -> Solve:
 def _superlu(
     matrix: Matrix, definite: bool, options: FactorOptions, ordering: str = "MMD_AT_PLUS_A"
 ) -> Solve:
-    """By SuperLU without pivoting off the diagonal: the signs of its pivots are those of the eigenvalues.
+    """The factors by SuperLU without pivoting off the diagonal: the signs of its pivots are those of the
+    eigenvalues.
 
     That is Sylvester's law of inertia, where no rows were exchanged.
     """

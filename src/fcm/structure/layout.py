@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Layout(Frozen):
-    """Of contacts with so many directions each, and so many harmonics.
+    """The layout of contacts with so many directions each, and so many harmonics.
 
     >>> Layout(2, 2, 1).mean_at.tolist(), Layout(2, 2, 1).wave_at.tolist()
     ([0, 1, 6, 7], [2, 4, 8, 10])
@@ -46,7 +46,7 @@ class Layout(Frozen):
 
     @property
     def unknowns(self) -> int:
-        """Of all contacts."""
+        """Number of unknowns of all contacts."""
         return self.contacts * self.width
 
     @property
@@ -56,13 +56,13 @@ class Layout(Frozen):
 
     @cached_property
     def mean_at(self) -> IntArray:
-        """Where the mean of each port is, (port,)."""
+        """Index (port,) of the mean of each port."""
         port = np.arange(self.ports)
         return (port // max(self.directions, 1)) * self.width + port % max(self.directions, 1)
 
     @cached_property
     def wave_at(self) -> IntArray:
-        """Where the real part of each port's first harmonic is, (port,)."""
+        """Index (port,) of the real part of each port's first harmonic."""
         port = np.arange(self.ports)
         along = port % max(self.directions, 1)
         return (port // max(self.directions, 1)) * self.width + self.directions + 2 * along

@@ -169,7 +169,7 @@ class Receptance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def sums(self, j: cython.int) -> cython.void:
-        """Over the modes, of one harmonic; receptances are symmetric."""
+        """Sum over the modes, of one harmonic; receptances are symmetric."""
         k: cython.Py_ssize_t
         m: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -387,7 +387,7 @@ class ForcedModes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def greatest(self, size: cython.double[::1]) -> cython.double:
-        """Of the amplitudes over sizes (dof,)."""
+        """Greatest of the amplitudes over sizes (dof,)."""
         m: cython.Py_ssize_t
         d: cython.Py_ssize_t
         most: cython.double = 0.0

@@ -12,7 +12,7 @@ from fcm.time_domain.cycle_measures import Scanned, scanned
 
 
 def contact_loads(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
-    """Of each contact the greatest normal and friction force; slip and energy in a period of the force.
+    """Greatest normal and friction force of each contact; slip and energy in a period of the force.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Matrices(NamedTuple):
-    """Of a scene.
+    """The matrices of a scene.
 
     Parameters
     ----------

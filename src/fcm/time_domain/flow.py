@@ -405,7 +405,7 @@ def grade(
 def velocity(
     shape: cython.double[:, ::1], j: cython.Py_ssize_t, z: cython.double[:, ::1], a: cython.Py_ssize_t
 ) -> cython.double:
-    """Of contact j along its shape, by row a of z."""
+    """The velocity of contact j along its shape, by row a of z."""
     m: cython.Py_ssize_t = shape.shape[1]
     half: cython.Py_ssize_t = m // 2
     i: cython.Py_ssize_t

@@ -381,7 +381,7 @@ class SegmentSequence(StateSequence):
     @cython.cfunc
     @cython.exceptval(check=False)
     def _state(self, segments: Segments, k: cython.Py_ssize_t, c: cython.int) -> cython.int:
-        """Of a contact in a segment, as a `StateSequence` has it."""
+        """The state of a contact in a segment, as a `StateSequence` has it."""
         state: cython.int = segments.states[k, c]
         if state == STATE_SEPARATED:
             return SEPARATION
@@ -422,7 +422,7 @@ class SegmentSequence(StateSequence):
     def _velocity(
         self, shape: cython.double[:, ::1], segments: Segments, k: cython.Py_ssize_t, c: cython.int
     ) -> cython.double:
-        """Of a contact along its shape, where segment k begins."""
+        """The velocity of a contact along its shape, where segment k begins."""
         i: cython.Py_ssize_t
         m: cython.Py_ssize_t = shape.shape[1]
         total: cython.double = 0.0

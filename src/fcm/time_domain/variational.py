@@ -285,7 +285,8 @@ class VariationalFlow:
 
 @cython.cclass
 class Derivative(VariationalFlow):
-    """Of a motion by x = (q, q', f) at its start, and by the frequency or by the level of the forces.
+    """The derivative of a motion by x = (q, q', f) at its start, and by the frequency or by the level of the
+    forces.
 
     Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
     them that by the frequency, at a fixed time, or by the level; the last row is the state vector itself;

@@ -93,7 +93,7 @@ def with_points(
 
 
 def _reported(problem: ExtendedSystem, point: TrackedPoint) -> tuple[FloatArray, bool]:
-    """Of a point its amplitudes, and whether it is no trough."""
+    """The amplitudes of a point, and whether it is no trough."""
     problem.measure(point.z)
     amplitude = problem.along(point.z)[1]
     return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, point)

@@ -79,7 +79,7 @@ def tracked_curves(
 def _follow_all(
     made: _CurveCollection, values: list[float], conditions: list[Condition], progress: Progress | None
 ) -> None:
-    """From ordinary curves at some values."""
+    """Follow the curves from ordinary ones at some values."""
     system, line = made.setup.system, made.setup.line
     for number, value in enumerate(values):
         if progress is not None:

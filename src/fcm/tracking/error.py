@@ -25,7 +25,8 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 
 class TruncationError(NamedTuple):
-    """By more harmonics: relative of a peak's amplitude, else of the frequency; of the number at a turn."""
+    """The error by more harmonics: relative of a peak's amplitude, else of the frequency; of the number at a
+    turn."""
 
     relative: float
     number: float  # 0 where the number is given; NaN both where it is unknown
@@ -66,8 +67,8 @@ def error_points(track: SpecialPointCurve) -> dict[int, str]:
 def truncation_error(
     setup: TrackingSetup, track: SpecialPointCurve, i: int, begin: int | None = None
 ) -> TruncationError:
-    """At one point: to that of the reference. Of a turn this is sought from a point before, by default one
-    that is near."""
+    """The error at one point: the difference from the reference. Of a turn this is sought from a point
+    before, by default one that is near."""
     condition, here = track.condition, _RefinedPoint(setup, track.points[i])
     value, number = here.value(condition), float(here.point.z[-1])
     begin = beginning(track, i, setup.options) if begin is None else begin

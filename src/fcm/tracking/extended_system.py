@@ -45,7 +45,7 @@ class Condition(NamedTuple):
 
 
 class Tangent:
-    """Of the response curve, t (unknown + 1,) in the problem's scale, with row . t = 1.
+    """The tangent of the response curve, t (unknown + 1,) in the problem's scale, with row . t = 1.
 
     The factors of its matrix (unknown + 1, unknown + 1) are kept for the adjoint. Raises LinAlgError where
     that is singular.
@@ -136,7 +136,7 @@ class ExtendedSystem(Problem):
         return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
-        """As the balance; s by the span. The row becomes the tangent of the response curve.
+        """The scale is that of the balance, of s the span. The row becomes the tangent of the response curve.
 
         A peak is from here on the peak of those extremes that are the greatest of the cycle here. The
         amplitude itself has a kink where others become greater.

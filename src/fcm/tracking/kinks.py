@@ -20,7 +20,7 @@ from fcm.tracking.extended_system import ExtendedSystem
 
 
 class CircleCrossing(NamedTuple):
-    """Where what is special changes its sign on a circle, by a jump or through zero."""
+    """A change of sign of the condition on a circle, by a jump or through zero."""
 
     angle: float  # from straight ahead
     z: FloatArray

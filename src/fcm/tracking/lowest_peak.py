@@ -57,7 +57,7 @@ class LowestPeak(Frozen):
 
 @dataclass
 class LowestPeakSearch:
-    """Of one scene and its targets, with the curves that are known."""
+    """The search of one scene and its targets, with the curves that are known."""
 
     system: System
     line: ParameterLine

@@ -74,7 +74,7 @@ class PeakEnvelope:
         self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
 
     def line(self, q: FloatArray, direction: FloatArray) -> ParameterLine:
-        """From q along a direction, both scaled."""
+        """The line from q along a direction, both scaled."""
         return ParameterLine(self.numbers, self.low + q * self.width, direction * self.width)
 
     def setup(self, q: FloatArray, direction: FloatArray) -> TrackingSetup:
@@ -145,7 +145,7 @@ class PeakEnvelope:
         return (condition, dof, last.z[:-1]) if whole else None
 
     def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
-        """Of a member, with its slopes by q."""
+        """The height of a member, with its slopes by q."""
         condition, dof, z = member
         slopes, value = np.empty(q.size), 0.0
         for k, direction in enumerate(np.eye(q.size)):

@@ -136,14 +136,14 @@ def _all_least(
 def _values_in_plane(
     law: Law, x: FloatArray, i: int, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> FloatArray:
-    """Those of contact number i."""
+    """The functions of contact number i."""
     block = np.ascontiguousarray(x[i * law.width : (i + 1) * law.width])
     open_, shut, slip, start = (onset(law, block, kind, harmonics, options).value for kind in (*KINDS, START))
     return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
 
 
 def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
-    """Of the discs that hold a slider in a plane.
+    """The functions of the discs that hold a slider in a plane.
 
     Those that hold the place which all miss least do so with weights by which their directions vanish, and
     with the same weights the distances change; the place may move, and makes no difference.
@@ -185,7 +185,7 @@ def _weights(e: FloatArray) -> FloatArray:
 
 
 def kinds_of(law: Law) -> tuple[str, ...]:
-    """Those that a contact can have."""
+    """The kinds of functions that a contact can have."""
     if isinstance(law, PlanarLaw):
         return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))

@@ -27,7 +27,7 @@ class ParameterLine(NamedTuple):
     direction: FloatArray  # (number,)
 
     def values(self, s: float) -> FloatArray:
-        """Of the numbers, (number,)."""
+        """The values (number,) of the numbers."""
         values: FloatArray = self.origin + s * self.direction
         return values
 
@@ -176,7 +176,7 @@ class VariedBalance:
 
     @property
     def rates(self) -> list[Rates]:
-        """Of each of the numbers."""
+        """The rate of each of the numbers."""
         self._rates = self._rates or [rates_of(self.system, number.key) for number in self.line.numbers]
         return self._rates
 

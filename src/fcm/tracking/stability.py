@@ -89,7 +89,7 @@ class _StabilityAlongCurve:
         return self._multipliers().classify(np.array(point.z[:-1]), at_fold).stable
 
     def _multipliers(self) -> Multipliers:
-        """With the numbers as the problem has them."""
+        """The multipliers with the numbers as the problem has them."""
         varied = self.problem.varied
         if self.known is None or varied.structure:
             known = multipliers_of(varied.system, self.highest, self.setup.options.floquet)

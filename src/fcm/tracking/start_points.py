@@ -42,7 +42,7 @@ def for_scene(system: System, scene: Scene) -> System:
 def special_points(
     system: System, conditions: list[Condition], options: TrackingOptions = TRACKING
 ) -> SpecialPoints:
-    """Those of a system's curves.
+    """The special points of a system's curves.
 
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
     """
