@@ -11,24 +11,22 @@ Where the greatest of the lower limit is no more than the least of the upper one
 
 Positive slip is the lower limit pushing w up, so it ends at theta_P, where that limit is greatest; negative
 slip is the upper limit pushing w down, and ends at theta_N. Between consecutive extremes of the two limits
-the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most one
-slip, which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P, by
-theta_N, and by the separation (or by theta_N again when the contact never opens). Nothing has to be searched
-for, and a rounding error can shift an event but never choose a wrong sequence by more than that
-(`HarmonicCycle`).
+sections 3.2.1 to 3.2.4 are one clip, ``w_end = max(lower, min(w_start, upper))``. There is at most one slip,
+which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P, by theta_N,
+and by the separation (or by theta_N again when the contact never opens). Nothing has to be searched for, and
+a rounding error can shift an event but never choose a wrong sequence by more than that (`HarmonicCycle`).
 
 The states of the cycle, as a word and with the angles at which they begin, are a `Sequence`.
 
-Of it come the Fourier coefficients of the friction force, equation (27), and their derivatives.
-While the contact slips the force is +-n, while it sticks u - w with w at rest. So (27) is a sum over the
-spans of a cycle of integrals of sines and cosines. The force is continuous in theta: the derivative of the
-integral is the integral of the derivative, +-(dn/dx) in a slip, and in a stick the constant that the contact
-brought into it.
+Of it come the Fourier coefficients of the friction force, equation (27), and their derivatives. While the
+contact slips the force is +-n, while it sticks u - w with w at rest. So (27) is a sum over the spans of a
+cycle of integrals of sines and cosines. The force is continuous in theta, so the derivative of the integral
+is the integral of the derivative. That is +-(dn/dx) in a slip, and constant in a stick, as at its start.
 
 The closed form is one `CoefficientLaw`, a table another. The numbers of a point lie one after the other: F_b,
 F_s, F_c, then the derivatives of each by n0_bar, b_bar and phi, twelve in all. A third gives the `Boundaries`
-between the regimes. A contact is fully open where n0 + b < 0, opens and closes within the cycle where
-n0 - b < 0 < n0 + b, and of the rest slips where n0 - (ell_1 + ell_2) / 2 < 0, the slip limit (25), and sticks
+between the regimes. A contact is fully open where n0 + b < 0, and opens and closes within the cycle where
+n0 - b < 0 < n0 + b. Of the rest it slips where n0 - (ell_1 + ell_2) / 2 < 0, the slip limit (25), and sticks
 above. These functions are smooth but for b = 1 at phi = 0 and pi, where ell_1 or ell_2 is a cone.
 """
 

@@ -5,8 +5,8 @@ so that the likelihood grows, until the numbers rest beside their standard error
 of errors and with a share of the amplitudes, as it may rest with either; the likeliest end is told.
 
 A fit is a series of searches, each by its number in that series. What a search has come to is kept, where
-there is a place for it: a fit that goes on does not make those again that are finished, and begins the one
-that was interrupted where it was best.
+there is a place for it. A fit that goes on does not repeat finished searches, and begins the one that was
+interrupted where it was best.
 """
 
 from __future__ import annotations

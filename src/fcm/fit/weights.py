@@ -1,12 +1,12 @@
 r"""Errors of measured points that nothing is said of, estimated from the residuals of a first fit.
 
-Amplitudes of a response err by a floor and by a share of themselves, sigma^2 = a^2 + (b A)^2: as of a
-sensor with noise and with a calibration. a and b are those of the greatest likelihood of the distances r,
-which are taken as normal: the least of the sum of ln sigma^2 + r^2 / sigma^2; one of them where that is
-hardly less likely. Frequencies and damping ratios of a backbone err by one value each, their root mean
-square.
-Source: Carroll and Ruppert, "Transformation and Weighting in Regression" (1988), chapter 3;
-Schwarz, "Estimating the Dimension of a Model", Annals of Statistics 6 (1978).
+The errors of amplitudes A of a response are a floor and a share, sigma^2 = a^2 + (b A)^2, as of a sensor with
+noise and with a calibration. a and b are of maximum likelihood, with normal distances r: they minimise the
+sum of ln sigma^2 + r^2 / sigma^2. Only one of them is taken where that is hardly less likely. Frequencies and
+damping ratios of a backbone err by one value each, their root mean square.
+
+Sources: Carroll and Ruppert, "Transformation and Weighting in Regression" (1988), chapter 3; Schwarz,
+"Estimating the Dimension of a Model", Annals of Statistics 6 (1978).
 """
 
 from __future__ import annotations

@@ -302,8 +302,8 @@ class Scene(Frozen):
     def with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
         """The scene with laws of one's own, by the names of the contacts that have them.
 
-        A contact's mu, k_u, k_v and n_0 stay what the search for solutions begins with: the stiffness of what
-        resembles it, and the level of the forces beyond which it may slip or open.
+        The search for solutions still begins with the contact's mu, k_u, k_v and n_0. They give the stiffness
+        of what resembles it, and the level of the forces beyond which it may slip or open.
 
         Raises
         ------

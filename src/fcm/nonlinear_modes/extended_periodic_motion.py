@@ -1,8 +1,8 @@
 r"""Periodic motion of the structure without forces, a nonlinear mode: the extended periodic motion concept.
 
 Friction takes energy, so that a free motion decays. Negative damping in proportion to the mass, which gives
-back in each cycle what the cycle takes, makes it periodic (Krack, "Nonlinear modal analysis of
-nonconservative systems: extension of the periodic motion concept"):
+back the energy lost in each cycle, makes it periodic. See Krack, "Nonlinear modal analysis of nonconservative
+systems: extension of the periodic motion concept":
 
     M x'' + (C - 2 D omega M) x' + K x + f(x) = 0
 
@@ -11,10 +11,10 @@ own. With modes of mass 1 the receptance at the harmonic h has the denominators
 
     e_i = w_i^2 - (h omega)^2 + 2 i h omega (zeta_i w_i - D omega)
 
-x is counted from rest, where static loads are balanced by the contacts, and f from its value there.
-All amplitudes are divided by that of the mode, a: sum_i |Q_i|^2 = 1 for the fundamental's modal amplitudes
-a Q_i, so that a linear motion is the same at all a. The parameter is ln a. The modes whose frequency the
-motion may come to have no receptance there; their Q are unknowns beside the displacements of the contacts.
+x is counted from rest, where static loads are balanced by the contacts, and f from its value there. All
+amplitudes are divided by that of the mode, a: the fundamental's modal amplitudes are a Q_i, with
+sum_i |Q_i|^2 = 1. So a linear motion is the same at all a. The parameter is ln a. The modes whose frequency
+the motion may come to have no receptance there; their Q are unknowns beside the contacts' displacements.
 """
 
 from __future__ import annotations

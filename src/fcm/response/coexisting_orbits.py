@@ -1,9 +1,9 @@
 """Stable motions at the frequencies that are visited, to which neither of the sweeps comes.
 
 A sweep is on one motion at a time, so of several stable ones at a frequency two are met at most, and at a
-single frequency one. All solutions of the balance lead to others: those reached from rest by the
-level of the forces, and those of its branches over the range of the scene, if it has one. So do the motions
-in which contacts stick as the scene starts, and the one from rest.
+single frequency one. All solutions of the balance lead to others: those reached from rest by the level of the
+forces, and those of its branches over the range of the scene, if it has one. So do the motions in which
+contacts stick as the scene starts, and the one from rest.
 """
 
 from __future__ import annotations

@@ -48,8 +48,8 @@ def fit(
 
     If all data are backbones of one mode, it is this nonlinear mode instead.
 
-    With an accuracy the fit begins with one harmonic, and is repeated with as many as the response at the
-    numbers found takes: for the accuracy, and for a tenth of what the data are off.
+    With an accuracy the fit begins with one harmonic. It is repeated with as many as the response at the
+    numbers found takes, for the accuracy, and for a tenth of what the data are off.
 
     Parameters
     ----------

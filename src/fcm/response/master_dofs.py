@@ -1,8 +1,8 @@
 """The degrees of freedom that a curve is followed by, where many are reported; and all of them afterwards.
 
 All displacements are sums over the same modes, and whatever moves a mode acts at a contact or a force. So a
-curve that is resolved there, and where each mode moves most, is resolved for all others: they are calculated
-from its points when these are known, and their peaks are found between them.
+curve that is resolved there, and where each mode moves most, is resolved for all other degrees of freedom.
+They are calculated from its points afterwards, and their peaks are found between these.
 """
 
 from __future__ import annotations

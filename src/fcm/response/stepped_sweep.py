@@ -2,7 +2,7 @@
 
 Between two frequencies the periodic solution is continued in steps as short as it takes to stay on its
 branch, while it is stable. Where it is lost the motion is simulated from there, just beyond, until it is
-steady again: so it jumps where a slow sweep of the structure itself does, and to where that does.
+steady again. So it jumps where a slow sweep of the structure itself does, and to the same motion.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The tracked curves of one scene, as an item of a sweep (`fcm.run`): each step of it is kept when finished.
 
-The steps - an ordinary curve at a value of the number, a curve followed, its errors - come in an order that
-depends on nothing but the scene and what is asked for. A run that goes on from saved steps takes them in
-that order, and computes the others, to the same last bit.
+A step is an ordinary curve at a value of the number, a curve followed, or its errors. Their order depends on
+the scene and the request alone. A run that goes on from saved steps takes them in that order, and computes
+the others, to the same last bit.
 """
 
 from __future__ import annotations

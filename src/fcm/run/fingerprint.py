@@ -1,7 +1,7 @@
 """What results depend on, in 32 bytes: what was asked for, and the program that answers.
 
 On one machine the program is known by the sizes of its files and when they were changed, as Python knows of
-which source its bytecode is: that takes a millisecond, where to read them all takes twenty. Between machines
+which source its bytecode is. That takes a millisecond; to read them all would take twenty. Between machines
 it is known by what the files say.
 """
 

@@ -1,7 +1,7 @@
 """Processes on this machine, one batch at a time each; one that dies takes no other with it.
 
-A worker is a program of its own, not a copy of this one: it imports nothing of the caller's, shows nothing,
-takes no signal, and ends when this process does, be that by ``kill -9`` (see `fcm.run.worker`).
+A worker is a program of its own, not a copy of this one. It imports nothing of the caller's, shows nothing
+and takes no signal. It ends when this process does, be that by ``kill -9`` (see `fcm.run.worker`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 r"""Derivatives of the balance, and of what is reported, by any number of the scene, its unknowns held.
 
-A law's forces depend on its numbers only through the products k_u u, mu k_v v, mu n_0 and k_v v, n_0: the
+A law's forces depend on its numbers only through the products k_u u, mu k_v v, mu n_0 and k_v v, n_0. The
 derivatives by those come from the law itself, evaluated with stiffnesses of 1. The structure's modal
 displacements a = c q under the modal forces q = f - P F give
 

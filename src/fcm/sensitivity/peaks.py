@@ -2,12 +2,12 @@ r"""Sensitivities: the derivatives of a peak, its height and its frequency, by t
 
 With the balance R(z, p) = 0, z the unknowns and the frequency, and t the direction of the curve, solutions
 move with a number p by w, for which R_z w = -R_p and t . w = 0, and along the curve by alpha t. The peak of
-an amplitude A has A_z . t = 0: the derivative of its height is A_p + A_z . w, exact from the Jacobian. Where
-it goes along the curve is decided by the slope c = A_z . t / |t|, which stays 0: alpha = -c_p / c_s, with c
-at solutions at p +- delta, and at s +- delta along the curve.
+an amplitude A has A_z . t = 0, so the derivative of its height is A_p + A_z . w, exact from the Jacobian.
+Along the curve the slope c = A_z . t / |t| stays 0, so that alpha = -c_p / c_s. These derivatives are
+differences of c between solutions at p +- delta, and at s +- delta along the curve.
 
 A peak at a corner of the curve, where a margin of the problem is 0, is landed on with the number at p +-
-delta: its derivatives are differences of the fourth order, and hold as long as the peak is at the corner.
+delta. Its derivatives are differences of the fourth order. They hold as long as the peak is at the corner.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Normal modes of a structure given by its stiffness and mass matrices, symmetric or Hermitian.
 
-K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s):
-K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes are the
-most accurate ones. Large matrices by Lanczos (scipy's `eigsh`), small ones whole. Lanczos may pass by one of
-several equal frequencies: what it has found is taken out, and it is looked whether a lower mode is left.
+K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s).
+Then K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes
+are the most accurate ones. Large matrices are solved by Lanczos (scipy's `eigsh`), small ones whole. Lanczos
+may miss one of several equal frequencies. So the modes found are taken out, and it is checked whether a lower
+one is left.
 
 One factorisation serves for all of it, and for static displacements: those by K - s M are corrected until
 nothing of the shift is left in them.

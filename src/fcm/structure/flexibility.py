@@ -7,8 +7,8 @@ under the inertia of those come next, and so on. Galerkin's method on it gives m
 and orthogonal to the kept ones. With b blocks the first 2 b terms of the answer's series in w^2 are exact.
 
 How far it is off is bounded, not estimated. Below the first mode left out, lambda_h, the operator is positive
-definite on what is left out, and there K - w^2 M >= (lambda_h - w^2) / (lambda_h - s) (K - s M) with the
-shift s < 0 at which the stiffness is factorised. So with the residual r of Galerkin's solution u of one load,
+definite on what is left out. There K - w^2 M >= (lambda_h - w^2) / (lambda_h - s) (K - s M), with the shift
+s < 0 at which the stiffness is factorised. So with the residual r of Galerkin's solution u of one load,
 
     0 <= error of p^T u <= r^T (K - s M)^-1 r (lambda_h - s) / (lambda_h - w^2),
 

@@ -259,8 +259,8 @@ def _flexibility(
     """Of the modes with the normal springs that are counted to them; modes adrift stay where they are.
 
     Without stiffness of its own a rigid-body mode has no flexibility. Then the normal springs of the contacts
-    are counted to the structure, and taken off the contacts' forces again: the same equation, with terms that
-    are finite as long as the closed contacts hold the structure.
+    are counted to the structure, and taken off the contacts' forces again. The equation is the same, and its
+    terms are finite as long as the closed contacts hold the structure.
     """
     if not (natural == 0.0).any():
         return np.diag(natural**-2)

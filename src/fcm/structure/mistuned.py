@@ -9,9 +9,10 @@ Of blade k the stiffness K_b is multiplied by 1 + d_k. In these coordinates that
 
     dK = sum_k d_k X_k^T K_b X_k,    X_k (row, coordinate) the displacements of sector k
 
-to diag(w_i^2), and couples the waves of all diameters. With all modes of the sector it is exact; with some
-of them it is the method of the subset of nominal modes (Yang and Griffin, Journal of Engineering for Gas
-Turbines and Power 123, 2001): good while the mistuned modes are combinations of the modes that are kept.
+to diag(w_i^2), and couples the waves of all diameters. With all modes of the sector it is exact. With some of
+them it is the method of the subset of nominal modes (Yang and Griffin, Journal of Engineering for Gas
+Turbines and Power 123, 2001). That is accurate while the mistuned modes are combinations of the modes that
+are kept.
 """
 
 from __future__ import annotations
@@ -121,9 +122,9 @@ def modes_of_mistuned(
 ) -> tuple[FloatArray, FloatArray]:
     """w^2 (mode,) in ascending order and vectors (coordinate, mode) of diag(squared) + change.
 
-    By a Jacobi method that is as accurate for the lowest modes as for the highest, which stand for
-    flexibility and can be a million times as high (Drmac and Veselic, SIAM Journal on Matrix Analysis 29,
-    2008).
+    They are found by a Jacobi method, which is as accurate for the lowest modes as for the highest (Drmac and
+    Veselic, SIAM Journal on Matrix Analysis 29, 2008). The highest stand for flexibility and can be a million
+    times as high.
 
     Raises
     ------

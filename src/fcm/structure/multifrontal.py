@@ -1,7 +1,7 @@
 """Factors of large sparse symmetric or Hermitian matrices by fronts: A = L S L^H, S of signs.
 
-Columns that share their entries are eliminated together, in a dense front that LAPACK and BLAS work on: its
-pivots by Cholesky where they are positive definite, else by their eigenvalues, whose signs are counted. By
+Columns that share their entries are eliminated together, in a dense front, by LAPACK and BLAS. Its pivots are
+factored by Cholesky where they are positive definite, else by their eigenvalues, whose signs are counted. By
 Haynsworth's rule A has as many negative eigenvalues as the pivots of all fronts together. One triangle is
 kept, half of what L and U take.
 

@@ -108,7 +108,7 @@ def _cleared(system: System, found: Modes) -> Modes:
 def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Modes]:
     """Elastic modes orthogonal to the first, rigid ones.
 
-    Beside rigid-body modes, -1 / s, they lose the digits by which s is nearer to zero than their lambda: if
+    Beside rigid-body modes, -1 / s, they lose the digits by which s is nearer to zero than their lambda. If
     these are many, all are solved for again about -lambda of the first.
     """
     if not 0 < rigid < found.count:

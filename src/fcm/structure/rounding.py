@@ -2,8 +2,9 @@
 
 Stiff parts beside soft ones, and fine meshes, make the terms of the elastic energy of a mode many orders
 greater than their sum. The frequency is off by what is lost of that sum. The shapes are off, too: they have
-some stiffness in common, which modes have not. The answer u of the modes to a load p at w^2 = -a < 0, where
-nothing resonates, then has not the energy u^T (K + a M) u that p^T u is, and is off by the difference.
+some stiffness in common, which modes have not. At w^2 = -a < 0 nothing resonates, and the answer u to a load
+p has the energy u^T (K + a M) u = p^T u. For the modes that does not hold any more, and the difference is the
+error of their answer.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The flow of one combination of contact states, without the forces: matrix, exits, powers, table.
 
 The exits are rows g of y that stay positive while the states last. The conditions are (9), (10), (13) to
-(16), free of division: E lasts while mu n - f and mu n + f are positive, P and N while their slip velocity
-times +-k_u and n are, S while -n is.
+(16), free of division. E lasts while mu n - f > 0 and mu n + f > 0, P and N while n > 0 and +-k_u times the
+slip velocity > 0, S while -n > 0.
 """
 
 from __future__ import annotations

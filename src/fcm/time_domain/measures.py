@@ -7,9 +7,9 @@ vectors of all whole steps are summed before their coefficients are made.
 
 The integrals of all powers are by Gauss quadrature that is exact to rounding on a step (`Powers`).
 
-Extremes are roots of velocities (`Scan`). Of the steps only those are expanded that may hold one: where the
-velocity changes its sign from end to end, or has an extreme of its own between ends of one sign and beyond
-zero; and where that may be beyond the values at the ends of many steps, which are looked at before.
+Extremes are roots of velocities (`Scan`). Only steps that may hold one are expanded in series. There the
+velocity changes its sign from end to end, or has an extreme of its own beyond zero between ends of one sign.
+And the extreme may be beyond the values at the ends of many steps, which are looked at before.
 
 The rows are those of numbers with which the state vector is multiplied, of which most are zeros (`Rows`).
 """
