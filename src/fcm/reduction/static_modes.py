@@ -4,7 +4,8 @@ Seen from p directions (of contacts and forces), many modes of high frequency ar
 some mass. Kept is the subspace of their static response to those directions, and of the static response to
 the inertia of that (Ritz, Galerkin). These are 2 p modes whose flexibility has an error of the order
 (omega / omega_high)^4 at every degree of freedom. Their damping is right one by one, but not between
-them. The error is of the order 2 zeta omega / omega_high times the small share that the flexibility varies by.
+them. The error is of the order 2 zeta omega / omega_high times the small share by which the flexibility
+varies.
 
 Many contacts have as many directions, and most of the flexibility between them is small beside that of the
 contacts themselves. With their springs k and the static response S of the high modes to their directions,
