@@ -53,6 +53,7 @@ SLIPS = [
     ("mu = 0.3 k_u = 2", "mu = 0.3 and k_u = 2"),
     ("mu = 30 %", "mu = 0.3"),
     ("mu = { normal = [0.3, 20 %] }", "mu = { normal = [0.3, 0.06] }"),
+    ("mu = { normal = [30 %, 20 %] }", "mu = { normal = [0.3, 0.06] }"),
     ("n_0 = { normal = [-5, 10%], count = 3 }", "n_0 = { normal = [-5, 0.5], count = 3 }"),
     ("frequency = [10 Hz, 20 Hz]", "frequency = [10, 20]"),
     ("phase = 45deg", 'phase = "45deg"'),

@@ -297,15 +297,15 @@ def _value_of_word(match: re.Match[str]) -> str:
 
 
 def _deviation(line: str) -> str:
-    """A standard deviation in units of its mean, of which it is a percentage."""
+    """A standard deviation in units of its mean, of which it is a percentage; the mean may be one of 1."""
 
     def mend(match: re.Match[str]) -> str:
-        mean, percent = float(match[2]), float(match[3])
-        return f"{match[1]}{match[2]}, {abs(mean) * percent / 100.0:.12g}"
+        mean, percent = float(match[2]) / (100.0 if match[3] else 1.0), float(match[4])
+        return f"{match[1]}{mean:.12g}, {abs(mean) * percent / 100.0:.12g}"
 
     return _outside(
         lambda part: re.sub(
-            rf"(normal\s*=\s*\[\s*)({_NUMBER.pattern})\s*,\s*({_NUMBER.pattern})\s*%", mend, part
+            rf"(normal\s*=\s*\[\s*)({_NUMBER.pattern})\s*(%?)\s*,\s*({_NUMBER.pattern})\s*%", mend, part
         )
     )(line)
 
