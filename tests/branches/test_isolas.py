@@ -1,5 +1,7 @@
 """Isolated branches, which only the folds of the level of the forces lead to."""
 
+import subprocess
+import sys
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -325,3 +327,11 @@ def test_a_closed_branch_is_traced_once():
     found = every_branch(System(one, (1, 2, 3, 4, 5))).traced.branches
     (closed,) = (path for path in found.paths if path.status is Status.CLOSED)
     assert len(closed.where(Mark.FOLD)) == 2
+
+
+def test_a_strip_that_ends_nowhere_is_crossed_once():
+    """Crossed again and again, a search for folds never ended, and heeded no signal: so in a process."""
+    program = "import sys, fcm; print(fcm.respond(fcm.load_scene(sys.argv[1])).complete.values)"
+    path = SCENES / "endless_strip.toml"
+    run = subprocess.run([sys.executable, "-c", program, path], check=True, timeout=300, capture_output=True)
+    assert run.stdout.split() == [b"[1]"]

@@ -421,12 +421,16 @@ class FoldSteps:
         for count in range(options.max_steps):
             found = self.next_departure(step, bend, way.left)
             off: cython.double = 2.0 * self.angle_tolerance * way.radius
+            crossed: cython.bint = False
             while found is None and step > options.min_step:
+                self.charge_work()
                 step, bend = 0.3 * step, 0.0
                 if step < 10.0 * off and self.correct_centre(off, way.left):
                     off *= self.angle_tolerance
-                aside = self.other_side(options.strip_width, way.left) if step < options.strip_width else 0.0
+                thin: cython.bint = step < options.strip_width and not crossed
+                aside = self.other_side(options.strip_width, way.left) if thin else 0.0
                 if aside:  # the strip ends where, seen at its own width, it does not go on
+                    crossed = True  # not back again
                     step = 2.0 * abs(aside)
                     found = None if step < options.min_step else self.next_departure(step, 0.0, way.left)
                     if found is not None or not self.cross_strip(aside):
