@@ -41,8 +41,8 @@ def with_levels_below_peaks(found: RefinedResponse, accuracy: float) -> RefinedR
 def with_levels_where_unstable(
     found: RefinedResponse, stable: Sequence[FloatArray], accuracy: float
 ) -> tuple[RefinedResponse, bool]:
-    """With the branches that the level leads to in ranges in which nothing is stable, and whether more
-    harmonics have a higher motion there.
+    """A response with the branches that the level leads to in ranges in which nothing is stable, and whether
+    more harmonics have a higher motion there.
 
     stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known. With few
     harmonics the level is followed with more: what these have is led to the others, or is higher than their

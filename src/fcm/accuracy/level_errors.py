@@ -54,8 +54,8 @@ def evenness(path: Path) -> npt.NDArray[np.bool_]:
 def errors_at_levels(
     system: System, points: LevelPoints, options: PairOptions = PAIR
 ) -> tuple[FloatArray, FloatArray]:
-    """By how much the reference's amplitudes and contact loads differ from those of points at the same
-    levels, relative.
+    """Relative differences of the reference's amplitudes and contact loads from those of points at the same
+    levels.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """

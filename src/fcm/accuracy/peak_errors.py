@@ -31,7 +31,7 @@ class PeakErrors(Frozen):
     frequency: FloatArray
 
     def frequency_at(self, tops: Indices) -> FloatArray:
-        """That of the frequency of the peaks at some points (dof,); NaN where there is none."""
+        """Errors (dof,) of the frequencies of the peaks at some points; NaN where there is none."""
         found = np.full(len(tops), np.nan)
         at_top = self.point == tops[self.dof]
         found[self.dof[at_top]] = self.frequency[at_top]
@@ -46,8 +46,8 @@ class _Tops(NamedTuple):
 
 
 def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[FollowedStretch]) -> PeakErrors:
-    """Of all peaks of a curve whose displacements (point, 1 + dof) are known, or that the reference was
-    followed along."""
+    """The errors of all peaks of a curve whose displacements (point, 1 + dof) are known, or that the
+    reference was followed along."""
     curve, place = reference.amplitude, reference.place
     parameter = reference.path.parameter
     of_reference = curve + reference.unit * change[:, 1:]

@@ -43,7 +43,7 @@ def further_reference_pieces(
     first: int,
     options: PairOptions,
 ) -> list[list[CurvePiece]]:
-    """For each path pieces of its reference, of which at least one passes each frequency that no piece is
+    """Pieces of the reference of each path, of which at least one passes each frequency that no piece is
     known to pass, as far as the work allows.
 
     They are followed from points of the paths from the first on whose errors are unknown, those of the
@@ -209,7 +209,7 @@ class _Search:
         return [_Front(front.path, path.z[-1], path.direction[-1], True, count / spent)]
 
     def _stretches(self, k: int) -> StretchFollower:
-        """Of the reference of a path, sought from motions that lie far from it."""
+        """Stretches of the reference of a path, sought from motions that lie far from it."""
         if k not in self.followers:
             more = self.errors[k].reference
             finer, options = self.system.with_harmonics(more), self.options

@@ -169,7 +169,7 @@ class ReferenceCurve:
         return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.min_found)
 
     def distinct_points(self, points: Indices) -> Indices:
-        """Those of points, in order, that are not next to another of them.
+        """The points, in order, that are not next to another of them.
 
         Of many degrees of freedom each has its own peak; what the reference has at one is interpolated to the
         next.
@@ -343,7 +343,7 @@ class ReferenceCurve:
     def _misses_expected(
         self, before: Indices, middle: Indices, after: Indices, expected: FloatArray
     ) -> Mask:
-        """Where a displacement is not what the two around it lead to expect, as errors of an amplitude.
+        """Whether a displacement is not as the two around it predict, in terms of errors of an amplitude.
 
         Along a steep part one of the frequency is a so much larger error of the amplitude.
         """

@@ -179,12 +179,13 @@ class StretchFollower:
         return self._found(i) if self.prolongation.find_at_frequency(guess, True) else None
 
     def _same_parity(self, i: int) -> StretchEnd | None:
-        """At the frequency of a point: what its motion leads to, or one as even that the level passes."""
+        """The motion found at the frequency of a point from its motion, else one of the same parity that the
+        level passes."""
         return self._same_frequency(i) or self._nearest_passed(i, True)
 
     def _nearest_passed(self, i: int, same_parity: bool) -> StretchEnd | None:
-        """At the frequency of a point the nearest motion that the level of the forces passes; alike with an
-        odd or even number of real multipliers above 1 as it has."""
+        """The nearest motion, at the frequency of a point, that the level of the forces passes; if
+        same_parity, with an odd or even number of real multipliers above 1 as the point has."""
         prolongation, curve = self.prolongation, self.curve
         guess = self.finer.extended(curve.z[i], self.fewer)
         even = curve.parity[i]

@@ -149,8 +149,8 @@ def _places(
 
 
 def _displaced(prolongation: Prolongation, place: _SpecialPoint) -> FloatArray | None:
-    """By how much the frequency, relative, and the amplitudes (1 + dof,) of the reference differ beside
-    a place."""
+    """Displacements (1 + dof,) of the frequency, relative, and of the amplitudes to the reference beside a
+    place."""
     for i in place.tries:
         if prolongation.find_normal(place.path.z[i], place.path.direction[i], True):
             found, omega = np.asarray(prolongation.found), place.path.parameter[i]

@@ -74,7 +74,7 @@ def _lost(
     accuracy: float,
     known: dict[tuple[int, ...], _ReferenceGrowth],
 ) -> StabilityLimit:
-    """Of one; known are the curves of more harmonics that others have been looked for on."""
+    """The limit at one crossing; known are the curves of more harmonics that served for others."""
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     share = FurtherHarmonics(system).shares(z, amplitude[None])[0]

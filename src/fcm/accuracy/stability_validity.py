@@ -40,7 +40,8 @@ def unreliable_points(
 
 
 def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY) -> Mask:
-    """Where (point,) a branch has long lost that of more harmonics, and says nothing of the motion."""
+    """The points (point,) at which a branch has long lost that of more harmonics, and says nothing of the
+    motion."""
     far = np.zeros(len(truncation), dtype=np.bool_)
     for first, end in runs(np.isnan(truncation)):
         far[first:end] = end - first > options.max_unknown_points

@@ -123,7 +123,8 @@ class UncheckedResponse(Frozen):
         return [path.representative(math.ceil(len(path.z) * most / count)) for path in paths]
 
     def with_levels(self, most: float | None = None) -> UncheckedResponse:
-        """With the branches that the level of the forces leads to and those of fewer harmonics do not.
+        """The response with the branches that the level of the forces leads to and those of fewer harmonics
+        do not.
 
         Where all comes to more seconds than the most, which is that of the system's options where nothing
         else is said, the response of fewer harmonics, which says so.

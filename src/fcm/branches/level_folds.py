@@ -60,7 +60,7 @@ class LevelFold(NamedTuple):
         return self.unfinished and 1.0 / LEVEL_FOLDS.max_level < self.level < LEVEL_FOLDS.max_level
 
     def extended(self, system: System, harmonics: tuple[int, ...]) -> LevelFold:
-        """That of a balance with some harmonics as one of a system with more."""
+        """The fold of a balance with some harmonics as one of a system with more."""
         before, after = (system.extended(one, harmonics) for one in (self.before, self.after))
         after = before if self.before is self.after else after
         return self._replace(z=system.extended(self.z, harmonics), before=before, after=after)

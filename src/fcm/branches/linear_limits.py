@@ -37,7 +37,8 @@ def linear_responses(system: System, omega: float, level: float) -> Iterator[Flo
 
 
 def _on_ports(system: System, omega: float) -> ComplexArray:
-    """Of the ports, (3, driven, port), with the contacts as in `linear_responses`; kept in the system."""
+    """Responses of the ports (3, driven, port), with the contacts as in `linear_responses`; kept in the
+    system."""
     if omega not in system.port_responses:
         precompute(system, (omega,))
     return system.port_responses[omega]
@@ -60,7 +61,7 @@ def precompute(system: System, frequencies: Sequence[float]) -> None:
 
 
 def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
-    """Of the ports with springs held (case, port): (frequency, case, driven, port)."""
+    """Responses of the ports with springs held (case, port): (frequency, case, driven, port)."""
     cases, ports = held.shape
     linear = system.linear
     if type(linear) is Linear and linear.natural.size < ports:

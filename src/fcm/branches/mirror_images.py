@@ -13,8 +13,8 @@ from fcm.harmonic_balance.system import System
 
 
 def without_images(system: System, paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[int, ...]]:
-    """Of paths that are mirror images of one another one, and half of one that is its own; and the numbers of
-    those whose images are left out."""
+    """The paths with one of several that are mirror images of one another, and half of one that is its own;
+    and the numbers of those whose images are left out."""
     several = paths if len(paths) > 1 else ()
     symmetric = next((path for path in several if is_symmetric(system, path)), None)
     if symmetric is None:
@@ -36,8 +36,8 @@ def without_images(system: System, paths: Sequence[Path]) -> tuple[tuple[Path, .
 
 
 def symmetric_half(path: Path) -> Path:
-    """Of a path that comes back as its own image the way between its branch points, or to the one that it
-    has; all of another one."""
+    """The part of a path that is its own image between its branch points, or to the one that it has; all of
+    another path."""
     changes = sign_changes(path.orientation)
     if path.status is Status.CLOSED and len(changes) == 2:
         half = slice(changes[0], changes[1] + 2)

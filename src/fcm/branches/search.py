@@ -29,7 +29,7 @@ def with_further_branches(system: System, found: Traced, isolated: bool = True) 
 
 
 def _with_connected(system: System, found: Traced, isolated: bool) -> Traced:
-    """With those that what is known leads to."""
+    """The branches with those that what is known leads to."""
     if isolated:
         found = with_isolas(system, found)
     else:
@@ -87,7 +87,7 @@ def with_branching(system: System, found: Traced, options: BranchingOptions = BR
 
 
 def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Traced:
-    """With the branches through the starts at a branch point that are not known, nor images of such."""
+    """The branches with those through the starts at a branch point that are not known, nor images of such."""
     for z in point.starts:
         images = [symmetry.image(z) for symmetry in broken_symmetries(system, point.z, z)]
         paths, balance = found.branches.paths, system.reset_balance()

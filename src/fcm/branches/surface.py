@@ -407,7 +407,7 @@ class FoldSteps:
         return []
 
     def run(self, start: FloatArray, singular: FloatArray, way: Departure) -> tuple[list[Point], Ending]:
-        """From the start on by one of its ways."""
+        """Follow the curve from the start on by one of its ways."""
         options, surface, side = self.options, self.surface, Side(self.n)
         self.begin(start, singular)
         self.test_value(side, way.radius, way.angle)

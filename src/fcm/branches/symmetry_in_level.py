@@ -50,7 +50,8 @@ def unsymmetric_solutions(
     paths: Sequence[Path],
     options: BranchingOptions = BRANCHING,
 ) -> UnsymmetricSolutions:
-    """Those that curves of the level lead to where it was followed, if a path of a system is symmetric."""
+    """Unsymmetric solutions that curves of the level lead to where it was followed, if a path of a system is
+    symmetric."""
     few = system.with_harmonics(tuple(range(1, few_harmonics(system) + 1)))
     if len(few.harmonics) < 2 or not any(is_symmetric(system, path, options) for path in paths):
         return UnsymmetricSolutions()
@@ -69,7 +70,7 @@ def unsymmetric_solutions(
 def _past_branch_points(
     few: System, omega: float, options: BranchingOptions
 ) -> tuple[list[UnsymmetricSolution], bool]:
-    """Those at one frequency, and whether all was followed to its end."""
+    """Unsymmetric solutions at one frequency, and whether all was followed to its end."""
     span, found = (0.0, few.option(FOLDS).max_level), list[UnsymmetricSolution]()
     path = level_curve(few, omega, LevelRange(span))
     balance, known = few.new_balance(), list[Path]()

@@ -31,7 +31,7 @@ class SymmetryLoss(Frozen):
 
 
 def symmetry_loss(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> SymmetryLoss:
-    """Where branches of a system leave symmetric ones by even harmonics that it lacks."""
+    """Places where branches of a system leave symmetric ones by even harmonics that it lacks."""
     whole = system.with_harmonics(tuple(sorted({*system.harmonics, *range(2, system.harmonics[-1] + 1, 2)})))
     if whole.harmonics == system.harmonics or not system.scene.contacts:
         return SymmetryLoss()
@@ -85,7 +85,7 @@ def _differing(finer: Path, coarser: Path, options: BranchingOptions) -> list[tu
 
 
 def _changes(system: System, point: BranchPoint) -> FloatArray:
-    """By how much the displacements of each harmonic (harmonic,) change where branches leave a point."""
+    """Changes of the displacements of each harmonic (harmonic,) where branches leave a point."""
     ports = [system.layout.complex_ports(one - point.z)[:, 1:] for one in point.starts]
     change: FloatArray = np.max([np.abs(one).max(axis=0) for one in ports], axis=0, initial=0.0)
     return change

@@ -183,7 +183,7 @@ class Events(Frozen):
     last: int = 0
 
     def within(self, length: float) -> list[tuple[float, float]]:
-        """Those narrower than a length."""
+        """The values with a width that are narrower than a length."""
         return [one for one in self.narrow if one[1] < length]
 
 
@@ -284,7 +284,7 @@ def event_at_sample(stepper: Stepper, poll: Sample, mark: int) -> Event:
 
 
 def first_margin(stepper: Stepper) -> float:
-    """Where within the step a margin changes sign first; NOT_FOUND if the curve is not found there.
+    """Length within the step at which a margin first changes sign; NOT_FOUND if the curve is not found there.
 
     Of many that change theirs most have not yet done so where another does: their roots are not looked for.
     """
@@ -459,7 +459,7 @@ def bracketed_fold(stepper: Stepper) -> Event:
 
 
 def user_point_crossings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
-    """Where the parameter passes a value: once on the way, or on either side of a fold.
+    """Events where the parameter passes a value: once on the way, or on either side of a fold.
 
     At a value next to a fold the equations have two solutions close together. Newton's method may find
     either, or none, so there the point is looked for along the step.

@@ -289,7 +289,7 @@ def _guesses(
 
 
 def _direction(stepper: Stepper, probe: FloatArray) -> FloatArray | None:
-    """That which the equations have there, with the orientation of here."""
+    """The tangent of the equations there, with the orientation of here."""
     newton = stepper.newton
     np.asarray(newton.row)[:] = probe / np.linalg.norm(probe)
     np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * probe

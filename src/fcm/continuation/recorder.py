@@ -284,7 +284,8 @@ def before_corner(stepper: Stepper) -> cython.double:
 
 @cython.cclass
 class NonsmoothPoints:
-    """At corners of the curve of a `recorder`; `labelled` where a change of label is what tells of them."""
+    """Points at corners of the curve of a `recorder`; `labelled` where a change of label is what tells of
+    them."""
 
     def __init__(self, recorder: Recorder, labelled: bool) -> None:
         self.recorder, self.labelled = recorder, labelled

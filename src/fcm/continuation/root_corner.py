@@ -124,14 +124,14 @@ def _solve(stepper: Stepper, corner: RootCorner, wanted: float, at: FloatArray) 
 
 
 def _corners_ahead(stepper: Stepper, distance: float) -> Iterator[RootCorner]:
-    """Those within a distance of here to which the curve goes, and not those that it comes from."""
+    """The corners within a distance of here to which the curve goes, and not those that it comes from."""
     tangent = np.asarray(stepper.here.tangent)
     near = _corners_near(stepper, stepper.here, distance)
     return (one for one in near if one.side * float(one.normal @ tangent) < 0.0)
 
 
 def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[RootCorner]:
-    """Those within a distance of here, the sides that of a point before them."""
+    """The corners within a distance of here, the sides that of a point before them."""
     options, z, scale = stepper.options.switching, np.array(stepper.here.z), np.array(stepper.newton.scale)
     margins, kinds = np.asarray(before.margin), np.asarray(before.kind)
     for k in np.flatnonzero((margins != 0.0) & (np.abs(margins) < options.max_root_margin) & (kinds >= 0)):

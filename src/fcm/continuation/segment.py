@@ -52,7 +52,7 @@ class Segment:
         return True
 
     def _guess(self, part: float) -> FloatArray:
-        """Where the point is looked for."""
+        """The guess from which the point is looked for."""
         first, last = (self._place(*end) for end in zip(self._ends, self._tangents, strict=True))
         whole = _cubic(part, self._ends, self.length * self._tangents)
         at = self._along(whole)

@@ -47,7 +47,7 @@ def apply_compliance(balance: Balance, force: FloatArray) -> FloatArray:
 
 
 def unknown_positions(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-    """Where the mean (port,) and the real part of each harmonic (harmonic, port) are among the unknowns."""
+    """Indices of the mean (port,) and of the real part of each harmonic (harmonic, port) in the unknowns."""
     return balance.layout.mean_at, balance.layout.waves_at
 
 
@@ -68,7 +68,7 @@ class Amplitude:
         self.of_forces = np.zeros(balance.unknowns)  # its slopes by the contacts' forces
 
     def at(self, z: FloatArray, near: FloatArray | None = None) -> None:
-        """Where the balance was evaluated last, z (unknown + 1,).
+        """Point z (unknown + 1,) at which the balance was evaluated last.
 
         With near, angles (2,), of the extremes next to these, be they the greatest of the cycle or not; the
         value is NaN where they are no more.

@@ -220,7 +220,8 @@ class Displacements(Extremes):
         z: cython.double[::1],
         direction: cython.double[::1],
     ) -> cython.int:
-        """From the contact forces (unknown,), laid out as the unknowns, and their rates.
+        """Fill the displacements from the contact forces (unknown,), laid out as the unknowns, and their
+        rates.
 
         The receptance is at omega. What contacts' displacements make up is from these, z (unknown + 1,): of
         a small displacement, forces that nearly balance leave few digits.

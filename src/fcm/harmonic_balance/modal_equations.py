@@ -451,7 +451,7 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(check=False)
     def forces_on_modes(self) -> cython.void:
-        """Those on the modes (part, mode)."""
+        """The forces on the modes (part, mode)."""
         j: cython.Py_ssize_t
         p: cython.Py_ssize_t
         for j in range(self.parts):

@@ -390,7 +390,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def newton_to_tolerance(self) -> cython.bint:
-        """As `Newton.correct`, up to the precision that a displacement needs."""
+        """Newton's method as `Newton.correct`, up to the precision that a displacement needs."""
         count: cython.int
         step: cython.double
         first: cython.double = 0.0

@@ -360,7 +360,7 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
     def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
-        """That of the margin by which a contact in a plane begins to slip."""
+        """The square of the margin by which a contact in a plane begins to slip."""
         law: Law = self.laws[kind // KINDS]
         return law.square(kind % KINDS, z, kind // KINDS * self.width)
 
@@ -447,7 +447,7 @@ class PointQuantities:
         direction: cython.double[:, ::1],
         level: cython.double[::1],
     ) -> PointQuantities:
-        """With the forces times level (point,); between two points a signal is seen to."""
+        """The quantities with the forces times level (point,); between two points a signal is seen to."""
         b: Balance = self.balance
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t

@@ -214,7 +214,7 @@ class FurtherHarmonics:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def shares_of_many(self, omega: cython.double) -> cython.int:
-        """Of many modes, by BLAS, or of a ring."""
+        """The shares with many modes, by BLAS, or of a ring."""
         others, size = np.asarray(self.others), np.asarray(self.size)
         force = np.asarray(self.force).view(np.complex128)[others - 1, :, 0][None]
         linear, at = self.system.linear, np.array([omega])

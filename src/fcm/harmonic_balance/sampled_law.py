@@ -74,7 +74,7 @@ class SampledLaw(Law):
         return 0
 
     def compute_resistance(self) -> int:
-        """By the tangent of the means."""
+        """The resistance is the tangent of the means."""
         self.resistance[:, :] = np.asarray(self.tangent)[: self.directions, : self.directions]
         return 0
 

@@ -166,7 +166,7 @@ class AtRest(NamedTuple):
 
 
 def at_rest(system: System) -> AtRest:
-    """Where a system is at rest under its static loads; zeros without any.
+    """The equilibrium of a system under its static loads; zeros without any.
 
     Raises
     ------

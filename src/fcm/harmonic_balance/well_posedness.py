@@ -27,7 +27,7 @@ REASONS = {
 
 
 def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, BoolArray]:
-    """For "pushed" and "floating" of REASONS whether it applies at points z (point, unknown + 1), (point,).
+    """Whether "pushed" and "floating" of REASONS apply at points z (point, unknown + 1), each (point,).
 
     force (point, unknown): of the contacts, laid out as the unknowns.
     """

@@ -294,7 +294,7 @@ def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = never_interrup
 
 
 def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
-    """That a solution is not determined, and why."""
+    """Message that a solution is not determined, and why."""
     unit = orbit.scene.frequency_unit
     where = f"the solution at {spoken(orbit.frequency, unit)} to start from is not determined"
     ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
@@ -310,7 +310,7 @@ def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> st
 
 
 def start_reason(scene: Scene, orbit: Orbit, near: Shot) -> str:
-    """That its contacts cannot rest where a scene starts."""
+    """Message that the contacts of a scene cannot rest where it starts."""
     names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
     at = spoken(orbit.frequency, scene.frequency_unit)
     return (

@@ -38,7 +38,7 @@ class Branch:
 
     @property
     def folds(self) -> list[OrbitRecord]:
-        """Those of the solutions at which the curve turns back in frequency."""
+        """The solutions at which the curve turns back in frequency."""
         return [orbit for orbit in self.orbits if orbit.mark & Mark.FOLD]
 
     @property
@@ -258,7 +258,7 @@ def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
 
 
 def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
-    """Where a curve was stopped, and how often it had turned back: with light damping, very often."""
+    """Where a curve was stopped, in words, and how often it turned back: with light damping, very often."""
     if not paths:
         return "the start"
     folds = sum(path.where(Mark.FOLD).size for path in paths)

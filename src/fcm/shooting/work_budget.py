@@ -87,5 +87,5 @@ class BranchBudget:
         return found
 
     def add_reason(self, why: str) -> None:
-        """That the search is not whole, and why."""
+        """Add the reason why the search is not whole."""
         self.given_up.append(f"the search for further branches was given up: {why}")

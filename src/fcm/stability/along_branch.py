@@ -167,7 +167,7 @@ class PathClassification:
         return float(self.rotation[math.ceil(b)] - self.rotation[int(a)])
 
     def curve(self, k: int) -> Segment:
-        """From a point to the next."""
+        """The curve from a point to the next."""
         return Segment(self._system.reset_balance(), self.path, k)
 
     def find(self, length: float, sufficient: Sequence[float] = ()) -> float | None:
@@ -183,7 +183,8 @@ class PathClassification:
 
 
 def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY) -> FloatArray:
-    """As of `PathClassification`; 0 where there are so many multipliers that two are always about to meet."""
+    """The rotation of `PathClassification`; 0 where there are so many multipliers that two are always about
+    to meet."""
     linear, omega = system.linear, path.parameter
     near = ~quasi_static_modes(
         linear.natural,

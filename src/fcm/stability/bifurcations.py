@@ -290,5 +290,5 @@ class _BifurcationSearch:
 
 
 def _nearest_index(at: IntArray, first: int, last: int) -> IntArray:
-    """For each of first to last the number of the nearest in at, which holds both."""
+    """Index in at of the number nearest to each from first to last; at holds both."""
     return np.rint(np.interp(np.arange(first, last + 1), at, np.arange(at.size))).astype(np.intp)

@@ -123,7 +123,8 @@ class ConfirmedPoints:
         return math.isnan(self.at(i).growth)
 
     def at(self, i: int) -> Classification:
-        """Of the motion with further harmonics; unknown where there are no evaluations left."""
+        """The classification of the motion with further harmonics; unknown where there are no evaluations
+        left."""
         if i not in self.known:
             if not self._may_look():
                 return UNKNOWN

@@ -53,7 +53,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @cython.cclass
 class ManyPlanarMonodromy(VariationalSteps):
-    """Of many contacts: of those that never move nothing is followed.
+    """The monodromy of many contacts: of those that never move nothing is followed.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class ManyPlanarMonodromy(VariationalSteps):
         return True
 
     def _structure(self, omega: float) -> None:
-        """That with the springs: what moving contacts see of the modes, and of one another's forces."""
+        """Put the structure with the springs together, as the moving contacts see it."""
         contact, m = np.asarray(self.sequence.contact), self.modes
         rubs = contact[:, 0] * contact[:, 1] > 0.0
         opened = (np.asarray(self.sequence.count) == 1) & (np.asarray(self.state) == SEPARATION)
@@ -208,7 +208,8 @@ class ManyPlanarMonodromy(VariationalSteps):
         return self.move(h)
 
     def slip(self, theta: float, h: float) -> None:
-        """Of the contacts that slip, at the nodes: directions, what s feels, and how it answers to that."""
+        """Fill for the contacts that slip, at the nodes: directions, right sides for s, and how s answers to
+        these."""
         a: cython.int
         c: cython.int
         i: cython.int

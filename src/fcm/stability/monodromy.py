@@ -186,7 +186,7 @@ class BySeries(Propagator):
 
 @cython.cclass
 class RingMonodromy(Monodromy):
-    """As `Monodromy`, of the contacts of all sectors.
+    """The monodromy of the contacts of all sectors, see `Monodromy`.
 
     part is the angle that is followed; renumber (mode, mode) renumbers the sectors in modal coordinates, and
     source (contact,) is the contact whose slider has the place of each afterwards.
@@ -685,7 +685,7 @@ class ManyMonodromy:
 @cython.cfunc
 @cython.exceptval(check=False)
 def _side(state: cython.int) -> cython.double:
-    """By which sign the load adds to the friction force."""
+    """Sign by which the load adds to the friction force."""
     return 1.0 if state == POSITIVE else -1.0 if state == NEGATIVE else 0.0
 
 

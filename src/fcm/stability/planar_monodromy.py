@@ -239,7 +239,8 @@ class VariationalSteps:
 
 @cython.cclass
 class PlanarMonodromy(VariationalSteps):
-    """Of few contacts: with the displacements of those that are closed, or of the modes, as unknowns.
+    """The monodromy of few contacts: with the displacements of those that are closed, or of the modes, as
+    unknowns.
 
     Parameters
     ----------
@@ -512,7 +513,7 @@ class PlanarMonodromy(VariationalSteps):
                             self.answer[i, a, j, b] += part * self.seen[m, b]
 
     def slip(self, c: cython.int, theta: float, h: float) -> None:
-        """Of a contact that slips: s = inverse (feels . (du, dv)) + kept s_0 at the nodes of a step.
+        """A contact slips: s = inverse (feels . (du, dv)) + kept s_0 at the nodes of a step.
 
         As it closes, no s_0: the polynomial has the nodes only.
         """
@@ -854,7 +855,7 @@ class PlanarMonodromy(VariationalSteps):
 
 @cython.cclass
 class RingPlanarMonodromy(PlanarMonodromy):
-    """As `PlanarMonodromy`, of the contacts of all sectors, in a part of a period.
+    """The monodromy of the contacts of all sectors, see `PlanarMonodromy`, in a part of a period.
 
     part is the angle that is followed; renumber (mode, mode) renumbers the sectors in the coordinates of
     modes that are not far, and source (contact,) is the contact whose memory has the place of each

@@ -13,7 +13,8 @@ Stretch = tuple[float, float]
 
 
 def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Stretch) -> list[Stretch]:
-    """Where within span all motions are known to be unstable, or there are none, the widest stretch first.
+    """Stretches within span in which all motions are known to be unstable, or there are none, the widest
+    first.
 
     parts: of each path its frequencies (point,), and stable (point,): 1 where the motion is, 0 where it is
     not, NaN where that is not known, so that it may be.

@@ -38,7 +38,7 @@ class Corner:
         return None
 
     def special_root(self, z: FloatArray, side: int | None, offset: float = 0.0) -> FloatArray | None:
-        """Where, along the corner or beside it, what is special is zero: on a side of it, or on it.
+        """The root of the condition along the corner or beside it: on a side of it, or on it.
 
         By the secant along the direction of the corner's curve, from the point of it that is nearest to z.
         """

@@ -50,7 +50,7 @@ def ending_peak(
 
 
 def _ends(curve: SpecialPointCurve) -> list[int]:
-    """Where a curve of peaks ends, or what it follows ceases to be the greatest."""
+    """Points where a curve of peaks ends, or what it follows ceases to be the greatest."""
     changes = np.flatnonzero(curve.greatest[:-1] & ~curve.greatest[1:]).tolist()
     return sorted({0, len(curve.points) - 1, *changes})
 

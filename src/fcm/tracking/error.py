@@ -85,7 +85,7 @@ def truncation_error(
 
 
 def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACKING) -> int | None:
-    """Of a turn the point from which it is sought, some before it and not beyond another turn."""
+    """The point from which a turn is sought, some before it and not beyond another turn."""
     if not track.points[i].turn:
         return None
     j = i

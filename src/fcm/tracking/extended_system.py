@@ -198,7 +198,8 @@ class ExtendedSystem(Problem):
         return found.value / unit - self.offset, gradient / unit
 
     def _fold_or_peak(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
-        """Of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it is."""
+        """The equation of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it
+        is."""
         scale = np.asarray(self.scale)[:-1]
         tangent = self._tangent(here.jacobian)
         t, special = tangent.t, here.growth

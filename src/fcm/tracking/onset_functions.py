@@ -178,7 +178,7 @@ def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ..
 
 
 def _weights(e: FloatArray) -> FloatArray:
-    """With which directions (disc, 2) vanish, of sum 1."""
+    """Weights, of sum 1, with which directions (disc, 2) vanish."""
     matrix = np.vstack((e.T, np.ones(len(e))))
     found: FloatArray = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
     return found if len(e) > 1 else np.ones(len(e))
@@ -192,7 +192,7 @@ def kinds_of(law: Law) -> tuple[str, ...]:
 
 
 def _places(law: Law, x: FloatArray, direction: int) -> npt.NDArray[np.intp]:
-    """Where the numbers of a displacement are among the unknowns: mean, then Re, Im of each harmonic."""
+    """Indices of the numbers of a displacement among the unknowns: mean, then Re, Im of each harmonic."""
     layout = layout_of(1, law.directions, (x.size // law.directions - 1) // 2)
     return layout.places[direction]
 

@@ -104,7 +104,7 @@ class VariedBalance:
 
     @property
     def system(self) -> System:
-        """With the numbers where they are."""
+        """The system with the numbers where they are."""
         if self._system is None:
             self._system = copy(self.base)
             object.__setattr__(self._system, "scene", self.line.scene(self.base.scene, self.s))

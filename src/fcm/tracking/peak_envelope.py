@@ -91,7 +91,7 @@ class MonotonePiece:
         )
 
     def point(self, s: float, rising: float) -> TrackedPoint | None:
-        """That of the curve, along which s rises (1) or falls (-1); None where it is not come to."""
+        """The point of the curve, along which s rises (1) or falls (-1); None where it is not come to."""
         if (solved := self._solved(s)) is None:
             return None
         _, newton = solved
@@ -99,7 +99,7 @@ class MonotonePiece:
         return TrackedPoint(z, t if t[-1] * rising > 0.0 else -t, self._guess(s)[3])
 
     def _guess(self, s: float) -> tuple[FloatArray, int, float, Condition | None]:
-        """By the chord: z, which chord, which part of it, and the corner that is tracked there."""
+        """A guess by the chord: z, which chord, which part of it, and the corner that is tracked there."""
         i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
         one, other = self.tracked_points[i], self.tracked_points[i + 1]
         part = (s - self.s[i]) / max(self.s[i + 1] - self.s[i], 1e-300)

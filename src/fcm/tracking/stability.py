@@ -105,7 +105,7 @@ def _same(one: float, other: float) -> bool:
 
 
 def _signs(problem: ExtendedSystem, point: TrackedPoint) -> set[float]:
-    """Of the balance's determinant at a point; at a corner of the response those on both sides."""
+    """Signs of the balance's determinant at a point; at a corner of the response those on both sides."""
     scale, y = np.asarray(problem.scale)[:-1], np.array(point.z[:-1])
     ahead = problem.options.stability.corner_side * scale * np.asarray(problem.row)
     places = [y] if point.corner is None and not point.switch else [y - ahead, y + ahead]

@@ -96,7 +96,7 @@ def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDA
 def _onsets(
     system: System, path: Path, condition: Condition, options: TrackingOptions = TRACKING
 ) -> Iterator[FloatArray]:
-    """Where a function of a contact changes its sign between points, by the chord."""
+    """Onsets, where a function of a contact changes its sign between points, by the chord."""
     law, c = system.laws()[condition.which], condition.which
     blocks = [np.ascontiguousarray(z[c * law.width : (c + 1) * law.width]) for z in path.z]
     value = np.array([onset(law, x, condition.onset, system.harmonics, options).value for x in blocks])
