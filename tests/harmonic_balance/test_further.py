@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import with_estimated_errors
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.system import System
 
+from ..accuracy.calibration import with_estimated_errors
 from .strips import strip
 from .truth import scene
 
