@@ -42,14 +42,21 @@ def scene(tmp_path, text):
 def greatest(stiffness):
     """Of m = 1, k = 1 and a Jenkins element of k_u = stiffness: the damping ratio of its loss for a cycle."""
 
+    return best_of(stiffness)[1]
+
+
+def best_of(stiffness):
+    """The amplitude, in multiples of that at which it slips, of the greatest damping ratio; this; omega^2."""
+
     def ratio(amplitude):  # in multiples of the displacement at which it slips
         loss = 4.0 * stiffness * (amplitude - 1.0)
         cosine = 1.0 - 2.0 / amplitude
         theta = np.arccos(cosine)
         real = stiffness * (theta - np.sin(theta) * cosine) / np.pi
-        return loss / (2.0 * np.pi * amplitude**2 * (1.0 + real))
+        return loss / (2.0 * np.pi * amplitude**2 * (1.0 + real)), 1.0 + real
 
-    return -minimize_scalar(lambda x: -ratio(x), bounds=(1.0, 60.0), method="bounded").fun
+    best = minimize_scalar(lambda x: -ratio(x)[0], bounds=(1.0, 60.0), method="bounded").x
+    return best, *ratio(best)
 
 
 def test_of_one_degree_of_freedom_it_is_the_loss_of_a_cycle_at_the_best_amplitude(tmp_path):
@@ -59,6 +66,19 @@ def test_of_one_degree_of_freedom_it_is_the_loss_of_a_cycle_at_the_best_amplitud
     assert second["friction_damping"] == 0.0  # it moves along the normal alone
     stiff = friction_damping(scene(tmp_path, ONE.replace("k_u = 1.4", "k_u = 40")))[0]
     assert stiff["friction_damping"] == pytest.approx(greatest(20.0), rel=5e-3)
+
+
+def test_the_preload_is_that_with_which_the_resonance_has_the_best_amplitude(tmp_path):
+    """X = F / (2 zeta omega^2) of m = 2, and X = A mu n_0 / k_u, with A the best multiple of slip.
+
+    The angles theta are 13 % apart, so that the best of them is off by 6 %.
+    """
+    multiple, ratio, square = best_of(0.7)
+    moved = 0.1 / 2.0 / (2.0 * ratio * square)
+    one = friction_damping(scene(tmp_path, ONE))[0]
+    assert one["preload"]["damper"] == pytest.approx(moved / multiple * 1.4 / 0.3, rel=0.07)
+    unmoved = ONE.replace('dof = "u"', 'dof = "v"')
+    assert friction_damping(scene(tmp_path, unmoved))[0]["preload"] == {"damper": 0.0}
 
 
 def test_it_is_the_greatest_damping_of_the_nonlinear_mode(tmp_path):

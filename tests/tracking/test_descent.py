@@ -134,6 +134,35 @@ def test_how_far_off_the_end_of_a_higher_peak_is_stands_beside_the_number(error,
     assert said in shown.splitlines()[0]
 
 
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        ("end", "where a higher peak leaves the range of frequencies at 5 rad/s"),
+        ("corner", "where the peak leaves the range of frequencies at 5 rad/s"),
+    ],
+)
+def test_a_peak_that_leaves_the_range_is_said_to(kind, said):
+    found = Optimal(
+        {}, {"n": 1.0}, ("peak.u",), 0.3, (("u", 2.0),), kind, (1,), 1e-3, stable=(1.0,), residual=(0.0,)
+    )  # fmt: skip
+    for at, is_said in ((5.0, True), (np.nan, False)):
+        run = {"optimum": [replace(found, leaves_range=at).summary("rad/s")], "tracked": {"what": "optimum"}}
+        assert (said in as_table(run, "rad/s").splitlines()[0]) is is_said
+
+
+def test_a_greater_amplitude_at_an_end_of_the_range_stands_below_a_least_peak():
+    found = Optimal(
+        {}, {"n": 1.0}, ("peak.u",), 0.3, (("u", 2.0),), "smooth", (1,), 1e-3, stable=(1.0,), residual=(0.0,)
+    )  # fmt: skip
+    run = {"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}
+    for amplitude, is_said in ((0.4, True), (0.3, False)):
+        end = {"amplitude": amplitude, "frequency": 9.0, "at_edge": True}
+        shown = as_table(run | {"curves": [{"peak": {"u": end}}]}, "rad/s")
+        assert (
+            'u is 0.4 at 9, an end of the range, which is higher: minimise = "greatest.u"' in shown
+        ) is is_said
+
+
 def test_a_least_peak_where_nothing_stable_was_found_says_so_in_its_headline():
     """The motion is nowhere stable between 1.9 and 2.1, so the design rests on no steady motion."""
     found = Optimal(

@@ -1,5 +1,6 @@
 """The least peak where detached branches have the greatest: they are met, and end at some number."""
 
+import numpy as np
 import pytest
 
 from fcm.accuracy.refinement import every_branch, with_given_harmonics
@@ -58,6 +59,16 @@ def test_the_harmonics_of_a_least_peak_are_those_of_the_branch_that_it_is_on():
     task = PeakTask(number.freed(scene).each_curve()[0], [number], 1e-2)
     found = Optimal({}, {KEY: 150.0}, ("peak.tip",), 1.6e-3, (), "bound", (1,))
     assert set(task.needed(found, (1,))) >= {1, 2, 3}
+
+
+def test_a_peak_that_falls_until_it_leaves_the_range_is_not_at_a_corner():
+    """The range ends at 400 Hz, and the peak goes from 389 Hz at 10 N to 425 Hz at 160 N."""
+    short = {"frequency": [80.0, 400.0], "output": ["tip"]}
+    aim = {"vary": [KEY], "bounds": [[10.0, 160.0]], "minimise": "peak.tip"}
+    (best,) = optimise(blade(optimum=aim, response=short), harmonics=1).tracking.optima
+    assert best.kind == "corner" and best.leaves_range == pytest.approx(2.0 * np.pi * 400.0)
+    beyond = trace(blade(best.values[KEY] + 1.0, response={"frequency": [80.0, 420.0]}), harmonics=1)
+    assert 400.0 < beyond.curves[0].peaks["tip"].frequency / (2.0 * np.pi) < 402.0
 
 
 @pytest.mark.slow

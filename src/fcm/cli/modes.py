@@ -33,6 +33,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     A second table has the resonances, with all contacts open and with all stuck. It has the greatest
     damping ratio that friction can add to each, estimated by one harmonic. Contacts stay closed, at
     their best preload, with the same share of slip. "most in" is the contact with the greatest part.
+    "n_0" is its preload that gives this damping in resonance with the forces of the scene.
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
     stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand
@@ -73,10 +74,11 @@ def _resonances(found: dict[str, Any]) -> str:
     if not any(one["friction_damping"] for one in every):
         return ""
     unit = found["frequency_unit"]
-    rows = [["resonance", f"open at {unit}", f"stuck at {unit}", "friction adds up to", "most in", ""]]
+    rows = [["resonance", f"open at {unit}", f"stuck at {unit}", "friction adds up to", "most in", "", "n_0"]]
     for number_of, one in enumerate(every, 1):
         name, share = max(one["by_contact"].items(), key=lambda item: item[1])
-        most = [name, f"{100.0 * share:.0f} %"] if one["friction_damping"] else ["-", ""]
+        preload = f"{one['preload'][name]:.2g}" if one["preload"][name] else "-"
+        most = [name, f"{100.0 * share:.0f} %", preload] if one["friction_damping"] else ["-", "", ""]
         rows.append(
             [
                 str(number_of),
@@ -86,7 +88,7 @@ def _resonances(found: dict[str, Any]) -> str:
                 *most,
             ]
         )
-    return f"{_FRICTION}\n{aligned(rows, left=2)}"
+    return f"{_FRICTION}\n{aligned(rows, left=3)}"
 
 
 def _lines(found: dict[str, Any], directions: list[str]) -> str:

@@ -161,8 +161,8 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
     where = ", ".join(f"{plain(key)} = {value:.6g}" for key, value in one["values"].items())
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
-        "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
-        "end": ", where a higher peak ends: on one side the peak jumps up, so keep a margin" + _end(one),
+        "smooth": "", "kink": ", where peaks are equal", "corner": _at_corner(one, unit),
+        "end": _where_higher_ends(one, unit),
         "bound": ", at a bound: beyond it there may be less", "flat": "",
         "trials": "", "unfinished": ", the least so far: the search was interrupted",
     }[one["kind"]]  # fmt: skip
@@ -180,7 +180,23 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
         f"({_error(one)}{_ranges(one)})"
     )
     where = f"{least} with {where}{kind}{_flat(one)}{_higher(one)}"
-    return f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}{_tried(one)}"
+    return (
+        f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}{_tried(one)}"
+        f"{_higher_at_edge(one, curve)}"
+    )
+
+
+def _higher_at_edge(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
+    """That the response there is higher at an end of the range, which a peak does not count."""
+    dofs = [name.removeprefix("peak.") for name in one["minimise"] if name.startswith("peak.")]
+    ends = [(dof, curve.get("peak", {}).get(dof) or {}) for dof in dofs]
+    higher = [
+        f"{plain(dof)} is {end['amplitude']:.6g} at {end['frequency']:.6g}, an end of the range, which is "
+        f'higher: minimise = "greatest.{plain(dof)}" counts that, and a wider range has its peak'
+        for dof, end in ends
+        if end.get("at_edge") and end["amplitude"] > one["value"]
+    ]
+    return "".join(f"\n{text}" for text in higher)
 
 
 def _nearly(one: Mapping[str, Any]) -> str:
@@ -206,13 +222,29 @@ def _tried(one: Mapping[str, Any]) -> str:
     return f"\ntried beside it: {peaks}. Between two of these the peak is unknown"
 
 
-def _end(one: Mapping[str, Any]) -> str:
-    """How far off the number is at which the higher peak ends."""
+def _at_corner(one: Mapping[str, Any], unit: str) -> str:
+    """That the response has a corner there, or the range of frequencies an end."""
+    if (at := one["leaves_range"]) is None:
+        return ", at a corner of the response"
+    return (
+        f", where the peak leaves the range of frequencies at {at:.6g} {unit}: with other numbers there is "
+        "none within it, so take a wider one"
+    )
+
+
+def _where_higher_ends(one: Mapping[str, Any], unit: str) -> str:
+    """That a higher peak ends there, and why; how far off the number is at which it does."""
     if one["kind"] != "end":
         return ""
+    if (at := one["leaves_range"]) is not None:
+        return (
+            f", where a higher peak leaves the range of frequencies at {at:.6g} {unit}: beyond the range it "
+            "goes on, so take a wider one"
+        )
+    why = ", where a higher peak ends: on one side the peak jumps up, so keep a margin"
     told = one["end_error"] is not None
     error = f"off by {short(one['end_error'])}, relative, estimated" if told else "off by an unknown amount"
-    return f" (that end is {error})"
+    return f"{why} (that end is {error})"
 
 
 def _error(one: Mapping[str, Any]) -> str:

@@ -21,7 +21,7 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
 from fcm.scene.errors import counted
-from fcm.tracking.ending_peak import EndingPeak, ending_peak
+from fcm.tracking.ending_peak import EndingPeak, ending_peak, leaves_range
 from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.minimax import PeakEnvelope, descend
@@ -198,6 +198,8 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
     followed = [with_user_points(setup, one, told) for one in found.curves]
     curves = [as_curve(task.scene, setup, *stability_along(setup, one)) for one in followed]
     optimal = _optimal(task, np.array([found.best.s]), found.best, harmonics)
+    if found.best.kind == "corner":
+        return replace(optimal, leaves_range=leaves_range(found.curves, found.best)), curves
     if found.best.kind != "end":
         return optimal, curves
     end = task.steps(
@@ -206,7 +208,8 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
         partial(ending_peak, setup, found.curves, found.best),
     )
     (number,) = task.numbers
-    return replace(optimal, end_error=end.error, beside={number.key: end.beside}), curves
+    beside = {number.key: end.beside}
+    return replace(optimal, end_error=end.error, beside=beside, leaves_range=end.leaves_range), curves
 
 
 def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None) -> Found:

@@ -133,6 +133,7 @@ class Optimal(Frozen):
         0.0  # of the number at which a higher peak ends, estimated, relative; 0 where none does
     )
     beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
+    leaves_range: float = np.nan  # [rad/s] where that peak, or the least, leaves the range of frequencies
     nearly: NearlyLeast | None = None  # the numbers around it with which the peak is hardly greater
 
     def summary(self, unit: str) -> dict[str, Any]:
@@ -161,6 +162,7 @@ class Optimal(Frozen):
             "flat": {key: list(ends) for key, ends in self.flat.items()},
             "nearly_least": None if self.nearly is None else asdict(self.nearly),
             "end_error": self.end_error,
+            "leaves_range": None if np.isnan(self.leaves_range) else float(in_unit(self.leaves_range, unit)),
             "higher": None if self.higher is None else dict(zip(("what", "value"), self.higher, strict=True)),
         }
 

@@ -11,6 +11,12 @@ A mode phi of mass 1 and frequency omega, of the structure with its contacts at 
 
 Its maximum over theta, the same for all contacts, is what friction can add. For one degree of freedom it is
 the greatest damping ratio of the nonlinear mode (Krack 2015) of one harmonic.
+
+In resonance with the forces f, with that and its own ratio, the mode and the contacts move by
+
+.. math:: q = \frac{|\phi^T f|}{2 (\zeta + \zeta_0) \omega^2}, \qquad X_c = |\phi^T t_c|\, q,
+
+and the preload that gives theta at a contact is n_0 = k_u X_c (1 - cos(theta)) / (2 mu).
 """
 
 from __future__ import annotations
@@ -19,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.scene import Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.units import UNIT
 
@@ -28,7 +34,9 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     """Of the first elastic modes: frequencies with the contacts open and stuck, and the damping of friction.
 
     `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
-    in it. Empty without contacts. Modes are counted among those that are elastic while the contacts stick.
+    in it, `preload` that of each contact which gives it with the forces of the scene: 0 where these do not
+    move the mode. Empty without contacts. Modes are counted among those that are elastic while the contacts
+    stick.
 
     Examples
     --------
@@ -61,15 +69,25 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     elastic = squares > TOLERANCES.undamped * float(np.abs(held + added).sum(axis=1).max(initial=0.0))
 
     best = np.zeros(last + 1)
-    ratio = np.zeros((last + 1, len(contacts)))  # of each contact, at the best theta of each mode
+    ratio, preload = np.zeros((2, last + 1, len(contacts)))  # of each contact, at the best theta of each mode
+    mu, stiffness = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u"))
+    per_force = np.divide(stiffness, 2.0 * mu, out=np.zeros_like(mu), where=mu > 0.0)
     for theta in np.geomspace(MESSAGES.least_slip_angle, np.pi, MESSAGES.slip_angles, endpoint=False):
         k_r, k_i = (theta - np.sin(theta) * np.cos(theta)) / np.pi, np.sin(theta) ** 2 / np.pi
         squares, shapes = scipy.linalg.eigh(held + k_r * added, subset_by_index=[0, last])
         for mode in np.flatnonzero(elastic & (squares > 0.0)).tolist():
-            loss = k_i * lossy * (along.T @ shapes[:, mode]) ** 2 / (2.0 * squares[mode])
+            shape, omega = shapes[:, mode], float(np.sqrt(squares[mode]))
+            moved = (along.T @ shape) ** 2
+            loss = k_i * lossy * moved / (2.0 * squares[mode])
             if loss.sum() > best[mode]:
                 best[mode] = loss.sum()
                 ratio[mode] = np.bincount(owner, loss, len(contacts))
+                own = float((modal.damping * modal.frequency) @ shape**2) / omega
+                size = abs(_force_on(scene, shape / scale[:, 0], omega)) / (
+                    2.0 * (best[mode] + own) * squares[mode]
+                )
+                amplitude = size * np.sqrt(np.bincount(owner, moved, len(contacts)))
+                preload[mode] = per_force * amplitude * (1.0 - np.cos(theta))
     return [
         {
             "open": float(opened[mode] / UNIT[scene.frequency_unit]),
@@ -79,6 +97,19 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
                 contact.name: float(one / best[mode]) if best[mode] else 0.0
                 for contact, one in zip(contacts, ratio[mode], strict=True)
             },
+            "preload": {
+                contact.name: float(one) for contact, one in zip(contacts, preload[mode], strict=True)
+            },
         }
         for mode in np.flatnonzero(elastic).tolist()[: MESSAGES.damped_modes]
     ]
+
+
+def _force_on(scene: Scene, shape: FloatArray, omega: float) -> complex:
+    """The amplitude of the forces of the fundamental on a combination (mode,) of the modes."""
+    moved = shape @ scene.modal.shapes
+    return sum(
+        one.amplitude * omega**one.power * float(one.direction @ moved) * complex(np.exp(1j * one.phase))
+        for one in scene.forces
+        if one.harmonic == 1
+    )

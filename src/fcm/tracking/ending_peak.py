@@ -11,15 +11,16 @@ import numpy as np
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.error import truncation_error
 from fcm.tracking.peak_envelope import EnvelopeMinimum
-from fcm.tracking.tracked_point import TrackingSetup
+from fcm.tracking.tracked_point import Ending, TrackingSetup
 
 
 class EndingPeak(NamedTuple):
     """error: relative, of the number at which it ends, NaN where that is unknown; beside: a number where
-    it still is."""
+    it still is; leaves_range: the frequency [rad/s] at which it leaves the range that is traced, or NaN."""
 
     error: float
     beside: float
+    leaves_range: float = np.nan
 
 
 def ending_peak(
@@ -41,12 +42,27 @@ def ending_peak(
     _, curve, i = min(ends, key=lambda one: one[0])
     if i == 0:
         curve, i = _turned(curve), len(curve.points) - 1
+    leaves = i == len(curve.points) - 1 and curve.endings[-1] is Ending.RANGE
+    of_an_end = (
+        curve.frequency[i] in setup.system.scene.frequency_range
+    )  # the amplitude at an end is followed
+    at = float(curve.frequency[i]) if leaves or of_an_end else np.nan
     before = np.flatnonzero(abs(curve.s[:i] - least.s) >= setup.options.error.before_end * abs(least.s))
     begin = int(before[-1]) if before.size else 0
     beside = float(curve.s[begin])
     if not curve.points[i].turn or least.s == 0.0:
-        return EndingPeak(np.nan, beside)
-    return EndingPeak(truncation_error(setup, curve, i, begin).number / abs(least.s), beside)
+        return EndingPeak(np.nan, beside, at)
+    return EndingPeak(truncation_error(setup, curve, i, begin).number / abs(least.s), beside, at)
+
+
+def leaves_range(curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum) -> float:
+    """The frequency [rad/s] at which the curve of a least peak leaves the range that is traced, or NaN: then
+    no peak is beyond the number, within the range."""
+    for curve in curves:
+        for i, ending in zip((0, -1), curve.endings, strict=True):
+            if ending is Ending.RANGE and curve.s[i] == least.s:
+                return float(curve.frequency[i])
+    return np.nan
 
 
 def _ends(curve: SpecialPointCurve) -> list[int]:
