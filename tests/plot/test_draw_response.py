@@ -139,7 +139,7 @@ def test_unstable_parts_are_dashed_and_join_the_stable_ones():
     assert solid.get_color() == dashed.get_color()
     assert np.flatnonzero(np.isnan(solid.get_ydata())).tolist() == list(range(80, 90))
     assert np.flatnonzero(np.isfinite(dashed.get_ydata())).tolist() == list(range(79, 91))
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["stable", "unstable"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["stable curve", "unstable"]
 
 
 def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so():
@@ -151,7 +151,7 @@ def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so(
     assert np.isnan(solid.get_ydata()).sum() == 30 and np.isfinite(dashed.get_ydata()).sum() == 12
     assert np.flatnonzero(np.isfinite(dotted.get_ydata())).tolist() == list(range(119, 141))
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        "stable",
+        "stable curve",
         "unstable",
         "stability unknown",
     ]
@@ -363,7 +363,10 @@ def test_the_legend_names_no_line_that_is_too_short_to_be_seen():
         one = DrawnCurve({}, x, np.full((x.size, 2), 2.0), stable)
         legends = draw_response(response(one)).legends
         assert bool(legends) is named
-        assert not named or [text.get_text() for text in legends[0].get_texts()] == ["stable", "unstable"]
+        assert not named or [text.get_text() for text in legends[0].get_texts()] == [
+            "stable curve",
+            "unstable",
+        ]
 
 
 def test_a_backbone_is_drawn_within_the_axes_of_the_curves():

@@ -145,6 +145,12 @@ def test_all_mistakes_of_draws_at_once(data, mistakes):
     assert "3 mistakes" in mistakes(data)
 
 
+def test_a_deviation_in_percent_of_its_mean_is_refused_with_what_it_comes_to(data, mistakes):
+    said = mistakes(data | {"sweep": {N_0: PLAIN | {"normal": [-3.0, "20 %"]}}})
+    assert 'normal[1]: "20 %" is no number: the standard deviation is in the units of the key' in said
+    assert said.rstrip().endswith("write 0.6")
+
+
 def test_draws_that_would_take_days_are_told_before_they_are_made(data, mistakes):
     """Of a distribution of which each takes milliseconds; few of them are drawn all the same."""
     slow = {"distribution": "norminvgauss", "a": 1.25, "b": 0.5, "count": 1_000_000}

@@ -70,17 +70,22 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     dofs, length = shown_dofs(summary), summary.get("units", {}).get("length", "")
     shown = _which_are_shown(summary, dofs)
     parts = [_curves(summary, names, dofs, unit, length, shown)]
-    parts += filter(None, [_every_peak(curves, names, dofs, unit, length)])
+    moving = [dof for dof in dofs if not all(_at_rest(curve, dof) for curve in curves)]
+    of_each = {
+        "lower peaks": _every_peak(curves, names, dofs, unit, length),
+        "greatest stable motions": stable_table(curves, names, moving, unit),
+        "jumps": jump_table(curves, names, moving, unit, resolution_of(summary)),
+        "stretches of unknown stability": unknown_stability_table(curves, names, moving, unit),
+    }
+    peaks, *others = of_each.values()
+    drawn = summary.get("scatter", ())
+    parts += [peaks] if peaks and not drawn else []
     parts += filter(None, [_at_level_1(curves, names, dofs, length)])
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
-    moving = [dof for dof in dofs if not all(_at_rest(curve, dof) for curve in curves)]
-    tables = [
-        stable_table(curves, names, moving, unit),
-        jump_table(curves, names, moving, unit, resolution_of(summary)),
-        unknown_stability_table(curves, names, moving, unit),
-    ]
-    parts += filter(None, tables)
-    parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
+    parts += filter(None, () if drawn else others)
+    if drawn and (left_out := [what for what, table in of_each.items() if table]):
+        parts.append(f"{', '.join(left_out)} of each draw: --json has them")
+    parts += [_scatter(one, dofs, unit) for one in drawn]
     return "\n\n".join(parts)
 
 

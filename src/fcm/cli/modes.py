@@ -32,8 +32,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
     A second table has the resonances, with all contacts open and with all stuck. It has the greatest
     damping ratio that friction can add to each, estimated by one harmonic. Contacts stay closed, at
-    their best preload, with the same share of slip. "most in" is the contact with the greatest part.
-    "n_0" is its preload that gives this damping in resonance with the forces of the scene.
+    their best preload, with the same share of slip. The contact with the greatest part is "most in". Its
+    preload that gives this damping, in resonance with the scene's forces, is "n_0".
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
     stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand

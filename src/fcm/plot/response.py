@@ -43,7 +43,7 @@ _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
 # what is said of both kinds of faded stretches
 _FADED = f"may err by more than {100 * LAYOUT.doubtful_error:g} %, or by an unknown amount"
-_STABLE = "stable"  # what is a solid line, where others are not
+_STABLE = "stable curve"  # what is a solid line, where others are not
 _NOT_STABLE = "unstable"  # what is dashed
 _UNKNOWN = "stability unknown"  # what is dotted
 _HOLLOW = "a point, unstable or of unknown stability"  # what is a hollow dot

@@ -21,8 +21,9 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
+from fcm.scene.number_text import number_in
 from fcm.scene.options import LIMITS, TOLERANCES
-from fcm.scene.rules import ANY, POSITIVE
+from fcm.scene.rules import ANY, POSITIVE, as_float
 from fcm.scene.section import Section
 
 FORMS = ("normal", "uniform", "distribution")
@@ -112,6 +113,10 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
 
 
 def _pair(table: Section, form: str) -> tuple[float, float]:
+    given = table.data[form]
+    if form == "normal" and isinstance(given, list) and (fault := _deviation_in_percent(given)):
+        table.wrong(f"{form}[1]", fault)
+        return 0.0, 1.0
     pair = table.vector(form, ANY)
     words = "[mean, deviation]" if form == "normal" else "[low, high]"
     if pair is None:
@@ -124,6 +129,22 @@ def _pair(table: Section, form: str) -> tuple[float, float]:
     elif form == "uniform" and pair[1] < pair[0]:
         table.wrong(form, f"goes down: [{pair[0]:g}, {pair[1]:g}]; give the lower one first")
     return float(pair[0]), float(pair[1])
+
+
+def _deviation_in_percent(pair: list[Any]) -> str:
+    """What to write for a standard deviation that is given as a percentage of its mean; else ''.
+
+    >>> _deviation_in_percent([5.0, "20 %"]), _deviation_in_percent([5.0, "20"])
+    ('"20 %" is no number: the standard deviation is in the units of the key, as its mean is: write 1', '')
+    """
+    text = pair[1].strip() if len(pair) == 2 and isinstance(pair[1], str) else ""
+    mean, percent = as_float(pair[0]), number_in(text[:-1].strip()) if text.endswith("%") else None
+    if mean is None or percent is None:
+        return ""
+    return (
+        f"{quoted(pair[1])} is no number: the standard deviation is in the units of the key, as its mean is: "
+        f"write {abs(mean) * percent / 100.0:.12g}"
+    )
 
 
 def _distribution(table: Section) -> Quantile | None:
