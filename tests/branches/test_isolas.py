@@ -1,7 +1,6 @@
 """Isolated branches, which only the folds of the level of the forces lead to."""
 
-import subprocess
-import sys
+import json
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -27,6 +26,8 @@ from fcm.response.refined import refined
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
+
+from ..program import AS_A_MODULE, python
 
 SCENES = Path(__file__).parent / "scenes"
 EVERY_MODE = CondensationOptions(min_unknowns=1, max_fraction=2.0)  # as of many contacts
@@ -331,7 +332,5 @@ def test_a_closed_branch_is_traced_once():
 
 def test_a_strip_that_ends_nowhere_is_crossed_once():
     """Crossed again and again, a search for folds never ended, and heeded no signal: so in a process."""
-    program = "import sys, fcm; print(fcm.respond(fcm.load_scene(sys.argv[1])).complete.values)"
-    path = SCENES / "endless_strip.toml"
-    run = subprocess.run([sys.executable, "-c", program, path], check=True, timeout=300, capture_output=True)
-    assert run.stdout.split() == [b"[1]"]
+    done = python(*AS_A_MODULE, "respond", SCENES / "endless_strip.toml", "--json", "--peaks-only")
+    assert done.code == 0 and json.loads(done.out)["curves"][0]["complete"]

@@ -288,6 +288,11 @@ def test_mistakes_of_pairs(change, words):
     assert words in refused([PAIRS | NUMBERS | change])
 
 
+def test_a_sweep_over_all_contacts_is_no_mistake_beside_contacts_that_have_some():
+    said = refused([PAIRS | NUMBERS | {"nodes": [40, 41, 50]}], sweep={"contact.*.n_0": [1.0]})
+    assert "may be pairs" in said and "nothing in the scene matches" not in said
+
+
 def test_all_nodes_that_are_not_there_are_named():
     said = refused([PAIRS | NUMBERS | {"nodes": [[40, 99], [98, 51]], "tangential": {"x": 0.6, "rz": 0.8}}])
     for node, along in ((40, '"rz"'), (99, '"x", "rz", "z"'), (98, '"x", "rz", "z"'), (51, '"rz"')):

@@ -152,6 +152,7 @@ REFUSED = [
         'there is no such number in the scene; did you mean "contact.shroud.n_0"?',
     ),
     ("contact.shroud.n0", [1], 'did you mean "contact.shroud.n_0"?'),
+    ("contact.shroud.preload", [1], 'did you mean "contact.shroud.n_0"?'),
     ("contact.7.n_0", [1], 'there is no such number in the scene; contacts are "shroud"'),
     ("contact.shroud", [1], "there is no such number"),
     ("mu", [1], 'there is no such number in the scene; there are "contact.shroud.mu", "contact.damper.mu"'),

@@ -13,6 +13,7 @@ import numpy as np
 from fcm.model.scene import Address
 from fcm.scene.errors import Mistakes, choices, nearest, quoted, suggestion
 from fcm.scene.options import MESSAGES
+from fcm.scene.section import SYNONYMS
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
@@ -46,7 +47,7 @@ class Addresses:
             return members
         if not self._excused(key, path, mistakes):
             what = "there is no such number in the scene"
-            hint = self._forces_meant() if key == LEVEL else self._contact_meant(key)
+            hint = self._forces_meant() if key == LEVEL else self._other_word(key) or self._contact_meant(key)
             mistakes.add(path, what + (hint or suggestion(key, self.numbers) or self._those_there(key)))
         return ()
 
@@ -56,6 +57,13 @@ class Addresses:
         every = "force.*.amplitude" if len(forces) > 1 else "".join(forces)
         swept = f"; sweep {quoted(every)}, or follow" if forces else "; follow"
         return f"{swept} the level at one frequency by fcm respond --level FROM:TO --at F"
+
+    def _other_word(self, key: str) -> str:
+        """Of a number that others name otherwise, as a preload, its key path here; else nothing."""
+        label, _, field = key.rpartition(".")
+        meant = f"{label}.{SYNONYMS.get(field, field)}"
+        there = meant != key and (meant in self.numbers or self._members(meant, "", Mistakes("")) is not None)
+        return f"; did you mean {quoted(meant)}?" if there else ""
 
     def _contact_meant(self, key: str) -> str:
         """Of a contact that is not there the name that may be meant, or those that are; else nothing."""
@@ -89,6 +97,8 @@ class Addresses:
             for index, draft in enumerate(self.parts[kind])
         }
         matched = [at for at, label in labels.items() if fnmatchcase(label, prefix)]
+        if not matched and prefix.startswith("contact.") and not self.parts["contact"] and mistakes.count:
+            return ()  # those that there would be have mistakes of their own
         if not matched:
             mistakes.add(path, f"nothing in the scene matches {quoted(prefix)}")
             return ()

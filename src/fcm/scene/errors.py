@@ -78,8 +78,8 @@ def nearest(word: str, among: Iterable[str]) -> str:
 
     >>> nearest("frequncy", ["frequency", "damping"]), nearest("x", ["frequency"])
     ('frequency', '')
-    >>> nearest("21x", ["2x", "20x", "20y"])
-    '20x'
+    >>> nearest("21x", ["2x", "20x", "20y"]), nearest("4000x", ["837x", "20y"])
+    ('20x', '')
     """
     if not word or len(word) > MESSAGES.longest_value:
         return ""
@@ -93,13 +93,13 @@ def nearest(word: str, among: Iterable[str]) -> str:
 
 
 def _of_nearest_number(word: str, among: Iterable[str]) -> list[str]:
-    """Names that begin with the number nearest to that of a word; none if there is no number."""
+    """Names that begin with the number nearest to that of a word; none if there is none so near."""
     if not (wanted := _NUMBER.match(word)):
         return []
     numbers = {name: int(match[0]) for name in among if (match := _NUMBER.match(name))}
     away = {name: abs(number - int(wanted[0])) for name, number in numbers.items()}
     least = min(away.values(), default=0)
-    return [name for name in away if away[name] == least]
+    return [name for name in away if away[name] == least <= MESSAGES.nearest_number]
 
 
 def counted(count: int, what: str) -> str:

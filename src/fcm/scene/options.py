@@ -26,6 +26,7 @@ class MessageOptions(Frozen):
     mistakes: int = 30  # listed one by one; the rest are counted
     longest_value: int = 60  # characters of a value shown in a message
     names_compared: int = 2000  # names that a misspelt one is compared with
+    nearest_number: int = 10  # by which that of a node may be off from the one that is meant
     entries: int = 3  # of a matrix that a message names
     longest_path: int = 400  # characters of a path shown in a message
     known_keys: int = 8  # of a table, which are all said beside one that is not known
