@@ -218,8 +218,8 @@ class UnitOptions(Frozen):
     greatest_fraction : float
         and of the greatest of all.
     preload_fraction : float
-        Part of n_0 / k_v, that of a normal displacement is at least: some ten thousand times what rounding of
-        the preload makes of it.
+        Part of n_0 / k_v, that of a normal displacement is at least. What rounding of the preload makes of it
+        is then less than `NewtonOptions.max_rounding`, by a factor of 50.
     min_contacts : int
         Of so many and more all displacements have one unit. What a single contact does then matters as far as
         it moves beside the others, and its corners turn the curve by no more than that.
@@ -229,7 +229,7 @@ class UnitOptions(Frozen):
 
     own_fraction: float = 0.1
     greatest_fraction: float = 1e-6
-    preload_fraction: float = 2e-12
+    preload_fraction: float = 1e-8
     min_contacts: int = 12
     min_level_unit: float = 0.1
 
