@@ -159,7 +159,7 @@ def test_a_greater_amplitude_at_an_end_of_the_range_stands_below_a_least_peak():
         end = {"amplitude": amplitude, "frequency": 9.0, "at_edge": True}
         shown = as_table(run | {"curves": [{"peak": {"u": end}}]}, "rad/s")
         assert (
-            'u is 0.4 at 9, an end of the range, which is higher: minimise = "greatest.u"' in shown
+            'u is 0.4 at 9 rad/s, an end of the range, which is higher: minimise = "greatest.u"' in shown
         ) is is_said
 
 

@@ -5,7 +5,7 @@ It may where stability is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import DofTable, greatest_of, number, short, swept
@@ -29,21 +29,12 @@ def jump_table(
     ]
     count = sum(map(bool, seen))
     shown = [[jumps[k] for k in greatest_of([_step(one, dofs) for one in jumps], count)] for jumps in seen]
-    found = _rows(
-        curves,
-        [
-            [
-                (
-                    one["sweep"],
-                    one["frequency"],
-                    [number(one["frequency"])],
-                    [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs],
-                )
-                for one in jumps
-            ]
-            for jumps in shown
-        ],
-    )
+
+    def row(one: Mapping[str, Any]) -> Row:
+        cells = [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs]
+        return one["sweep"], one["frequency"], [number(one["frequency"])], cells
+
+    found = _rows(curves, shown, row)
     small = sum(len(curve.get("jumps", ())) for curve in curves) - sum(map(len, seen))
     others = sum(map(len, seen)) - len(found)
     left_out = ""
@@ -149,21 +140,12 @@ def unknown_stability_table(
     windows = (
         f"window{'s' * (narrow > 1)} narrower than {100.0 * SENTENCES.narrow_window:g} % of the frequency"
     )
-    cells = _rows(
-        curves,
-        [
-            [
-                (
-                    one["sweep"],
-                    one["from"],
-                    [number(one["from"]), number(one["to"])],
-                    [[number(one["before"].get(dof))] for dof in dofs],
-                )
-                for one in of_curve
-            ]
-            for of_curve in shown
-        ],
-    )
+
+    def row(one: Mapping[str, Any]) -> Row:
+        ends = [number(one["from"]), number(one["to"])]
+        return one["sweep"], one["from"], ends, [[number(one["before"].get(dof))] for dof in dofs]
+
+    cells = _rows(curves, shown, row)
     if not cells:
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
         return said if narrow else ""
@@ -180,11 +162,14 @@ def _is_narrow(window: Mapping[str, Any]) -> bool:
 
 
 def _rows(
-    curves: Sequence[Mapping[str, Any]], rows_of: Sequence[list[Row]]
+    curves: Sequence[Mapping[str, Any]],
+    shown: Sequence[Sequence[Mapping[str, Any]]],
+    row: Callable[[Mapping[str, Any]], Row],
 ) -> list[tuple[list[str], list[list[str]], list[str]]]:
-    """The rows of all curves, of each as first the upward, then the downward sweep meets them."""
+    """The rows shown of all curves, of each as first the upward, then the downward sweep meets them."""
     found = []
-    for curve, rows in zip(curves, rows_of, strict=True):
+    for curve, own in zip(curves, shown, strict=True):
+        rows = list(map(row, own))
         ups = sorted((one for one in rows if one[0] == "up"), key=lambda one: one[1])
         downs = sorted((one for one in rows if one[0] != "up"), key=lambda one: -one[1])
         found += [([*swept(curve), *where], each, [sweep]) for sweep, _, where, each in ups + downs]

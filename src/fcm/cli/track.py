@@ -182,17 +182,17 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
     where = f"{least} with {where}{kind}{_flat(one)}{_higher(one)}"
     return (
         f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}{_tried(one)}"
-        f"{_higher_at_edge(one, curve)}"
+        f"{_higher_at_edge(one, curve, unit)}"
     )
 
 
-def _higher_at_edge(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
+def _higher_at_edge(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str:
     """That the response there is higher at an end of the range, which a peak does not count."""
     dofs = [name.removeprefix("peak.") for name in one["minimise"] if name.startswith("peak.")]
     ends = [(dof, curve.get("peak", {}).get(dof) or {}) for dof in dofs]
     higher = [
-        f"{plain(dof)} is {end['amplitude']:.6g} at {end['frequency']:.6g}, an end of the range, which is "
-        f'higher: minimise = "greatest.{plain(dof)}" counts that, and a wider range has its peak'
+        f"{plain(dof)} is {end['amplitude']:.6g} at {end['frequency']:.6g} {unit}, an end of the range, "
+        f'which is higher: minimise = "greatest.{plain(dof)}" counts that. A wider range has its peak'
         for dof, end in ends
         if end.get("at_edge") and end["amplitude"] > one["value"]
     ]

@@ -26,7 +26,8 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
-from fcm.scene.options import MESSAGES, TOLERANCES
+from fcm.scene.listing import along_contacts, closed_stiffness, sticking_stiffness
+from fcm.scene.options import FRICTION_DAMPING, TOLERANCES
 from fcm.units import UNIT
 
 
@@ -50,29 +51,25 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     import scipy.linalg  # which most runs do without
 
     modal, contacts = scene.modal, scene.contacts
-    scale = np.sqrt(modal.mass)[:, None]
-    sliding = [contact.directions[:-1] for contact in contacts]
-    owner = np.repeat(np.arange(len(contacts)), [len(one) for one in sliding])
-    along = modal.shapes @ np.array([one for many in sliding for one in many]).T / scale
-    k_u = np.array([contacts[i].k_u for i in owner])
-    lossy = k_u * np.array([contacts[i].mu > 0.0 for i in owner])
-    normal = modal.shapes @ np.array([contact.normal for contact in contacts]).T / scale
-    k_v = np.array([contact.k_v for contact in contacts])
-
-    held = np.diag(modal.frequency**2) + (normal * k_v) @ normal.T
-    added = (along * k_u) @ along.T
+    along, held, added = (
+        along_contacts(scene, normal=False),
+        closed_stiffness(scene),
+        sticking_stiffness(scene),
+    )
+    owner = np.repeat(np.arange(len(contacts)), [len(one.directions) - 1 for one in contacts])
+    mu, k_u = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u"))
+    lossy = np.where(mu > 0.0, k_u, 0.0)[owner]
+    per_force = np.divide(k_u, 2.0 * mu, out=np.zeros_like(mu), where=mu > 0.0)
     opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
     floating = int((modal.frequency == 0.0).sum())
-    last = min(opened.size, floating + MESSAGES.damped_modes) - 1
+    last = min(opened.size, floating + FRICTION_DAMPING.modes) - 1
     squares = scipy.linalg.eigh(held + added, subset_by_index=[0, last], eigvals_only=True)
     stuck = np.sqrt(np.maximum(squares, 0.0))
     elastic = squares > TOLERANCES.undamped * float(np.abs(held + added).sum(axis=1).max(initial=0.0))
 
     best = np.zeros(last + 1)
     ratio, preload = np.zeros((2, last + 1, len(contacts)))  # of each contact, at the best theta of each mode
-    mu, stiffness = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u"))
-    per_force = np.divide(stiffness, 2.0 * mu, out=np.zeros_like(mu), where=mu > 0.0)
-    for theta in np.geomspace(MESSAGES.least_slip_angle, np.pi, MESSAGES.slip_angles, endpoint=False):
+    for theta in np.geomspace(FRICTION_DAMPING.least_angle, np.pi, FRICTION_DAMPING.angles, endpoint=False):
         k_r, k_i = (theta - np.sin(theta) * np.cos(theta)) / np.pi, np.sin(theta) ** 2 / np.pi
         squares, shapes = scipy.linalg.eigh(held + k_r * added, subset_by_index=[0, last])
         for mode in np.flatnonzero(elastic & (squares > 0.0)).tolist():
@@ -83,7 +80,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
                 best[mode] = loss.sum()
                 ratio[mode] = np.bincount(owner, loss, len(contacts))
                 own = float((modal.damping * modal.frequency) @ shape**2) / omega
-                size = abs(_force_on(scene, shape / scale[:, 0], omega)) / (
+                size = abs(_force_on(scene, shape / np.sqrt(modal.mass), omega)) / (
                     2.0 * (best[mode] + own) * squares[mode]
                 )
                 amplitude = size * np.sqrt(np.bincount(owner, moved, len(contacts)))
@@ -101,7 +98,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
                 contact.name: float(one) for contact, one in zip(contacts, preload[mode], strict=True)
             },
         }
-        for mode in np.flatnonzero(elastic).tolist()[: MESSAGES.damped_modes]
+        for mode in np.flatnonzero(elastic).tolist()[: FRICTION_DAMPING.modes]
     ]
 
 

@@ -147,18 +147,31 @@ def _stuck(scene: Scene) -> FloatArray:
     return np.sqrt(np.maximum(squares, 0.0))
 
 
+def along_contacts(scene: Scene, normal: bool) -> FloatArray:
+    """Displacements (mode, direction) of modes of mass 1 along the contacts' normals, or where they slide."""
+    each = [one.directions[-1:] if normal else one.directions[:-1] for one in scene.contacts]
+    moved: FloatArray = scene.modal.shapes @ np.array([one for many in each for one in many]).T
+    return moved / np.sqrt(scene.modal.mass)[:, None]
+
+
+def closed_stiffness(scene: Scene) -> FloatArray:
+    """The stiffness (mode, mode) with all contacts closed and without friction, in modes of mass 1."""
+    normal = along_contacts(scene, normal=True)
+    found: FloatArray = np.diag(scene.modal.frequency**2)
+    return found + (normal * [one.k_v for one in scene.contacts]) @ normal.T
+
+
+def sticking_stiffness(scene: Scene) -> FloatArray:
+    """What sticking contacts add to that (mode, mode)."""
+    along = along_contacts(scene, normal=False)
+    k_u = [one.k_u for one in scene.contacts for _ in one.directions[:-1]]
+    found: FloatArray = (along * k_u) @ along.T
+    return found
+
+
 def _stuck_stiffness(scene: Scene) -> FloatArray:
     """The stiffness (mode, mode) with all contacts stuck, in modes of mass 1."""
-    modal, springs = scene.modal, list[tuple[float, FloatArray]]()
-    for contact in scene.contacts:
-        springs += [(contact.k_u, contact.tangential), (contact.k_v, contact.normal)]
-        if contact.second is not None:
-            springs.append((contact.k_u, contact.second))
-    along = modal.shapes @ np.array([direction for _, direction in springs]).T / np.sqrt(modal.mass)[:, None]
-    stiffness: FloatArray = (
-        np.diag(modal.frequency**2) + (along * np.array([k for k, _ in springs])) @ along.T
-    )
-    return stiffness
+    return closed_stiffness(scene) + sticking_stiffness(scene)
 
 
 def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:

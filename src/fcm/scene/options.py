@@ -33,9 +33,6 @@ class MessageOptions(Frozen):
     faults: int = 5  # of a file beside a scene that are said one by one
     groups: int = 3  # of contacts in one sentence
     stuck_modes: int = 3  # whose frequencies are said, while all contacts stick
-    damped_modes: int = 10  # of which it is said how much friction can damp them
-    slip_angles: int = 48  # angles theta at which that is computed, [rad]
-    least_slip_angle: float = 1e-2  # the least of them [rad]
     damping_left_out: float = 1e-4  # relative change of the response by damping that is left out
     # [byte] that directions of contacts take in a large structure: from here on it is said
     memory: float = 2e9
@@ -50,6 +47,14 @@ class MessageOptions(Frozen):
     range_margin: float = 0.05
     far_below: float = 10.0  # times: a first resonance so far below the range is asked about
     range_near: float = 2.0  # times the range's ends: a mode within that is near it
+
+
+class FrictionDampingOptions(Frozen):
+    """The estimate of how much friction can damp each resonance."""
+
+    modes: int = 10  # of which it is made
+    angles: int = 48  # values of theta that are tried, from the least up to pi, each so much greater
+    least_angle: float = 1e-2  # [rad]
 
 
 class LimitOptions(Frozen):
@@ -122,6 +127,7 @@ class ToleranceOptions(Frozen):
 
 
 TOML = TomlOptions()
+FRICTION_DAMPING = FrictionDampingOptions()
 MESSAGES = MessageOptions()
 LIMITS = LimitOptions()
 FILES = FileOptions()
