@@ -24,12 +24,15 @@ class ClosureOptions(Frozen):
     rank_tolerance : float
         Relative singular value, below which nothing changes along a direction, as where a contact never
         slips.
+    min_return : float
+        Distance of a multiplier from 1, below which the forces may not decide what the motion is.
     """
 
     tolerance: float = 1e-11
     max_iterations: int = 25
     min_step: float = 1e-3
     rank_tolerance: float = 1e-10
+    min_return: float = 1e-13
 
 
 class ApproachOptions(Frozen):

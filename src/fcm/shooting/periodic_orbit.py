@@ -181,8 +181,30 @@ def converged(
 ) -> tuple[Shot, int] | None:
     """The shot that closes, by Newton's method from one that does not, and the number of steps it took.
 
-    None after the most steps, or where only a shorter part of one than the shortest brings it nearer.
+    None after the most steps, where only a shorter part of one than the shortest brings it nearer, and where
+    what closes is not determined.
     """
+    found = _newton(shot, most, poll, shortest, options)
+    return found if found is not None and _determined(found[0], options) else None
+
+
+def _determined(shot: Shot, options: ShootingOptions) -> bool:
+    """Whether the forces decide what the motion is, and not rounding.
+
+    In the resonance of an undamped mode a disturbance returns unchanged, and no motion repeats but one so
+    great that it would repeat without forces, too, to the precision of its closure. A mode that is free to
+    drift has such disturbances, and a motion that the forces decide.
+    """
+    if np.abs(1.0 - shot.other_multipliers).min(initial=1.0) > options.closure.min_return:
+        return True
+    without_forces = Shot(shot.system.at_level(0.0), shot.x, shot.resting, shot.periods)
+    return without_forces.residual > options.closure.tolerance
+
+
+def _newton(
+    shot: Shot, most: int | None, poll: Poll, shortest: float | None, options: ShootingOptions
+) -> tuple[Shot, int] | None:
+    """Newton's method, see `converged`."""
     most = options.closure.max_iterations if most is None else most
     shortest = options.closure.min_step if shortest is None else shortest
     for iteration in range(most):
