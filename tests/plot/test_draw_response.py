@@ -234,7 +234,8 @@ def test_the_area_holds_the_largest_error_of_the_table():
     values, edges, _ = area.get_data()
     assert set(values[edges[1:] < 1.19]) == {1e-7} and set(values[edges[:-1] > 1.2]) == {1e-5}
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        "error: higher harmonics left out", "error: table alone (largest of all)",
+        "lower panel: error by harmonics left out",
+        "lower panel: error by the table alone (largest of all)",
     ]  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Peaks of a curve beside the highest: which are told, in the summary and in the table."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -98,3 +99,33 @@ def test_where_the_error_of_a_peak_is_unknown_that_of_its_point_is_there():
     curve.peaks["u"] = curve.peaks["u"]._replace(error=np.nan)
     top = int(np.nanargmax(curve.amplitude[:, 0]))
     assert curve.summary()["peak"]["u"]["error_at_frequency"] == curve.error[top, 0] > 0.0
+
+
+BRANCHES = Path(__file__).parents[1] / "branches/scenes"
+
+
+def test_a_peak_on_a_closed_branch_is_marked(tmp_path):
+    """The stop's closed branch lies between its two folds, and the higher peak is on the other branch."""
+    done = called("respond", BRANCHES / "closed_impact.toml", "--json")
+    (curve,) = json.loads(done.out)["curves"]
+    ((low, high),) = curve["closed_branches"]
+    assert (low, high) == pytest.approx((1.492, 1.969), rel=3e-3)  # of the exact motion
+    assert min(abs(np.array(curve["folds"]) - low)) < 1e-3 > min(abs(np.array(curve["folds"]) - high))
+    marked = [low <= one["frequency"] <= high and one["amplitude"] < 1.0 for one in curve["peaks"]["y"]]
+    assert marked == [one.get("on_closed_branch", False) for one in curve["peaks"]["y"]] == [True, False]
+    done = called("respond", BRANCHES / "closed_impact.toml")
+    assert f"{curve['peaks']['y'][0]['frequency']:.5f}^" in done.out and "^ on a closed branch" in done.out
+    assert "isolated" not in done.err
+
+
+def test_a_branch_that_goes_on_as_its_mirror_image_is_not_closed():
+    """It comes back to its amplitudes, and not to its motion: at the end of the range, or beyond."""
+    (curve,) = trace(load_scene(BRANCHES / "equal_stops.toml")).curves
+    known = np.isfinite(curve.frequency)
+    back = 0
+    for k in np.unique(curve.branch[known]):
+        rows = np.flatnonzero((curve.branch == k) & known)
+        same = np.allclose(curve.amplitude[rows[0]], curve.amplitude[rows[-1]], rtol=1e-6)
+        back += same and curve.frequency[rows[0]] in (0.6, 2.0)
+    closed = curve.summary().get("closed_branches", [])
+    assert back == 2 and all(0.6 < low < high < 2.0 for low, high in closed)

@@ -91,12 +91,30 @@ def folds_uncertain(summary: Mapping[str, Any]) -> str:
     """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
     what = (
         "isolated branches may be missing {side} {}: from there a fold of the level of the forces was not "
-        "followed to its end. The curve itself is whole"
+        "followed to its end. What was found is whole"
     )
     helps = f"{_BY_LEVEL} F, with F {{side}} {{}}"
     if how := _how(summary):
         helps += f", or a sweep up and down by {how.replace('--at F', '--at FROM:TO:COUNT')},"
     return _may_be_missing(summary, "folds_unsure_at", what, f"{helps} looks there")
+
+
+def of_more_harmonics(summary: Mapping[str, Any]) -> str:
+    """That branches of more harmonics than are given were not looked for; empty where errors of peaks are
+    small. Of curves over the frequency by a balance alone."""
+    from fcm.response.options import INPUT_LIMITS
+
+    curves = [one for one in summary["curves"] if "harmonics" in one and not {"mode", "level_folds"} & {*one}]
+    shown = shown_dofs(summary) if curves else []
+    highest = [curve["peak"].get(dof) or {} for curve in curves for dof in shown]
+    lower = [one for curve in curves for dof in shown for one in curve.get("peaks", {}).get(dof, ())]
+    errors = [peak.get("error") for peak in [*highest, *lower] if peak.get("amplitude")]
+    if all(error is not None and error <= INPUT_LIMITS.accuracy for error in errors):
+        return ""
+    return (
+        "the harmonics are given, and errors of peaks are large or unknown. Branches that only more "
+        f"harmonics have were not looked for: --accuracy {INPUT_LIMITS.accuracy:g} looks for them"
+    )
 
 
 def symmetry_lost(summary: Mapping[str, Any]) -> str:

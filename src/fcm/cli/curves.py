@@ -33,6 +33,10 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, but for rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
+_CLOSED = "^"  # beside that of a peak on a closed branch
+_OF_CLOSED = (
+    f"{_CLOSED} on a closed branch, which no end of the range is on: a sweep comes to it by a jump, or never"
+)
 _UNKNOWN = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
     "More --harmonics, or --accuracy, may give it"
@@ -147,7 +151,8 @@ def _error(peak: Mapping[str, Any]) -> str:
 
 def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
     """Amplitude, frequency and error, with their marks."""
-    at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
+    marks = (_EDGE if peak.get("at_edge") else "") + (_CLOSED if peak.get("on_closed_branch") else "")
+    at = number(peak.get("frequency")) + marks
     return [number(peak.get("amplitude")) + _mark_of(peak), at, _error(peak)]
 
 
@@ -274,6 +279,9 @@ def _curves(
         beyond = "beyond it the curve may rise further. fcm plot modes SCENE lists the resonances"
         lines.append(f"{_EDGE} at an end of the range: {beyond}")
     lower = _lower_peaks(curves, dofs)
+    highest = [curve["peak"].get(dof) or {} for curve in curves for dof in dofs]
+    if any(peak.get("on_closed_branch") for peak in [*highest, *lower]):
+        lines.append(_OF_CLOSED)
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")
@@ -288,13 +296,13 @@ def _curves(
             "amplitude is known there"
         )
     if UNKNOWN in marks:
-        highest = [curve["peak"].get(dof) or {} for curve in judged for dof in dofs]
-        looked = UNKNOWN in map(_mark_of, [*highest, *_lower_peaks(judged, dofs)])
+        of_judged = [curve["peak"].get(dof) or {} for curve in judged for dof in dofs]
+        looked = UNKNOWN in map(_mark_of, [*of_judged, *_lower_peaks(judged, dofs)])
         lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN if looked else STABILITY_NOT_YET_KNOWN}")
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))
-    each = [*((curve["peak"].get(dof) or {}) for curve in curves for dof in dofs), *lower]
+    each = [*highest, *lower]
     if any((one.get("error") or 0.0) > 1.0 for one in each):
         lines.append(_BEYOND)
     if any(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -16,6 +16,7 @@ from fcm.cli.caveats import (
     never_closed,
     not_confirmed,
     nothing_stable,
+    of_more_harmonics,
     peaks_not_followed,
     searched_levels,
     short_of_accuracy,
@@ -36,11 +37,15 @@ _TABLE = "the table: "  # how one begins that says why there is none
 _NO_EFFECT = "(no effect)"  # how a sentence ends on what is left out, and is the same without it
 
 
-def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
-    """What is going to be computed; without being asked where that is a great deal.
+class Announced(NamedTuple):
+    """What is known of a calculation before it begins."""
 
-    Returns whether a resonance is near the range of frequencies, as far as that is known.
-    """
+    resonant: bool  # whether a resonance is near the range of frequencies, as far as that is known
+    harmonics_given: bool
+
+
+def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
+    """What is going to be computed; without being asked where that is a great deal."""
     from fcm.scene.listing import resonance_doubt
     from fcm.scene.rules import least_points
 
@@ -56,7 +61,8 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
     if in_steps and (points := least_points(scene)) > SENTENCES.many_points:
         curves = f"{count} curve{'s' * (count > 1)}"
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
-    return not caveat
+    given = asked.harmonics is not None or (asked.accuracy is None and scene.harmonics is not None)
+    return Announced(not caveat, given)
 
 
 def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
@@ -84,7 +90,7 @@ def close(
     result: dict[str, Any],
     defects: list[str],
     written: bool,
-    resonant: bool,
+    announced: Announced,
     table_wanted: bool,
 ) -> None:
     """What the run left out, cost, and how wrong it is; the exit code of one that stopped early.
@@ -104,7 +110,7 @@ def close(
         messages.info(track.cost(result))
     if levels := searched_levels(result):
         messages.detail(levels)
-    if resonant and (stuck := linear(result)):
+    if announced.resonant and (stuck := linear(result)):
         messages.info(stuck)
     if apart := never_closed(result):
         messages.info(apart)
@@ -118,11 +124,15 @@ def close(
         messages.info(few)
     if beyond := peaks_not_followed(result):
         messages.info(beyond)
+    if announced.harmonics_given and (more := of_more_harmonics(result)):
+        messages.info(more)
+    if lost := folds_uncertain(result):
+        messages.info(lost)
     if away := nonlinear_mode.outside_range(result):
         messages.warning(away)
     if short := short_of_accuracy(result):
         messages.warning(short)
-    uncertain_at = (branches_uncertain, folds_uncertain, symmetry_lost, tracked_uncertain)
+    uncertain_at = (branches_uncertain, symmetry_lost, tracked_uncertain)
     for caveat in filter(None, (one(result) for one in uncertain_at)):
         messages.warning(caveat)
     for caveat in fit.caveats(result):

@@ -51,7 +51,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     loaded, exporting = _loaded(messages, scene, asked)
     check_not_read(_files(asked), [*loaded.files, asked.table, asked.mesh])
     _check_scene(loaded, asked)
-    resonant = announce(messages, loaded, asked)
+    announced = announce(messages, loaded, asked)
     if not asked.resume:
         messages.expect(len(loaded.each_curve()))
     exported = [] if exporting is None else exporting.files
@@ -63,7 +63,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
                 exporting.take(response, loaded)
         response = visible(response, loaded)
         result = outputs.write(response, asked.to_json)
-    close(messages, result, response.defects, outputs.written, resonant, _wants_table(asked))
+    close(messages, result, response.defects, outputs.written, announced, _wants_table(asked))
 
 
 def _compare(messages: Messages, scene: str, asked: Asked) -> None:

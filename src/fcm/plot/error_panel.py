@@ -50,13 +50,11 @@ def name_errors(
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    names: dict[str, Line2D | Patch] = {
-        "error: higher harmonics left out": Line2D([], [], color=colours[0], linewidth=width)
-    }
-    names |= notes
+    names: dict[str, Line2D | Patch] = {**notes}
+    names["lower panel: error by harmonics left out"] = Line2D([], [], color=colours[0], linewidth=width)
     if (_largest(curves)[1] > 0.0).any():
         of_all = " (largest of all)" if len(curves) > 1 else ""
-        names[f"error: table alone{of_all}"] = Patch(color=_GREY)
+        names[f"lower panel: error by the table alone{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
 
 

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from fcm.sensitivity.peaks import Sensitivities
 
 
+_ON_CLOSED = "on_closed_branch"  # key of a peak that is
+
+
 def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
     """The curve as `fcm respond --json` prints it, frequencies in unit; what it does not have is left out."""
     condensed = curve.condensed or condense(curve)
@@ -61,11 +64,16 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {
-        dof: _peak(curve, peak, condensed, unit) | _error_there(curve, d) | _stable_peak(peak, stays, unit)
+        dof: _peak(curve, peak, condensed, unit)
+        | _error_there(curve, d)
+        | _stable_peak(peak, stays, unit)
+        | ({_ON_CLOSED: True} if condensed.highest_on_closed[d] else {})
         for d, ((dof, peak), stays) in enumerate(
             zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
         )
     }
+    if condensed.closed_branches:
+        out["closed_branches"] = in_unit(np.array(condensed.closed_branches), unit).tolist()
     if peaks := _every_peak(out["peak"], condensed, unit):
         out["peaks"] = peaks
     if curve.greatest is not None and contacts:
@@ -175,12 +183,13 @@ def _every_peak(
     keys = ("amplitude", "frequency", "error", "stable", "at_edge")
     found: dict[str, list[dict[str, Any]]] = {}
     dofs = list(highest)
-    for d, amplitude, omega, error, stable in condensed.lower_peaks.tolist():
+    for d, amplitude, omega, error, stable, closed in condensed.lower_peaks.tolist():
         dof = dofs[int(d)]
-        every = found.setdefault(dof, [{key: highest[dof][key] for key in keys}])
+        top = {key: highest[dof][key] for key in (*keys, _ON_CLOSED) if key in highest[dof]}
+        every = found.setdefault(dof, [top])
         told = None if np.isnan(stable) else bool(stable)
         values = (amplitude, float(in_unit(omega, unit)), error, told, False)
-        every.append(dict(zip(keys, values, strict=True)))
+        every.append(dict(zip(keys, values, strict=True)) | ({_ON_CLOSED: True} if closed else {}))
     return {dof: sorted(every, key=lambda one: one["frequency"]) for dof, every in found.items()}
 
 
