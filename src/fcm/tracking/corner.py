@@ -99,7 +99,10 @@ class Corner:
 def nearest_onsets(
     varied: VariedBalance, z: FloatArray, scale: FloatArray, options: TrackingOptions = TRACKING
 ) -> list[tuple[float, Condition]]:
-    """The onsets by their distance from z in a scale of its numbers, the nearest first."""
+    """The onsets by their distance from z in a scale of its numbers, the nearest first.
+
+    Where a contact is at both its limits at once, so that it comes to slip, slip is before them.
+    """
     varied.set_parameter(float(z[-1]))
     width = varied.balance.width
     found = []
@@ -109,5 +112,7 @@ def nearest_onsets(
             one = onset(law, np.ascontiguousarray(z[block]), kind, varied.harmonics, options)
             slope = float(np.linalg.norm(one.slope * scale[block]))
             if slope > 0.0:
-                found.append((abs(one.value) / slope, Condition(Kind.ONSET, c, kind)))
+                off = abs(one.value) / slope
+                off = off if off > options.corner.rounding else 0.0
+                found.append((off, Condition(Kind.ONSET, c, kind)))
     return sorted(found, key=lambda pair: pair[0])

@@ -112,6 +112,8 @@ class CornerOptions(Frozen):
         Along a corner, that what is special of it is sought.
     side_distance : float
         Distance from a corner at which its two sides are evaluated.
+    rounding : float
+        Distance up to which a point is at a corner.
     """
 
     max_iterations: int = 20
@@ -119,6 +121,7 @@ class CornerOptions(Frozen):
     first_step: float = 1e-6
     max_distance: float = 0.1
     side_distance: float = 1e-13
+    rounding: float = 1e-11
 
 
 class KinkOptions(Frozen):
