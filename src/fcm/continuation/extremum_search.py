@@ -83,6 +83,8 @@ class ExtremumSearch:
         """The sample where an output is greatest, or without one the parameter, as near as the curve is
         found."""
         low, high = self._between(output)
+        if high.at == low.at:  # two points at one place, as on either side of a corner
+            return high
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True
         for _ in range(self.stepper.options.events.max_evaluations):

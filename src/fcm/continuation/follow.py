@@ -221,8 +221,18 @@ class Follower:
             # the curve may turn back in a corner, so that nothing is to be found beyond
             if reach < step and smooth_step(stepper, reach * (1.0 - switching.overshoot)):
                 return self.accept_step()
+            if reach < min(step, switching.turning_distance) and not self.is_at_corner():
+                stepper.move_short(reach)  # it turns by more than a right angle: no plane ahead has it
+                return self.leave_corner(stepper.here, 0.0)
             step = 0.25 * min(step, reach)
         return Status.STALLED
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def is_at_corner(self) -> cython.bint:
+        """Whether the point that was kept last is a corner, and here: nothing was found beyond."""
+        store: PointStore = self.recorder.store
+        return store.ends_at(self.stepper.here) and (store.mark[store.count - 1] & CORNER) != 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -249,9 +259,8 @@ class Follower:
         stepper: Stepper = self.stepper
         switching: SwitchingOptions = self.options.switching
         at: cython.double = next_extrapolated_root(stepper)
-        store: PointStore = self.recorder.store
-        if store.ends_at(stepper.here) and store.mark[store.count - 1] & CORNER:
-            return Status.STALLED  # nothing was found beyond
+        if self.is_at_corner():
+            return Status.STALLED
         if reach < step and reach > switching.root_fraction * at:
             return Status.STALLED
         past: cython.double = switching.crossing_factor * at

@@ -18,7 +18,7 @@ cdef class EventOptions(Options):
 
 cdef class SwitchingOptions(Options):
     cdef readonly int max_predictions, departure_tries, max_pieces, many_unknowns
-    cdef readonly double distance_tolerance, label_tolerance, overshoot, crossing_factor, root_fraction, reached_distance_root, root_distance, root_difference, root_separation, max_root_margin, smooth_fraction, reached_distance, approach_distance, approach_fraction, departure_length, max_deviation
+    cdef readonly double distance_tolerance, label_tolerance, overshoot, crossing_factor, root_fraction, reached_distance_root, root_distance, root_difference, root_separation, max_root_margin, smooth_fraction, reached_distance, turning_distance, approach_distance, approach_fraction, departure_length, max_deviation
 
 cdef class FollowOptions(Options):
     cdef readonly double max_step

@@ -288,6 +288,8 @@ class SwitchingOptions(Options):
         Part of the way to a corner: up to here the curve is smooth.
     reached_distance : float
         A corner this near is met: less than `departure_length`.
+    turning_distance : float
+        A corner this near is gone to along the prediction, if no step leads up to it, nor across.
     reached_distance_root : float
         The same where a margin is the root of the distance, which rounding hides.
     root_distance : float
@@ -321,6 +323,7 @@ class SwitchingOptions(Options):
     root_fraction: cython.double = 0.75
     smooth_fraction: cython.double = 1e-6
     reached_distance: cython.double = 1e-8
+    turning_distance: cython.double = 1e-6
     reached_distance_root: cython.double = 1e-4
     root_distance: cython.double = 1e-9
     root_difference: cython.double = 1e-6
