@@ -152,7 +152,7 @@ def _branches_through(
     """The branches through solutions, of which those outside the range do not count."""
     low, high = system.scene.frequency_range
     inside = (z for z in starts if low <= z[-1] <= high)
-    following = Following(FollowOptions(system.scene.max_step), progress, _follow_shared(system))
+    following = Following(FollowOptions(system.scene.max_step), _follow_shared(system, progress))
     places = [omega for omega in user_values if low <= omega <= high]
     found = all_branches(system.reset_balance, inside, (low, high), following, user_values=places)
     return _without_unsteady(system, found)
@@ -164,7 +164,7 @@ def with_further(
     """With what was found at further frequencies, and the branches through further solutions, after those
     that were traced before."""
     span, known = system.scene.frequency_range, before.branches
-    following = Following(FollowOptions(system.scene.max_step), follow=_follow_shared(system))
+    following = Following(FollowOptions(system.scene.max_step), _follow_shared(system))
     branches = all_branches(system.reset_balance, starts, span, following, known.paths)
     further = (path for path in branches.paths[len(known.paths) :] if not _is_unsteady(system, path))
     branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
@@ -177,8 +177,9 @@ def _without_images(system: System, found: Traced) -> Traced:
     return replace(found, branches=replace(found.branches, paths=paths), mirrored=mirrored)
 
 
-def _follow_shared(system: System) -> Follow:
-    """Follows the balance that a system looks with, on the one stepper that it has for that."""
+def _follow_shared(system: System, progress: Progress | None = None) -> Follow:
+    """Follows the balance that a system looks with, on the one stepper that it has for that; progress is told
+    of each path."""
     stepper, places = system.shared_stepper, narrow_resonances(system)
 
     def along(
@@ -189,7 +190,6 @@ def _follow_shared(system: System) -> Follow:
         options: FollowOptions,
         *,
         forward: bool,
-        progress: Progress | None,
     ) -> Path:
         landed = replace(wanted, narrow=places)
         one = partial(follow, problem, start, span, landed, options, forward=forward, stepper=stepper)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 
 import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.continuation.events import Events
-from fcm.continuation.follow import Progress, follow
+from fcm.continuation.follow import follow
 from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
 from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
@@ -25,14 +24,11 @@ class Following(Frozen):
     ----------
     options : FollowOptions
         As of `follow`.
-    progress : callable, optional
-        As of `follow`.
     follow : callable
         Follows a path, as `follow` does.
     """
 
     options: FollowOptions = FOLLOW
-    progress: Progress | None = None
     follow: Follow = follow
 
 
@@ -179,8 +175,7 @@ def branch_through(
     following: Following,
 ) -> Path:
     """The whole branch through a solution, from its lower end where it has one; see `follow`."""
-    along = partial(following.follow, progress=following.progress)
-    options = following.options
+    along, options = following.follow, following.options
     if z[-1] == span[0] or z[-1] == span[1]:
         path = along(new_problem(), z, span, events, options, forward=z[-1] == span[0])
         return path.backwards() if path.status is Status.COMPLETE and z[-1] == span[1] else path

@@ -115,7 +115,6 @@ class ResumablePaths:
         options: FollowOptions,
         *,
         forward: bool,
-        progress: object = None,
     ) -> Path:
         """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
         saved = self._known.get(_key(self._saved_path(problem))) or self._taken(problem, start, forward)

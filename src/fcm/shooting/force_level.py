@@ -169,7 +169,7 @@ def _followed(
     if rest is None:
         return False
     there = [np.append(z[:-1], 1.0) for z in known]
-    following = Following(FollowOptions(options.level.max_step), follow=along)
+    following = Following(FollowOptions(options.level.max_step), along)
     curves = all_branches(lambda: problem, there, span, following, rest)
     turns = [turn for path in curves.paths for turn in level_folds(path, omega)]
     found.extend(_beyond_level_folds(problem.scene, turns, poll, options))

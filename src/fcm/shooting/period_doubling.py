@@ -61,7 +61,7 @@ def doubled_paths(
     """The curves that begin at the flips of branches, and how many flips none was found from."""
     starts, lost = doubled_starts(problem, branches, poll)
     span, options = problem.scene.frequency_range, FollowOptions(problem.scene.max_step)
-    following = Following(options, follow=along)
+    following = Following(options, along)
     wanted = Events(sorted({float(z[-1]) for z in starts}))
     paths = list[Path]()
     for z in starts:

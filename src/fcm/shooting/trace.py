@@ -118,7 +118,7 @@ def explore(
         all_branches,
         lambda: problem,
         span=scene.frequency_range,
-        following=Following(FollowOptions(scene.max_step), follow=along),
+        following=Following(FollowOptions(scene.max_step), along),
     )
     paths, lost = branches(found).paths, list[float]()
     bounded = BranchBudget(poll, most, problem.options)
