@@ -15,7 +15,7 @@ from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
-from fcm.response.mode import trace_modes
+from fcm.response.mode import ModeRequest, trace_modes
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.shooting.orbit_record import recorded
@@ -114,7 +114,7 @@ def test_at_levels_and_of_a_mode_beside_many_harmonics():
     here, there = (curve.cycle[curve.level == 1.0][0] for curve in (few, many))
     told = few.cycle_error[few.level == 1.0][0]
     assert told == pytest.approx(np.abs(there / here - 1.0), rel=0.5)
-    few, many = (trace_modes(one, 1, (0.1, 10.0), harmonics=n).curves[0] for n in (1, 9))
+    few, many = (trace_modes(one, ModeRequest(1, (0.1, 10.0)), harmonics=n).curves[0] for n in (1, 9))
     here, there = few.cycle[-1], many.cycle[-1]
     assert few.mode.amplitude[-1] == pytest.approx(many.mode.amplitude[-1], rel=1e-9)
     assert few.cycle_error[-1] == pytest.approx(np.abs(there / here - 1.0), rel=0.7)

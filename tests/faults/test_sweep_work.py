@@ -17,7 +17,7 @@ import pytest
 import fcm
 from fcm.response import curve_batches, trace
 from fcm.response.level import trace_levels
-from fcm.response.mode import trace_modes
+from fcm.response.mode import ModeRequest, trace_modes
 from fcm.run import Checkpoint, CheckpointError, Execution, ExecutorPlace, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
@@ -462,7 +462,7 @@ def test_the_progress_of_one_mode_or_level_moves_with_its_span(of):
     scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.005)
     execution = Execution(progress=lambda share, _: shown.append(share))
     if of == "mode":
-        trace_modes(scene, 1, (0.1, 100.0), execution, harmonics=1)
+        trace_modes(scene, ModeRequest(1, (0.1, 100.0)), execution, harmonics=1)
     else:
         trace_levels(scene, [1.2], (0.0, 2.0), execution, harmonics=1)
     assert shown == sorted(shown) and shown[-1] <= 1.0

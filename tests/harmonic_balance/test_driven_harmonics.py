@@ -8,7 +8,7 @@ import pytest
 import fcm
 from fcm.response import ResponseError, trace
 from fcm.response.exact import trace_exact
-from fcm.response.mode import trace_modes
+from fcm.response.mode import ModeRequest, trace_modes
 from fcm.scene import scene_from_dict
 from fcm.scene.errors import SceneError
 
@@ -187,7 +187,7 @@ def test_a_mode_predicts_of_forces_of_harmonic_one_alone():
     with pytest.raises(
         ResponseError, match="what a nonlinear mode predicts knows forces of harmonic 1 alone"
     ):
-        trace_modes(scene(BOTH), 1, (0.1, 1.0))
+        trace_modes(scene(BOTH), ModeRequest(1, (0.1, 1.0)))
 
 
 def test_the_exact_motion_under_a_second_harmonic_is_that_at_twice_the_frequency():

@@ -22,7 +22,7 @@ from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
-from fcm.response.mode import trace_modes
+from fcm.response.mode import ModeRequest, trace_modes
 from fcm.response.track import track
 from fcm.results.csv_file import write_csv
 from fcm.scene import scene_from_dict
@@ -317,7 +317,9 @@ def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of
     levels = [trace_levels(one, [1.2], (0.2, 1.5), harmonics=(1, 2, 3)).curves[0] for one in (line, plane)]
     assert levels[1].level_folds == pytest.approx(levels[0].level_folds, rel=1e-9)
     assert levels[1].amplitude[-1][:2] == pytest.approx(levels[0].amplitude[-1], rel=1e-9)
-    modes = [trace_modes(one, 1, (0.1, 20.0), harmonics=(1, 3)).curves[0] for one in (line, plane)]
+    modes = [
+        trace_modes(one, ModeRequest(1, (0.1, 20.0)), harmonics=(1, 3)).curves[0] for one in (line, plane)
+    ]
     assert modes[1].frequency[-1] == pytest.approx(modes[0].frequency[-1], rel=1e-9)
     assert modes[1].mode.damping.max() == pytest.approx(modes[0].mode.damping.max(), rel=1e-9)
     peaks = [fcm.respond(one, "closed-form", harmonics=1, sensitivity=True) for one in (line, plane)]

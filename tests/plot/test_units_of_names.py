@@ -12,7 +12,7 @@ from fcm.plot.tracked import draw_tracked, read_tracked
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
-from fcm.response.mode import trace_modes
+from fcm.response.mode import ModeRequest, trace_modes
 from fcm.response.optimum import optimise
 from fcm.response.sensitivity import add_sensitivities
 from fcm.response.track import track
@@ -60,7 +60,7 @@ WAYS = {
     "exact": lambda scene: trace_exact(scene, only="peaks"),
     "at": lambda scene: trace_exact(scene, [0.8]),
     "level": lambda scene: trace_levels(scene, [0.8], (0.0, 2.0)),
-    "mode": lambda scene: trace_modes(scene, 1, (1e-3, 1e-2)),
+    "mode": lambda scene: trace_modes(scene, ModeRequest(1, (1e-3, 1e-2))),
     "track": lambda scene: track(scene, "peaks", "contact.c.n_0", (2.0, 2.1), harmonics=1),
     "optimum": lambda scene: optimise(scene, harmonics=1),
 }

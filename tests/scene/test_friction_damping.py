@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import fcm
-from fcm.response.mode import trace_modes
+from fcm.response.mode import ModeRequest, trace_modes
 from fcm.scene.friction_damping import friction_damping
 
 ONE = """
@@ -82,7 +82,7 @@ def test_the_preload_is_that_with_which_the_resonance_has_the_best_amplitude(tmp
 
 
 def test_it_is_the_greatest_damping_of_the_nonlinear_mode(tmp_path):
-    of_mode = trace_modes(scene(tmp_path, ONE), 1, (0.01, 20.0)).curves[0].mode
+    of_mode = trace_modes(scene(tmp_path, ONE), ModeRequest(1, (0.01, 20.0))).curves[0].mode
     greatest_there = of_mode.damping.max()
     assert friction_damping(scene(tmp_path, ONE))[0]["friction_damping"] == pytest.approx(
         greatest_there, rel=1e-2

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fcm.cli import exact, fit, nonlinear_mode, schedule, sensitivity, track
+from fcm.cli import exact, fit, schedule, sensitivity, track
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 
@@ -90,11 +90,13 @@ def _tracked(messages: Messages, scene: Scene, asked: Asked, execution: Executio
 
 
 def _mode(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
+    from fcm.response.mode import ModeRequest, trace_modes
+
     assert asked.mode is not None and asked.level is not None  # --mode needs --level
-    chosen = _balanced(messages, asked) | {"force_levels": asked.force_levels or (1.0,)}
-    if asked.export is not None or asked.contact_forces is not None or asked.modal_amplitudes:
-        chosen["motion_at"] = asked.motion_at
-    response = nonlinear_mode.traced(scene, asked.mode, asked.level, execution, chosen)
+    exported = asked.export is not None or asked.contact_forces is not None or asked.modal_amplitudes
+    motion_at = asked.motion_at if exported else None
+    mode = ModeRequest(asked.mode, asked.level, asked.force_levels or (1.0,), motion_at)
+    response = trace_modes(scene, mode, execution, **_balanced(messages, asked))
     messages.clear()
     return response
 

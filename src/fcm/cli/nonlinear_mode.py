@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fcm.cli.columns import BEYOND, NOT_COMPLETE, aligned, not_complete, number, ranges, short, swept
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import greatest_first, unit_of
-
-if TYPE_CHECKING:
-    from fcm.model.scene import Scene
-    from fcm.response import Response
-    from fcm.run import Execution
 
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by harmonic balance",
@@ -53,15 +48,6 @@ def check_options(
         if context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
             (option,) = (param.opts[-1] for param in context.command.params if param.name == name)
             raise click.UsageError(f"{option} is of no use with --mode: {why}.")
-
-
-def traced(
-    scene: Scene, mode: int, level: tuple[float, float], execution: Execution, chosen: dict[str, Any]
-) -> Response:
-    """The nonlinear mode of every curve of a scene."""
-    from fcm.response.mode import trace_modes
-
-    return trace_modes(scene, mode, level, execution, **chosen)
 
 
 def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:

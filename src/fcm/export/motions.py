@@ -32,7 +32,7 @@ def motions_of(
 ) -> list[Motion]:
     """Motions of every curve: at the peaks, or where it passes some frequencies in the scene's unit.
 
-    Of nonlinear modes those that were kept, see `fcm.response.mode.trace_modes`; `at` are modal amplitudes.
+    Of nonlinear modes those that were kept, see `fcm.response.mode.ModeRequest`; `at` are modal amplitudes.
 
     Parameters
     ----------

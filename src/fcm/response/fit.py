@@ -20,7 +20,7 @@ from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
-from fcm.response.mode import check_free, trace_modes
+from fcm.response.mode import ModeRequest, check_free, trace_modes
 from fcm.response.options import FITTED_RESPONSE, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
@@ -177,9 +177,8 @@ def _model_response(
     scene = parameters.at(numbers.values)
     spans = [measured_span(System(scene, found.harmonics), one) for one in data]
     span = min(low for low, _ in spans), max(high for _, high in spans)
-    return trace_modes(
-        scene, number, span, execution, harmonics=given, accuracy=accuracy, options=request.options
-    )
+    mode = ModeRequest(number, span)
+    return trace_modes(scene, mode, execution, harmonics=given, accuracy=accuracy, options=request.options)
 
 
 def _on_mode(data: FittedData, response: Response) -> FittedData:

@@ -47,27 +47,41 @@ from fcm.scene.errors import counted
 from fcm.units import in_unit
 
 
+class ModeRequest(Frozen):
+    """A nonlinear mode that is asked for, over a span of modal amplitudes.
+
+    The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
+    mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
+    are at rest, without rigid-body modes.
+
+    Attributes
+    ----------
+    levels
+        Of the scene's forces, at which the response near the resonance is predicted.
+    motion_at
+        Modal amplitudes at which motions are kept for export; of none at the resonances, or, of a mode
+        without one, at its greatest amplitude. Without this no motion is kept.
+    """
+
+    number: int
+    span: tuple[float, float]
+    levels: tuple[float, ...] = (1.0,)
+    motion_at: tuple[float, ...] | None = None
+
+
 def trace_modes(
     scene: Scene,
-    number: int,
-    span: tuple[float, float],
+    asked: ModeRequest,
     execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
-    force_levels: Sequence[float] = (1.0,),
-    motion_at: Sequence[float] | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """The mode of each curve of the scene over a span of modal amplitudes.
+    """The mode that is asked for, of each curve of the scene.
 
-    The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
-    mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
-    are at rest, without rigid-body modes. Without harmonics or an accuracy, those of the scene. The response
-    near the resonance is predicted at some levels of the scene's forces. Motions at some modal amplitudes are
-    kept for export; of none at the resonances, or, of a mode without one, at its greatest amplitude. What is
-    finished goes to the
-    checkpoint, and what that holds of it is not followed again.
+    Without harmonics or an accuracy, those of the scene. What is finished goes to the checkpoint, and what
+    that holds of it is not followed again.
 
     Raises
     ------
@@ -76,20 +90,17 @@ def trace_modes(
     KeyboardInterrupt
         If nothing is finished then; else what is finished is returned.
     """
-    low, high = span
+    low, high = asked.span
     if not 0.0 < low < high <= INPUT_LIMITS.max_amplitude_ratio * low:
         raise ResponseError(
             f"level is from {low:g} to {high:g}, but the modal amplitudes must rise, from more than 0, by at "
             f"most a factor of {INPUT_LIMITS.max_amplitude_ratio:g}"
         )
-    if not all(0.0 < level <= INPUT_LIMITS.max_level for level in force_levels):
+    if not all(0.0 < level <= INPUT_LIMITS.max_level for level in asked.levels):
         raise ResponseError("a level of the forces must be finite and greater than 0")
     check_free(scene)
     begin = time.perf_counter()
     request = request_of(scene, harmonics, accuracy, options)
-    levels = tuple(float(level) for level in force_levels)
-    at = None if motion_at is None else tuple(float(one) for one in motion_at)
-    asked = ModeRequest(number, span, levels, at)
     of_curves = (asked, request, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("mode", *of_curves)
     try:
@@ -107,7 +118,7 @@ def trace_modes(
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     curves = [without_rounding(one) for one in curves]
-    response = Response.of(scene, curves, f"nonlinear mode {number}")
+    response = Response.of(scene, curves, f"nonlinear mode {asked.number}")
     response.seconds = time.perf_counter() - begin
     return response
 
@@ -117,16 +128,6 @@ def check_free(scene: Scene) -> None:
     check_no_ring(scene, "nonlinear modes")
     refuse_own_laws(scene, "nonlinear modes")
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
-
-
-class ModeRequest(Frozen):
-    """A nonlinear mode by its number, over a span of modal amplitudes; the levels of the forces at which its
-    resonances are wanted, and the modal amplitudes at which its motions are."""
-
-    number: int
-    span: tuple[float, float]
-    levels: tuple[float, ...] = ()
-    motion_at: tuple[float, ...] | None = None
 
 
 def _curve(scene: Scene, asked: ModeRequest, request: Request, tell: Tell) -> Curve:
