@@ -207,15 +207,14 @@ def _cases(
     from fcm.cli.loop_cases import of_contact, of_file, of_ratios
 
     if file is not None:
-        return of_file(
-            file,
-            options["curves"] or [None],
-            options["contact"],
-            options["at"] or [None],
-            options["amplitudes"] or [None],
-            options["solution"],
-            tell,
-        )
+        from fcm.plot.loop_file import PlaceOnCurve
+
+        places = [
+            *map(PlaceOnCurve, options["at"]),
+            *(PlaceOnCurve(one, modal=True) for one in options["amplitudes"]),
+        ]
+        curves = options["curves"] or [None]
+        return of_file(file, curves, options["contact"], places or [None], options["solution"], tell)
     if given.intersection(OF_CONTACT):
         return of_contact(
             {name: options[name] for name in OF_CONTACT}, options["phases"], options["harmonics"], units

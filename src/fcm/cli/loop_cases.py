@@ -21,7 +21,7 @@ from fcm.rotational_dofs import unit_of as dof_unit
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
     from fcm.contact.plane.loop import PlanarLoop
-    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, PlanePoint
+    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, PlaceOnCurve, PlanePoint
 
 
 class Case(Frozen):
@@ -174,12 +174,11 @@ def of_file(
     path: Path,
     curves: Sequence[int | None],
     contact: str | None,
-    at: Sequence[float | None],
-    amplitudes: Sequence[float | None],
+    places: Sequence[PlaceOnCurve | None],
     solution: int | None,
     tell: Callable[[str], None],
 ) -> list[Case] | list[PlanarCase]:
-    """The loops of a contact on curves of a response file, at frequencies or modal amplitudes.
+    """The loops of a contact on curves of a response file, at places of each.
 
     Which contact was taken is told.
     """
@@ -191,15 +190,12 @@ def of_file(
         tell(said)
     cases: list[Case] = []
     planar: list[PlanarCase] = []
-    for curve, frequency, amplitude in product(curves, at, amplitudes):
-        points = points_at(file, curve, contact, frequency, amplitude)
+    for curve, place in product(curves, places):
+        points = points_at(file, curve, contact, place)
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         points = points if solution is None else points[solution - 1 : solution]
-        wanted, found = (frequency, "frequency") if amplitude is None else (amplitude, "modal_amplitude")
-        if wanted is not None and (
-            said := _beside(wanted, [getattr(point, found) for point in points], file)
-        ):
+        if place is not None and (said := _beside(place, points, file)):
             tell(said)
         for point in points:
             with read(path, "its loops cannot be drawn"):
@@ -210,8 +206,9 @@ def of_file(
     return planar or cases
 
 
-def _beside(wanted: float, there: Sequence[float], file: LoopFile) -> str:
+def _beside(place: PlaceOnCurve, points: Iterable[LoopPoint], file: LoopFile) -> str:
     """Where the points of the file are that are drawn in place of one between them; empty if there is one."""
+    wanted, there = place.value, map(place.of, points)
     off = [f"{at:.6g}" for at in there if abs(at - wanted) > SENTENCES.resolution * 1e-3 * abs(wanted)]
     unit = "" if file.unit == "level" else f" {file.unit}"
     closer = "A smaller --max-step of fcm respond has nearer ones"

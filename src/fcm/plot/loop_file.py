@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -54,6 +54,14 @@ class LinePoint(Frozen):
     law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
 
 
+class PointIndex(NamedTuple):
+    """A contact at a point of a curve, in the arrays of a file."""
+
+    curve: int
+    point: int
+    contact: int
+
+
 class MotionFile(Frozen):
     """What a response file has on the motions across contacts, in a plane or in several harmonics."""
 
@@ -64,15 +72,15 @@ class MotionFile(Frozen):
     law: FloatArray  # (4, curve, contact)
     directions: dict[str, Any]  # of each contact in a plane, by x, y and normal
 
-    def at(self, row: int, k: int, column: int, contact: str) -> PlanePoint | LinePoint | None:
+    def at(self, index: PointIndex, contact: str) -> PlanePoint | LinePoint | None:
         """Of a point; None of a contact on a line that moves in one harmonic alone."""
         names = self.directions.get(contact)
-        mean = self.mean[row, k, column]
+        mean = self.mean[index]
         motion = np.zeros((mean.size, 1 + max(self.harmonics)), dtype=np.complex128)
         motion[:, 0] = mean
-        waves = self.amplitude[row, k, column] * np.exp(1j * self.phase[row, k, column]) / 1j
+        waves = self.amplitude[index] * np.exp(1j * self.phase[index]) / 1j
         motion[:, list(self.harmonics)] = np.nan_to_num(waves)
-        mu, k_u, k_v, n_0 = law = self.law[:, row, column].tolist()
+        mu, k_u, k_v, n_0 = law = self.law[:, index.curve, index.contact].tolist()
         if isinstance(names, dict):
             axes = str(names.get("x", "x")), str(names.get("y", "y"))
             return PlanePoint(motion, (mu, k_u, k_v, n_0), axes)
@@ -108,6 +116,20 @@ class LoopPoint(Frozen):
     displacement: float = float("nan")  # its amplitude
     peak: bool = False  # whether the point is this peak
     modal_amplitude: float | None = None  # of a nonlinear mode
+
+
+class PlaceOnCurve(NamedTuple):
+    """Where on a curve: at a frequency or a level, or, of a nonlinear mode, at a modal amplitude."""
+
+    value: float
+    modal: bool = False
+
+    def of(self, point: LoopPoint) -> float:
+        """That of a point."""
+        if not self.modal:
+            return point.frequency
+        assert point.modal_amplitude is not None  # else there is no place by it
+        return point.modal_amplitude
 
 
 class LoopFile(Frozen):
@@ -185,15 +207,11 @@ def _motions(data: Any) -> MotionFile | None:
 
 
 def points_at(
-    file: LoopFile,
-    curve: int | None,
-    contact: str | None,
-    at: float | None,
-    modal_amplitude: float | None = None,
+    file: LoopFile, curve: int | None, contact: str | None, place: PlaceOnCurve | None
 ) -> list[LoopPoint]:
-    """The points of a curve nearest to a frequency, a level or a modal amplitude.
+    """The points of a curve nearest to a place.
 
-    There is one for each solution there, greatest amplitude first. Without any of these it is the peak of the
+    There is one for each solution there, greatest amplitude first. Without a place it is the peak of the
     scene's output, see `LoopFile.column`. Without a contact it is the `busiest`.
 
     Raises
@@ -203,26 +221,27 @@ def points_at(
     """
     row, column = _row(file, curve), _column(file, contact)
     along, unit, amplitude = file.frequency[row], f" {file.unit}", file.loop[3, row, :, column]
-    if modal_amplitude is not None:
+    if place is not None and place.modal:
         if file.modal_amplitude is None:
             raise PlotError(f"{file.path}: --amplitude is of nonlinear modes (fcm respond --mode); take --at")
-        along, unit, at = file.modal_amplitude[row], "", modal_amplitude
+        along, unit = file.modal_amplitude[row], ""
     if not np.isfinite(amplitude).any():
         raise PlotError(
             f"{file.path}: curve {row} holds no loops: no points at all, or exact motions, not harmonic ones"
         )
-    if at is None:
+    if place is None:
         there = np.isfinite(amplitude)
         if file.steady is not None and (held := there & (file.steady[row] != 0.0)).any():
             there = held
         found = [int(np.nanargmax(np.where(there, file.amplitude[row, :, file.column], np.nan)))]
     else:
-        found = _solutions(along, on_curve(along, at))
+        found = _solutions(along, on_curve(along, place.value))
         found.sort(key=lambda k: -amplitude[k])
-    if not found:
-        low, high = np.nanmin(along), np.nanmax(along)
-        raise PlotError(f"{file.path}: curve {row} goes from {low:.6g} to {high:.6g}{unit}, not to {at:.6g}")
-    return [_point(file, row, column, k, i + 1, len(found), at is None) for i, k in enumerate(found)]
+        if not found:
+            ends = f"from {np.nanmin(along):.6g} to {np.nanmax(along):.6g}{unit}"
+            raise PlotError(f"{file.path}: curve {row} goes {ends}, not to {place.value:.6g}")
+    indices = [PointIndex(row, k, column) for k in found]
+    return [_point(file, index, i + 1, len(found), place is None) for i, index in enumerate(indices)]
 
 
 def _solutions(frequency: FloatArray, at: float) -> list[int]:
@@ -235,9 +254,8 @@ def _solutions(frequency: FloatArray, at: float) -> list[int]:
     return sorted(set(nearer.tolist()))
 
 
-def _point(
-    file: LoopFile, row: int, column: int, k: int, solution: int, solutions: int, peak: bool
-) -> LoopPoint:
+def _point(file: LoopFile, index: PointIndex, solution: int, solutions: int, peak: bool) -> LoopPoint:
+    row, k, column = index
     n0_bar, b_bar, phi, amplitude, force = file.loop[:, row, k, column].tolist()
     frequency, stable = float(file.frequency[row, k]), float(file.stable[row, k])
     name = file.contacts[column]
@@ -246,13 +264,13 @@ def _point(
             f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
             + (f": that is the peak of {file.dofs[file.column]}; choose another by --at" if peak else "")
         )
-    motion = None if file.motions is None else file.motions.at(row, k, column, name)
+    motion = None if file.motions is None else file.motions.at(index, name)
     if n0_bar == b_bar == 0.0:
         raise PlotError(f"{file.path}: {name} has no friction, and so no loop")
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
-        file.harmonics, str(file.states[row, k, column]),
+        file.harmonics, str(file.states[index]),
         file.motions is None and len(file.harmonics) > 1, motion,
         file.dofs[file.column], float(file.amplitude[row, k, file.column]), peak,
         None if file.modal_amplitude is None else float(file.modal_amplitude[row, k]),
