@@ -147,7 +147,8 @@ def refined_response(
 def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
     """The response traced again with more harmonics; None where no solution is found, or that takes longer
     than is worth it."""
-    if found.seconds_with(harmonics) > found.system.options.work.max_seconds_repeated:
+    work = found.system.work
+    if work.seconds + found.seconds_with(harmonics) > found.system.options.work.max_seconds:
         return None
     nearby, traced = prolongated_solutions(found, harmonics), found.traced
     system = found.system.with_harmonics(harmonics)
