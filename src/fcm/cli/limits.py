@@ -17,6 +17,7 @@ class RemarkOptions(Frozen):
     small_jump: float = 1e-2  # of the amplitude: a jump of less is not seen either
     narrow_window: float = 1e-3  # of the frequency: narrower ones of unknown stability have no line each
     tried: int = 2  # values on either side of an optimum that was found by trials
+    doubtful_error: float = 0.1  # relative, of a peak beside an optimum: a greater one is said
     lines: int = 12  # of a table of peaks, jumps or windows, for all curves; of each curve at least
     of_each_curve: int = 3
     rows: int = 10  # of the table of an interface: contacts that take most

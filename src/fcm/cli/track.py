@@ -219,7 +219,17 @@ def _tried(one: Mapping[str, Any]) -> str:
     below = [pair for pair in one["tried"] if pair[0] < best][-SENTENCES.tried :]
     above = [pair for pair in one["tried"] if pair[0] > best][: SENTENCES.tried]
     peaks = ", ".join(f"{value:.4g} with {number:.5g}" for number, value in below + above)
-    return f"\ntried beside it: {peaks}. Between two of these the peak is unknown"
+    error = one["end_error"]
+    known = (
+        ""
+        if error is not None and error <= SENTENCES.doubtful_error
+        else (
+            f". A higher one of these may err by {short(error)}"
+            if error is not None
+            else ". The error of a higher one of these is unknown: more --harmonics may not have it"
+        )
+    )
+    return f"\ntried beside it: {peaks}. Between two of these the peak is unknown{known}"
 
 
 def _at_corner(one: Mapping[str, Any], unit: str) -> str:
@@ -258,7 +268,11 @@ def _higher(one: Mapping[str, Any]) -> str:
     """That it is none, where the response there has a higher peak that was not followed."""
     if (higher := one["higher"]) is None:
         return ""
-    return f" - NOT THE LEAST: the response there has a higher {plain(higher['what'])}, {higher['value']:.6g}"
+    return (
+        f" - NOT THE LEAST: the response there has a higher {plain(higher['what'])}, {higher['value']:.6g}, "
+        "on a branch that the search has not. A [sweep] of the number, or more --harmonics, shows how it goes "
+        "on"
+    )
 
 
 def _flat(one: Mapping[str, Any]) -> str:

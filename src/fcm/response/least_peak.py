@@ -28,7 +28,7 @@ from fcm.tracking.minimax import PeakEnvelope, descend
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, Target
 from fcm.tracking.stability import stability_along
-from fcm.tracking.trials import by_trials
+from fcm.tracking.trials import by_trials, error_of_higher
 from fcm.tracking.user_points import values_at_height, with_user_points
 
 Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peaks on which it is
@@ -99,6 +99,8 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
             if not known.checked:
                 known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
+            if not known.checked and known.best is not None:
+                found = _with_error_of_higher(task, search, known.best, found)
         else:
             found = _downhill(task, chosen, shown)
         if harmonics:
@@ -112,7 +114,9 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
             more, taken = task.steps(
                 f"{chosen} harmonics at {found[0].beside}",
                 tuple,
-                partial(_harmonics_for_peaks, task, found[0].beside, chosen, seconds - taken),
+                partial(
+                    _harmonics_for_peaks, task, found[0].beside, chosen, seconds - taken, found[0].end_error
+                ),
             )
         if more == chosen:
             break
@@ -158,12 +162,28 @@ def _sharing(
     return moving
 
 
+def _with_error_of_higher(
+    task: PeakTask, search: LowestPeakSearch, best: EnvelopeMinimum, found: Found
+) -> Found:
+    """With the error of the higher peaks beside an optimum by trials, and where that is the greatest."""
+    error, s = task.steps(
+        f"{search.system.harmonics} higher beside {best.s!r}", tuple, partial(error_of_higher, search, best)
+    )
+    (number,) = task.numbers
+    return replace(found[0], end_error=error, beside={number.key: s}), found[1]
+
+
 def _harmonics_for_peaks(
-    task: PeakTask, values: Mapping[str, float], harmonics: tuple[int, ...], seconds: float
+    task: PeakTask,
+    values: Mapping[str, float],
+    harmonics: tuple[int, ...],
+    seconds: float,
+    error: float = 0.0,
 ) -> tuple[tuple[int, ...], float]:
     """The harmonics that the accuracy of the peaks to be least takes at values of the numbers, from some on.
 
-    No more than a response can be followed with in some seconds; and how many that takes.
+    No more than a response can be followed with in some seconds; and how many that takes. error: of a peak
+    there to which the response alone may not lead.
     """
     scene, taken = task.with_values(np.array(list(values.values()))), 0.0
     dofs = [target.dof for target in task.targets]
@@ -173,6 +193,7 @@ def _harmonics_for_peaks(
         worst = float(
             there.peak[dofs][height > task.options.optimum.min_height * height.max()].max(initial=0.0)
         )
+        worst, error = max(worst, error, key=lambda one: np.inf if np.isnan(one) else one), 0.0
         there = replace(there, max_error=worst)
         if worst <= task.accuracy:
             return harmonics, taken

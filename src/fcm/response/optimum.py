@@ -202,7 +202,10 @@ def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) 
         if curve.complete and not (exact and one.end_error <= accuracy):
             off = one.end_error if exact else one.error
             error = "is unknown" if np.isnan(off) else f"is estimated as {off:.1e}"
-            of = "the number at which a higher peak ends" if exact else "the least peak"
+            higher = "the number at which a higher peak ends"
+            if one.kind != "end":
+                higher = "a higher peak beside it, which decides the number,"
+            of = higher if exact else "the least peak"
             curve.short_of = f"{_with(one.harmonics)} the error of {of} {error}"
             if one.fewer is not None:
                 at = ", ".join(f"{key} = {value:.6g}" for key, value in one.fewer.values.items())

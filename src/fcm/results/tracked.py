@@ -129,9 +129,7 @@ class Optimal(Frozen):
     higher: tuple[str, float] | None = (
         None  # what of the minimised the response there has higher, not followed
     )
-    end_error: float = (
-        0.0  # of the number at which a higher peak ends, estimated, relative; 0 where none does
-    )
+    end_error: float = 0.0  # of the number at which a higher peak ends, estimated, relative; by trials of a higher peak  # next to it; 0 where there is none
     beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
     leaves_range: float = np.nan  # [rad/s] where that peak, or the least, leaves the range of frequencies
     nearly: NearlyLeast | None = None  # the numbers around it with which the peak is hardly greater

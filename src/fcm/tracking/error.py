@@ -84,6 +84,18 @@ def truncation_error(
     return TruncationError(off, abs(float(there.point.z[-1]) - number))
 
 
+def error_of_peak(setup: TrackingSetup, condition: Condition, point: TrackedPoint) -> float:
+    """The relative error of a peak by the harmonics left out; NaN where the reference has no peak near it."""
+    here = _RefinedPoint(setup, point)
+    more = _more(here)
+    if more == setup.system.harmonics:
+        return 0.0
+    wider = replace(setup, system=setup.system.with_harmonics(more), user_values=())
+    there = _landed(wider, condition, here, point, False)
+    value = here.value(condition)
+    return np.nan if there is None else abs(there.value(condition) - value) / abs(value)
+
+
 def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACKING) -> int | None:
     """The point from which a turn is sought, some before it and not beyond another turn."""
     if not track.points[i].turn:

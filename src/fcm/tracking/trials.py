@@ -9,7 +9,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fcm.tracking.lowest_peak import LowestPeakSearch
+from fcm.tracking.error import error_of_peak
+from fcm.tracking.lowest_peak import MIN_HEIGHT, LowestPeakSearch
+from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.peak_envelope import EnvelopeMinimum
 
 
@@ -39,6 +41,27 @@ def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
         if search.visited_values[one].value
     )
     return EnvelopeMinimum(s, top.value, (top,), kind, _neighbours(search, s), tried=tried)
+
+
+def error_of_higher(search: LowestPeakSearch, best: EnvelopeMinimum) -> tuple[float, float]:
+    """The error of the higher peaks at the values that were tried next to the least, and the value where that
+    is the greatest.
+
+    Such a peak decides which value is the least. A peak of few harmonics alone is of no motion: its error is
+    NaN, as of each that the reference does not have.
+    """
+    worst, at = 0.0, best.s
+    for s in best.between or ():
+        condition, top = max(search.known_points.get(s, [(None, MIN_HEIGHT)]), key=lambda one: one[1].value)
+        if condition is None or not top.value > best.value * (1.0 + search.options.height_tolerance):
+            continue
+        point = land(search.setup, condition, top.z)
+        error = np.nan if point is None else error_of_peak(search.setup, condition, point)
+        if not error <= worst:
+            worst, at = error, s
+        if np.isnan(worst):
+            break
+    return worst, at
 
 
 def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | None:
