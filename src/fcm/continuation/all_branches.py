@@ -19,14 +19,14 @@ Follow = Callable[..., Path]  # as `follow`
 
 
 class Following(Frozen):
-    """How each path is followed.
+    """Options, progress and function with which each branch is followed.
 
     Attributes
     ----------
     options : FollowOptions
-        As of `follow`.
+        Options of following a curve, see `follow`.
     progress : callable, optional
-        As of `follow`.
+        Is told the share of the span that is covered, see `follow`.
     follow : callable
         Follows a path, as `follow` does.
     """
