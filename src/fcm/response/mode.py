@@ -120,8 +120,11 @@ def check_free(scene: Scene) -> None:
 
 
 class ModeRequest(Frozen):
-    """A nonlinear mode by its number, over a span of modal amplitudes; the levels of the forces at which its
-    resonances are wanted, and the modal amplitudes at which its motions are."""
+    """A nonlinear mode by its number, over a span of modal amplitudes.
+
+    levels: of the forces, at which its resonances are wanted; motion_at: modal amplitudes at which its
+    motions are wanted.
+    """
 
     number: int
     span: tuple[float, float]
@@ -218,7 +221,7 @@ def _recorded(mode: Mode, asked: ModeRequest, error: FloatArray, theirs: FloatAr
 
 
 def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> NonlinearMode:
-    """What is a mode's own, and the response that it foretells at levels of the forces."""
+    """The quantities of a mode itself, and the response that it predicts at levels of the forces."""
     return NonlinearMode(
         number=asked.number,
         amplitude=mode.amplitude,
@@ -234,7 +237,10 @@ def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> Non
 
 
 def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> Iterator[MotionOfMode]:
-    """The motions at modal amplitudes; without any at the resonances, or else at the greatest amplitude."""
+    """Motions of a mode at modal amplitudes.
+
+    Without any amplitudes at the resonances, or else at the greatest amplitude.
+    """
     if at:
         found = [at_amplitude(mode, one) for one in at]
     else:
@@ -253,7 +259,7 @@ def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> It
 
 
 def _reason(mode: Mode) -> str:
-    """Why a mode does not reach the greatest amplitude."""
+    """Reason why a mode does not reach the greatest amplitude."""
     path = mode.path
     if path.status is not Status.RETURNED:
         return f"stopped at modal amplitude {mode.amplitude[-1]:.6g}: {path.status.value}"
@@ -268,7 +274,7 @@ def _reason(mode: Mode) -> str:
 
 
 def _resonances(mode: Mode, level: float) -> list[Resonance]:
-    """With the scene's forces at a level."""
+    """Resonances of a mode with the scene's forces at a level."""
     found = resonances(mode, level)
     if found is None:
         return []
