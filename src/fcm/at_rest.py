@@ -1,4 +1,4 @@
-"""How little of a motion is none: what is left of sums over modes by rounding."""
+"""Amplitude up to which a degree of freedom is at rest: what rounding leaves of sums over modes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fcm.frozen import Frozen
 
 
 class RestOptions(Frozen):
-    """How little is nothing.
+    """Thresholds below which a displacement counts as rest.
 
     displacement : part of the greatest amplitude of a curve, up to which an amplitude is rounding. A sum over
         modes is off by some hundred units of the last of its sixteen digits.
@@ -22,7 +22,8 @@ class RestOptions(Frozen):
 
 
 def at_rest(size: npt.NDArray[np.float64], options: RestOptions | None = None) -> npt.NDArray[np.bool_]:
-    """Which of the degrees of freedom with greatest amplitudes (dof,) move by rounding alone, or not at all.
+    """Mask of the degrees of freedom, of greatest amplitudes (dof,), that move by rounding alone or not at
+    all.
 
     >>> at_rest(np.array([3.0, 1e-6, 2e-15, 0.0])).tolist()
     [False, False, True, True]

@@ -1,4 +1,4 @@
-"""How the kernels are compiled: the modules of ``ext-modules`` in pyproject.toml, by Cython and a C compiler.
+"""Compiles the kernels: the modules of ``ext-modules`` in pyproject.toml, by Cython and a C compiler.
 
 A kernel is Python that Cython's pure mode can also compile. Where it is compiled, Python imports the machine
 code, which then lies beside the source; where it could not be, the source itself: slower, and else the same.
@@ -140,14 +140,14 @@ class Kernels(build_ext):
             )
 
     def _discard_if_old(self, kernel: Extension) -> None:
-        """What is out of date goes first: should it not be made anew, the source must take its place."""
+        """Deletes an outdated compiled kernel first, so that its source is used if compiling fails."""
         made, source = Path(self.get_ext_fullpath(kernel.name)), Path(kernel.sources[0])
         if made.exists() and source.exists() and made.stat().st_mtime < source.stat().st_mtime:
             made.unlink()
 
 
 def set_up_plainly(source: Path) -> None:
-    """Have gcc optimise what Cython adds to a kernel in C no more than that needs; once."""
+    """Lowers gcc's optimisation of what Cython adds to a kernel's C source; only once for a source."""
     code = source.read_text()
     if "#pragma GCC optimize" in code:
         return

@@ -25,7 +25,7 @@ _KINDS = (
 
 
 def no_file(path: str | Path, wanted: str = "read") -> str:
-    """What there is where a file is to be: "is a folder", "cannot be read: ..."; '' for a file.
+    """Why a path is not a usable file: "is a folder", "cannot be read: ..."; '' for a file.
 
     >>> no_file("/")
     'is a folder'
@@ -42,7 +42,7 @@ def no_file(path: str | Path, wanted: str = "read") -> str:
 
 
 def real(path: str | Path) -> Path:
-    """Where a file is or will be, all symbolic links followed.
+    """Path at which a file is or will be, with all symbolic links followed.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def _unwritten(error: OSError | RuntimeError, partial: Path, path: str | Path) -
 
 
 def _refusal(partial: Path) -> int | None:
-    """What the system says to as many bytes as there are and some more; None if it takes them."""
+    """Error number of the system when more bytes than the file has are written; None if it takes them."""
     size, block = 0, bytes(1 << 20)  # a megabyte more: else the disk is not the reason
     with suppress(OSError):
         size = partial.stat().st_size

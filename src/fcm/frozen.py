@@ -31,7 +31,7 @@ class _Signature:
 
 @dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
 class Frozen:
-    """What ``@dataclass(frozen=True)`` makes of a class, for those that derive from this one.
+    """Base class that makes subclasses frozen records, as ``@dataclass(frozen=True)`` does.
 
     Fields are annotated names, with `dataclasses.field` where that is needed; `dataclasses.replace`, `fields`
     and ``__post_init__`` work as ever. Records are equal where they are of one class and all compared fields
@@ -83,10 +83,10 @@ class Frozen:
         self.__post_init__()
 
     def __post_init__(self) -> None:
-        """Nothing to add."""
+        """Hook after initialisation; does nothing here."""
 
     def _refused(self, values: tuple[Any, ...], named: dict[str, Any]) -> TypeError:
-        """What is wrong with the arguments, as Python says it of a function."""
+        """TypeError on wrong arguments, with the words Python uses for a function."""
         try:
             type(self).__signature__.bind(*values, **named)
         except TypeError as error:

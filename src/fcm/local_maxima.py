@@ -1,4 +1,4 @@
-"""Where a curve has peaks: points that are higher than the one before and no lower than the one behind."""
+"""Local maxima of a curve: points higher than the one before and no lower than the one behind."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 
 def local_maxima(amplitude: npt.NDArray[np.float64], least: float) -> npt.NDArray[np.bool_]:
-    """Which amplitudes (point, dof) are local maxima along the points, above a part of the greatest of each.
+    """Mask of amplitudes (point, dof) that are local maxima, above a fraction of the greatest of each.
 
     Ends are none, nor are those of parts between rows of NaN.
 

@@ -6,7 +6,7 @@ import json
 
 
 def quoted(text: str, longest: int = 60) -> str:
-    """In double quotes, on one line, without control characters, and of so many characters at most.
+    """A text in double quotes, on one line, without control characters, shortened to a number of characters.
 
     >>> print(quoted("GRID"), quoted("a" * 9, 3))
     "GRID" "aaa..."

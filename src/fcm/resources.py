@@ -45,7 +45,7 @@ def disk(folder: Path) -> float:
 
 
 def _available() -> float:
-    """What the system would give without swapping, and the limit of a container."""
+    """Bytes of memory that the system can give without swapping, within the limit of a container."""
     found = float("inf")
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
@@ -61,7 +61,7 @@ def _available() -> float:
 
 
 def _left_of_limit() -> float:
-    """Of addresses, where `ulimit -v` limits them."""
+    """Bytes of address space left, where `ulimit -v` limits it; else inf."""
     try:
         import resource
     except ImportError:  # a system without limits

@@ -25,7 +25,7 @@ ALL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if
 
 
 class _Program:
-    """What an interruption means now.
+    """State of the program that decides what an interruption does.
 
     Signals within `min_interval` [s] are one: `timeout` sends two, a terminal that closes even more. An
     interruption that nobody could raise is raised again after `delay` [s].
@@ -83,7 +83,7 @@ def _later() -> bool:
 
 
 def _imports(frame: FrameType | None) -> int:
-    """How many frames of the stack are Python's own, that import a module."""
+    """Number of frames of the stack that belong to Python's import of a module."""
     count = 0
     while frame is not None:
         count += frame.f_code.co_filename == "<frozen importlib._bootstrap>"
@@ -136,20 +136,20 @@ def interrupt() -> None:
 
 
 def works() -> None:
-    """From now on there may be something to save."""
+    """Declares that from now on there may be something to save."""
     if _program is not None:
         _program.imports = _imports(sys._getframe())
         _program.works = True
 
 
 def announce(notice: str) -> None:
-    """From now on this line is said on standard error as soon as an interruption comes; "" for none."""
+    """Sets a line that is written to standard error as soon as an interruption comes; "" for none."""
     if _program is not None:
         _program.notice = f"{notice}\n".encode() if notice else b""
 
 
 def ends() -> None:
-    """Nothing is left to be saved, and the exit code decided: no signal is to change it."""
+    """Ignores signals from now on: nothing is left to be saved, and the exit code is decided."""
     if _program is not None:
         for number in _program.before:
             signal.signal(number, signal.SIG_IGN)  # the interpreter itself would undo any other handler

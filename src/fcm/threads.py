@@ -19,13 +19,13 @@ _VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def one_by_default() -> None:
-    """One thread in this process, unless the user has set another number; before numpy is imported."""
+    """Sets one thread for this process, unless the user has set a number; call before numpy is imported."""
     for name in _VARIABLES:
         os.environ.setdefault(name, "1")
 
 
 def one_each() -> dict[str, str]:
-    """What the environment of a process says that has one core for itself."""
+    """Environment variables of a process that has one core for itself."""
     return dict.fromkeys(_VARIABLES, "1")
 
 
@@ -66,8 +66,10 @@ def _limited() -> Any:
 
 @lru_cache(maxsize=1)
 def _libraries(_: int) -> Any:
-    """Those that this process has loaded; to look for them takes a millisecond, and is done again only when
-    more modules have been imported."""
+    """The libraries of linear algebra that this process has loaded, cached.
+
+    Looking for them takes a millisecond, and is repeated only when more modules have been imported.
+    """
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()

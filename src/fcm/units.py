@@ -11,9 +11,10 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class AngleOptions(Frozen):
-    """When an angle without a unit is asked about."""
+    """Options on when an angle without a unit leads to a question."""
 
-    largest: float = 2.001 * np.pi  # [rad] a whole turn, and what "6.2832" is more
+    # [rad] largest angle without a unit that is not doubted: a whole turn and a little more
+    largest: float = 2.001 * np.pi
 
 
 ANGLES = AngleOptions()

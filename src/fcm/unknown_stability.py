@@ -1,4 +1,4 @@
-"""Where along a curve it is unknown whether a motion is stable."""
+"""Points of a curve at which it is unknown whether a motion is stable."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import numpy.typing as npt
 
 
 def unknown_stability(stable: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Where (point,) it is not known whether a motion is stable, other than at the very point at which that
-    changes from one neighbour to the other.
+    """Mask (point,) of the points of unknown stability.
+
+    A single unknown point between a stable and an unstable neighbour does not count.
 
     >>> unknown_stability(np.array([1.0, np.nan, 0.0, np.nan, np.nan, 1.0, np.nan, 1.0])).tolist()
     [False, False, False, True, True, False, True, False]

@@ -1,2 +1,1 @@
-"""How wrong a curve of a balance is, estimated by its embedded pair, and as many harmonics as an accuracy
-takes."""
+"""Error of a harmonic-balance curve by its embedded pair, and as many harmonics as an accuracy needs."""

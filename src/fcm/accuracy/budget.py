@@ -1,4 +1,4 @@
-"""How much following the references of a response may take."""
+"""Budgets of work (in seconds) for following the references of a response."""
 
 from __future__ import annotations
 
@@ -11,14 +11,16 @@ from fcm.harmonic_balance.work_budget import WorkCount
 
 @dataclass
 class Budget:
-    """Seconds of work that are left, as of `harmonic_balance.cost_model`: those who follow take from it."""
+    """Seconds of work left, counted as in `harmonic_balance.cost_model`; whoever works deducts its own."""
 
     seconds: float = PAIR.max_seconds
 
     @classmethod
     def of(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:
-        """The budget in proportion to the work that the response itself took, so that its error never takes
-        much more; for a part of it the same part.
+        """The budget for the errors of a response, in proportion to the work that the response itself took.
+
+        The error estimate then never takes much more than the response; `part` scales the budget for a part
+        of it.
 
         >>> from fcm.harmonic_balance.work_budget import WorkCount
         >>> work = WorkCount()
@@ -33,12 +35,12 @@ class Budget:
 
     @classmethod
     def elsewhere(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:
-        """The same for what the references have elsewhere."""
+        """The budget for following references away from the curve, relative to the response's work."""
         most = max(options.work_fraction_elsewhere * work.seconds, options.min_seconds_elsewhere)
         return cls(part * min(most, options.max_seconds_elsewhere))
 
     def shares(self, count: int) -> Iterator[Budget]:
-        """One after the other for so many: what one leaves is for the others, too."""
+        """Yields one budget after another for `count` users; what one leaves goes to those after it."""
         for number in range(count):
             share = self.seconds / (count - number)
             one = Budget(share)
@@ -47,7 +49,7 @@ class Budget:
 
 
 def share_of(evaluations: Sequence[int], first: int) -> float:
-    """Part of the evaluations that following all paths took, of the paths from the first on.
+    """Fraction of all evaluations spent on the paths from number `first` on.
 
     >>> share_of([300, 60, 40], 1)
     0.25

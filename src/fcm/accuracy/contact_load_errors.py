@@ -19,7 +19,8 @@ def contact_load_errors(
     followed: Sequence[FollowedStretch],
     folds: npt.NDArray[np.intp],
 ) -> tuple[FloatArray, FloatArray]:
-    """Errors of forces, slip and energy, relative: (point, contact, 4) and of the greatest (contact, 4).
+    """Relative errors of contact forces, slip and energy: (point, contact, 4), and of their greatest
+    (contact, 4).
 
     shift (point, column): differences at the same frequency, in the units of what is compared. At the
     greatest, where the curve is not at its end, the difference is that of the greatest of both. NaN where the
@@ -42,9 +43,9 @@ def contact_load_errors(
 
 
 def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: PairOptions) -> FloatArray:
-    """Changes of the contact loads relative to these, of which most is the greatest along the curve.
+    """Changes of the contact loads relative to the loads themselves; `most` is the greatest along the curve.
 
-    Of nothing a change is infinite, unless it is nothing, too.
+    The relative change of a load of zero is infinite, unless the change is rounding.
     """
     off = np.abs(change)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -52,7 +53,7 @@ def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: Pai
 
 
 def _moved(reference: ReferenceCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
-    """How far the reference is away (point, column): by the frequency and by what is compared, in its unit.
+    """Distance (point, column) from curve to reference, by frequency and by each quantity, in its unit.
 
     That of the frequency counts by how steep the curve is, up to a limit.
     """
@@ -73,8 +74,10 @@ def _greatest(
     columns: slice,
     followed: Sequence[FollowedStretch],
 ) -> FloatArray:
-    """The greatest of the reference (column,); NaN where it may be on a stretch that it was not followed
-    along."""
+    """Greatest value (column,) of each quantity on the reference.
+
+    NaN where the greatest may lie on a stretch along which the reference could not be followed.
+    """
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     expected = own + unit * compared.change[:, 1:][:, columns]
     greatest: FloatArray = np.fmax.reduce(expected, axis=0, initial=-np.inf)

@@ -1,4 +1,4 @@
-"""Where a curve lies beside another, at the same parameter and near the same place along it.
+"""Distance of a curve to another, at the same parameter and near the same place along it.
 
 What is known at some points is known of those between, with how far that is off (`PartialInterpolant`). The
 point of the other curve at the same parameter is found along it (`ReferenceCurveData`). The point of a
@@ -22,8 +22,7 @@ INFINITY = cython.declare(cython.double, float("inf"))
 
 @cython.cclass
 class PartialInterpolant:
-    """`interpolate` points fills values (point, column) by cubics through those at the known (point,) ones,
-    by bytes.
+    """`interpolate` fills unknown values (point, column) by cubics through the known points (byte mask).
 
     place (point,) is how far along the curve each is. The slopes are those of parabolas through neighbours.
     """
@@ -47,7 +46,7 @@ class PartialInterpolant:
         self.number, self.known_points = np.zeros(place.shape[0], dtype=np.intp), 0
 
     def interpolate(self, points: cython.Py_ssize_t[::1], out: cython.double[:, ::1]) -> None:
-        """Values (point, column) at some points."""
+        """Interpolated values (point, column) at the given points."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         first: cython.Py_ssize_t
@@ -63,8 +62,10 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def sort(self) -> cython.void:
-        """The numbers of the known points but for those that nearly coincide with one before: of such the
-        difference is that of their roundings, and no slope."""
+        """Lists the numbers of the known points, without those that nearly coincide with the one before.
+
+        Between such points the difference is rounding and gives no slope.
+        """
         i: cython.Py_ssize_t
         before: cython.Py_ssize_t
         near: cython.double = self.coincident * (self.place[self.place.shape[0] - 1] - self.place[0])
@@ -83,7 +84,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def before(self, point: cython.Py_ssize_t) -> cython.Py_ssize_t:
-        """Which of the known points is the last at or before one."""
+        """Index, among the known points, of the last one at or before a given point."""
         low: cython.Py_ssize_t = 0
         high: cython.Py_ssize_t = self.known_points
         while high - low > 1:
@@ -97,7 +98,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def cubic(self, k: cython.Py_ssize_t, place: cython.double, j: cython.Py_ssize_t) -> cython.double:
-        """The value on the cubic from known point k to the next, or beyond the last."""
+        """Value on the cubic from known point k to the next, or beyond the last known point."""
         last: cython.Py_ssize_t = self.known_points - 1
         k = min(k, last - 1)
         begin: cython.double = self.place[self.number[k]]
@@ -111,7 +112,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def slope(self, k: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.double:
-        """The slope at known point k; beside a gap from the points that are there."""
+        """Slope at known point k from the secants on both sides; beside a gap from the one that exists."""
         one: cython.Py_ssize_t = max(k - 1, 0)
         other: cython.Py_ssize_t = min(k, self.known_points - 2)
         before: cython.double = self.secant(one, j)
@@ -127,13 +128,13 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def secant(self, k: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.double:
-        """The secant from known point k to the next."""
+        """Slope of the secant from known point k to the next."""
         return (self.value[self.number[k + 1], j] - self.value[self.number[k], j]) / self.step(k)
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def step(self, k: cython.Py_ssize_t) -> cython.double:
-        """Length of the same; points may coincide."""
+        """Arc length from known point k to the next; 1 where both coincide."""
         length: cython.double = self.place[self.number[k + 1]] - self.place[self.number[k]]
         return length if length > 0.0 else 1.0
 
@@ -146,7 +147,8 @@ class PartialInterpolant:
         nothing: cython.double,
         out: cython.uchar[::1],
     ) -> None:
-        """Whether values are off what was expected there by more than a part of them, and more than nothing.
+        """Whether values differ from the expected ones by more than `part` of their size and more than
+        `nothing`.
 
         points (3, place): each between two others, all known. Values count by the first, times the weight
         (point,), or the greatest of the rest. What is missing where it was not expected to be, or the other
@@ -171,7 +173,8 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def size(self, k: cython.Py_ssize_t, weight: cython.double) -> cython.double:
-        """Of the values at a point; nothing is more than that of one that is missing."""
+        """Greatest magnitude of the values at point k, the first weighted; infinite where they are
+        missing."""
         j: cython.Py_ssize_t
         if isnan(self.value[k, 0]):
             return INFINITY
@@ -231,7 +234,7 @@ NAN = cython.declare(cython.double, float("nan"))
 
 @cython.cclass
 class ReferenceCurveData:
-    """The other curve at its points (point,): where along the curve, its parameter and the rate of that."""
+    """The second curve at its points (point,): place along it, its parameter and the parameter's rate."""
 
     place: cython.double[::1]
     parameter: cython.double[::1]
@@ -257,7 +260,7 @@ class ReferenceCurveData:
         slope: cython.double[:, ::1],
         out: cython.double[:, ::1],
     ) -> None:
-        """Values of the other curve, which are `value` at its points with rates `slope`, at given parameters.
+        """Interpolates `value` and its rates `slope` on the second curve at given parameters.
 
         parameter, forward (point,): of the first curve at its points, and the sign of its rate. Results
         (point, value) in out: NaN where the other curve does not come to that parameter before it turns
@@ -288,7 +291,8 @@ class ReferenceCurveData:
         number: cython.int[::1],
         out: cython.double[:, ::1],
     ) -> None:
-        """Values (place, value) of the other curve where it passes given parameters `wanted` (place,).
+        """Interpolates values (place, value) where the second curve passes given parameters `wanted`
+        (place,).
 
         Of several passings that with a number, counted along the curve from 0; where that is -1 the one whose
         first values are nearest to target values (place, some of the values), of those that are as even as
@@ -336,7 +340,8 @@ class ReferenceCurveData:
     @cython.cfunc
     @cython.exceptval(check=False)
     def find(self, i: cython.Py_ssize_t, wanted: cython.double, forward: cython.double) -> cython.Py_ssize_t:
-        """The piece k to k + 1, next to the point i, on which the parameter is the one wanted; -1 if none is.
+        """The piece k to k + 1, reached from point i, on which the parameter equals `wanted`; -1 if there is
+        none.
 
         Beyond its ends the curve goes on as it does there.
         """
@@ -364,7 +369,7 @@ class ReferenceCurveData:
     @cython.cfunc
     @cython.exceptval(check=False)
     def solve(self, k: cython.Py_ssize_t, wanted: cython.double) -> cython.bint:
-        """Part of a piece at which the parameter is the one wanted, by halving."""
+        """Sets `at`, the fraction of piece k at which the parameter equals `wanted`, by halving."""
         length: cython.double = self.place[k + 1] - self.place[k]
         before: cython.double = self.parameter[k]
         after: cython.double = self.parameter[k + 1]
@@ -392,7 +397,7 @@ class ReferenceCurveData:
 def cubic(
     before: cython.double, after: cython.double, begin: cython.double, end: cython.double, x: cython.double
 ) -> cython.double:
-    """The cubic with two values and slopes at 0 and 1; beyond, its tangents."""
+    """Hermite cubic with given values and slopes at 0 and 1, continued by its tangents outside."""
     if x < 0.0:
         return before + x * begin
     if x > 1.0:
@@ -455,8 +460,10 @@ def shifted(
 def slope(
     place: cython.double[::1], value: cython.double[:, ::1], i: cython.Py_ssize_t, j: cython.Py_ssize_t
 ) -> cython.double:
-    """Rate of change at a point, from that before it to that behind: beside a corner points nearly
-    coincide."""
+    """Rate of change at a point: the difference quotient of its two neighbours.
+
+    Beside a corner the point nearly coincides with a neighbour, so one-sided quotients would be rounding.
+    """
     before: cython.Py_ssize_t = max(i - 1, 0)
     after: cython.Py_ssize_t = min(i + 1, place.shape[0] - 1)
     step: cython.double = place[after] - place[before]
@@ -472,7 +479,7 @@ def rises(
     tops: cython.Py_ssize_t[::1],
     options: CurveDistanceOptions = CURVE_DISTANCE,
 ) -> FloatArray:
-    """Rises (dof,) of a curve between its tops and the points next to them, above its tops.
+    """Rise (dof,) of a curve above its tops, between each top and the points next to it.
 
     Its amplitudes (point, dof), with growth (point, dof), are moved (point, dof): they follow cubics, what
     they are moved by straight lines. Nothing is told of what lies between a point and a corner.
@@ -508,7 +515,7 @@ def rises(
 
 @cython.cclass
 class PointwiseDisplacement:
-    """`find` displaces points to the curve of the reference's balance, by the prolongation."""
+    """`find` displaces points of a curve to the curve of the reference's balance, by the prolongation."""
 
     def __init__(self, prolongation: Prolongation) -> None:
         self.prolongation, self.missed = prolongation, 0.0
@@ -525,7 +532,8 @@ class PointwiseDisplacement:
         known: cython.uchar[::1],
         most: cython.double,
     ) -> None:
-        """Displacements (point, 1 + dof) of some points that are not known; then they are.
+        """Computes the displacements (point, 1 + dof) of those given points that are unknown, and marks them
+        known.
 
         z, direction (point, unknown + 1); the first displacement is that of the frequency, relative, the
         others are those of amplitude (point, dof) in their unit (point, dof). reference_unknowns (point,
@@ -561,7 +569,7 @@ class PointwiseDisplacement:
         reference_unknowns: cython.double[:, ::1],
         known: cython.uchar[::1],
     ) -> cython.int:
-        """Begin at the displacement of the nearest point of which that is known."""
+        """Starts the predictor of a point from the nearest point with a known displacement."""
         off: cython.Py_ssize_t
         j: cython.Py_ssize_t
         for off in range(1, known.shape[0]):

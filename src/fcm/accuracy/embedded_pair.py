@@ -1,5 +1,4 @@
-r"""How wrong a curve of a balance is, estimated by its embedded pair: the curve and that of a reference with
-more harmonics.
+r"""Error of a harmonic-balance curve, estimated by its embedded pair: curve and reference.
 
 As of an embedded pair of Runge-Kutta formulas the difference of both is the error of the lower,
 
@@ -41,7 +40,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 class Errors(Frozen):
-    """Errors of a path; relative; NaN where the pair cannot tell.
+    """Relative errors of a path, estimated by the embedded pair; NaN where the pair gives no error.
 
     amplitude (point, dof): by how much the reference differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
@@ -82,14 +81,14 @@ class Errors(Frozen):
     motions: KnownMotions | None = field(default=None, repr=False)
 
     def part(self, rows: npt.NDArray[np.intp]) -> Errors:
-        """The errors of some points of the path."""
+        """The errors restricted to some points of the path."""
         names = ("amplitude", "truncation", "is_same_curve", "ends_before", "contact_loads")
         arrays: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
         return replace(self, **arrays, contacts=self.contacts.part(rows))
 
     @property
     def on_same_branch(self) -> FloatArray:
-        """Truncation (point,) where the reference has that branch, too; NaN elsewhere."""
+        """Truncation error (point,) where the reference has the same branch; NaN elsewhere."""
         return np.where(self.is_same_curve, self.truncation, np.nan)
 
 
@@ -166,7 +165,7 @@ def errors_along(
 def _same_error(
     system: System, reported: ReportedPath, contacts: ContactRecord, share: FloatArray, error: float
 ) -> Errors:
-    """Errors that are all the same: 0, where the reference's curve is this one, or NaN."""
+    """Errors of a path that all have one value: 0 where the reference equals the curve, or NaN."""
     path, amplitude = reported.path, reported.quantities.amplitude
     every, exact = np.full_like(amplitude, error), not np.isnan(error)
     contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), error)
@@ -189,7 +188,7 @@ def _same_error(
 
 
 def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> Errors:
-    """Errors of a path of which none is known; quantities is what is reported along it."""
+    """Errors of a path with every entry unknown (NaN); `quantities` is what is reported along the path."""
     contacts, nan = ContactRecord.at(system, path.z), np.nan
     none, unseen = np.full_like(quantities.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
     contact_loads = np.full_like(contacts.contact_loads, nan)
@@ -251,8 +250,9 @@ def with_nearest(
 
 
 def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
-    """Errors of a path with amplitudes (point, dof), where those of peaks are not known by the greatest
-    amplitudes of all pieces; of its own reference the greatest is that of its own pieces.
+    """Errors of a path whose unknown peak errors are filled from the greatest amplitudes of all pieces.
+
+    amplitude is (point, dof). The `height` of the reference is the greatest of the path's own pieces.
 
     Where the reference does not come to the frequency of a peak that is another motion, and each such peak
     has at least the error of the greatest.
@@ -273,17 +273,17 @@ def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[Curve
 
 
 def _flat(contact_loads: FloatArray) -> FloatArray:
-    """The contact loads (point, contact, 4) as columns (point, 4 contact)."""
+    """Contact loads (point, contact, 4) as columns (point, 4 contact)."""
     return contact_loads.reshape(len(contact_loads), -1)
 
 
 def _truncation(error: FloatArray, amplitude: FloatArray) -> FloatArray:
-    """The greatest difference (point,) over the greatest amplitude of errors (point, dof), relative."""
+    """Greatest difference (point,) over the greatest amplitude, from relative errors (point, dof)."""
     return _truncation_of(error * amplitude, amplitude)
 
 
 def _truncation_of(off: FloatArray, amplitude: FloatArray) -> FloatArray:
-    """The same of differences."""
+    """Greatest difference (point,) over the greatest amplitude, from differences (point, dof)."""
     most = amplitude.max(axis=1)
     truncation: FloatArray = off.max(axis=1) / np.where(most > 0.0, most, 1.0)
     return truncation
@@ -297,8 +297,11 @@ def _spectrum(
     size: FloatArray,
     options: PairOptions,
 ) -> tuple[FloatArray, Indices]:
-    """What each harmonic left out would have without feedback (harmonic,) of sizes (dof,), at most, at
-    special points and where one that is left out meets a mode and leads there; and these."""
+    """Shares (harmonic,) of the harmonics left out, and the points where one of them meets a mode.
+
+    The share of a harmonic is its greatest amplitude without feedback relative to size (dof,), at special
+    points. A harmonic that meets a mode and leads there counts as well.
+    """
     further, place = FurtherHarmonics(system), lengths(path)
     special = special[distinct(place[special], options.peak_spacing * (place[-1] - place[0]))]
     met: Indices = further.resonances(path.z, quantities.amplitude)
@@ -315,8 +318,7 @@ def _spectrum(
 def _of_points(
     reference: ReferenceCurve, shift: FloatArray, change: FloatArray, of_peaks: PeakErrors
 ) -> FloatArray:
-    """Errors (point, dof) at the same frequency, of peaks those of their heights, in units of the
-    reference's curve."""
+    """Errors (point, dof) at equal frequency, at peaks of the height, in the reference curve's unit."""
     error = np.where(reference.linear[:, None], 0.0, np.abs(shift))
     # displacements may cancel at a frequency, but not what the reference itself is off by
     moved = reference.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
@@ -335,7 +337,7 @@ def _set_errors_of_peaks(
     followed: list[FollowedStretch],
     met: Indices,
 ) -> tuple[FloatArray, Mask]:
-    """Greatest amplitudes (dof,) of the reference, and whether their errors are known.
+    """Greatest amplitudes (dof,) of the reference, and whether the errors at them are known.
 
     error (point, dof), in units of the reference's curve, is then filled at the greatest amplitudes. Of a
     peak it is the difference in height, at an end of the path that at the same frequency. The difference of a
@@ -370,8 +372,11 @@ def _set_errors_of_peaks(
 def _of_folds(
     reference: ReferenceCurve, folds: Indices, change: FloatArray, followed: list[FollowedStretch]
 ) -> FloatArray:
-    """Errors (fold,) of the frequencies of folds: to the reference's own beside them, or in their order where
-    the reference was followed and has as many; NaN elsewhere."""
+    """Relative errors (fold,) of the frequencies of folds.
+
+    Each is the distance to the reference's fold beside it. Where the reference was followed and has as many
+    folds, they are compared in order; NaN elsewhere.
+    """
     error, parameter = np.full(len(folds), np.nan), reference.path.parameter
     of_reference = parameter * (1.0 + change[:, 0])
     for k, fold in enumerate(folds.tolist()):
@@ -394,8 +399,9 @@ def _of_folds(
 def _with_nearest_folds(
     path: Path, amplitude: FloatArray, errors: Errors, pieces: Sequence[CurvePiece], options: PairOptions
 ) -> FloatArray:
-    """Errors (fold,), where these are unknown the relative distances in frequency to the nearest folds of
-    pieces, of those where the frequency turns back to the same side; NaN where there is none near.
+    """Errors (fold,), with unknown ones replaced by the relative distance in frequency to the nearest fold.
+
+    Only folds of the pieces at which the frequency turns back to the same side count; NaN where none is near.
 
     Near is one whose amplitudes and frequency are both within `PairOptions.end_tolerance`: with the same
     amplitudes at another frequency it is another fold.
@@ -420,6 +426,6 @@ def _with_nearest_folds(
 
 
 def _side(parameter: FloatArray, fold: int) -> float:
-    """How far a fold lies above the points beside it, in the parameter."""
+    """Height of a fold above the mean of its two neighbours, in the parameter; negative for a lower fold."""
     neighbours = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
     return float(parameter[fold] - neighbours)

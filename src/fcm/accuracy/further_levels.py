@@ -1,4 +1,4 @@
-"""Levels of the forces at frequencies that the branches found so far tell of.
+"""Follows the level of the forces at further frequencies that the branches found so far suggest.
 
 The first are where a low harmonic comes to the highest peak, or between that and the nearest resonance. There
 a contact that opens and closes two or three times a period may do so on a closed branch, beside one on which
@@ -26,13 +26,13 @@ from fcm.stability.unstable_ranges import Stretch, stretches_of
 
 
 def with_traced(found: RefinedResponse, traced: Traced, accuracy: float) -> RefinedResponse:
-    """A response with further branches, which come after its own."""
+    """A response with further branches appended after its own."""
     every = with_errors(found.with_traced(traced), accuracy, found.errors)
     return replace(every, further=found.further, begun=found.begun)
 
 
 def with_levels_below_peaks(found: RefinedResponse, accuracy: float) -> RefinedResponse:
-    """A response with the branches that the level leads to where low harmonics come to the highest peaks."""
+    """A response with branches from the level, followed where a low harmonic excites the highest peaks."""
     system, options = found.system, found.system.option(LEVELS)
     looked = list(_level_solutions(system, _excited_frequencies(found, options), options))
     return _with_branches(found, looked, [z for one in looked for z in one.solutions], accuracy)
@@ -41,8 +41,9 @@ def with_levels_below_peaks(found: RefinedResponse, accuracy: float) -> RefinedR
 def with_levels_where_unstable(
     found: RefinedResponse, stable: Sequence[FloatArray], accuracy: float
 ) -> tuple[RefinedResponse, bool]:
-    """A response with the branches that the level leads to in ranges in which nothing is stable, and whether
-    more harmonics have a higher motion there.
+    """A response with the branches that the level leads to in frequency ranges without a stable motion.
+
+    Also returns whether more harmonics have a higher motion there.
 
     stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known. With few
     harmonics the level is followed with more: what these have is led to the others, or is higher than their
@@ -70,7 +71,7 @@ def with_levels_where_unstable(
 def _with_branches(
     found: RefinedResponse, looked: Sequence[LevelSolutions], starts: Sequence[FloatArray], accuracy: float
 ) -> RefinedResponse:
-    """A response with the branches through solutions, and the frequencies at which these were looked for."""
+    """A response with the branches through given solutions, and a record of the frequencies looked at."""
     if not looked:
         return found
     traced = with_further(found.system, found.traced, looked, starts)
@@ -82,7 +83,7 @@ def _with_branches(
 def _level_solutions(
     system: System, stretches: Iterable[Stretch], options: LevelOptions
 ) -> Iterator[LevelSolutions]:
-    """What the level passes in the middle of stretches, the widest first.
+    """Yields the solutions that the level of the forces passes in the middle of stretches, the widest first.
 
     Of a wide stretch both halves are looked at as well: a closed branch may lie beside its middle. The level
     is followed up to where few curves come back from: that takes half as long as to its end.
@@ -107,8 +108,11 @@ def _width(stretch: Stretch) -> float:
 
 
 def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Iterator[Stretch]:
-    """Where low harmonics come to a highest peak, and between that and the nearest resonance, as those of
-    smaller motions are: single frequencies, as stretches of no width."""
+    """Yields frequencies at which a low harmonic meets a highest peak, as stretches of width zero.
+
+    Frequencies halfway between that peak and the nearest resonance are included, since peaks of smaller
+    motions lie there.
+    """
     low, high = found.system.scene.frequency_range
     harmonics = [h for h in found.system.harmonics if 1 < h <= options.strong_harmonics]
     if not harmonics:
@@ -125,7 +129,7 @@ def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Itera
 
 
 def _highest_peaks(found: RefinedResponse) -> Iterator[float]:
-    """The frequencies of the highest peaks of the degrees of freedom."""
+    """Yields the frequency of the highest peak of each degree of freedom."""
     paths, quantities = found.traced.branches.paths, found.quantities
     heights = np.array([one.amplitude.max(axis=0) for one in quantities])
     for d, k in enumerate(heights.argmax(axis=0).tolist()):

@@ -1,4 +1,4 @@
-"""How far the points of a curve of levels can be believed: their errors, and whether they are stable.
+"""Errors and stability of the points of a curve over the level of the forces.
 
 A solution at one level of the forces is one at the level 1 of forces as much greater. So its stability is
 that of its motion, whatever the forces; and what the harmonics left out would do to it is found by balancing
@@ -24,8 +24,11 @@ from fcm.stability.floquet import multipliers_of
 
 
 class LevelPoints(NamedTuple):
-    """Points of a curve of levels: z (point, unknown + 1) and level (point,), amplitudes (point, dof), its
-    contact loads (point, contact, 4), and even (point,) of `evenness`."""
+    """Points of a curve over the force level.
+
+    z (point, unknown + 1) and level (point,), amplitudes (point, dof), its contact loads (point, contact, 4),
+    and even (point,), see `evenness`.
+    """
 
     z: FloatArray
     level: FloatArray
@@ -35,7 +38,8 @@ class LevelPoints(NamedTuple):
 
 
 def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_]) -> FloatArray:
-    """Whether the points z (point, unknown + 1) of a curve of levels are stable, 1 or 0; NaN where unknown.
+    """Stability of the points z (point, unknown + 1) of a curve over the force level: 1, 0, or NaN where
+    unknown.
 
     even : (point,) of `evenness`.
     """
@@ -54,8 +58,7 @@ def evenness(path: Path) -> npt.NDArray[np.bool_]:
 def errors_at_levels(
     system: System, points: LevelPoints, options: PairOptions = PAIR
 ) -> tuple[FloatArray, FloatArray]:
-    """Relative differences of the reference's amplitudes and contact loads from those of points at the same
-    levels.
+    """Relative errors of amplitudes and contact loads against the reference at the same force levels.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
@@ -85,7 +88,7 @@ def errors_at_levels(
 def _balanced(
     system: System, finer: System, z: FloatArray, level: FloatArray, even: npt.NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
-    """Amplitudes (point, dof) with the harmonics of another system, and contact loads (point, contact, 4).
+    """Amplitudes (point, dof) and contact loads (point, contact, 4) balanced with the harmonics of `finer`.
 
     NaN where Newton's method finds none that is as the point is, with an even or odd number of real
     multipliers above 1.

@@ -1,4 +1,4 @@
-"""What the embedded pair is calculated with."""
+"""Options of the embedded pair: a curve and its reference with more harmonics, which gives the error."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from fcm.frozen import Frozen
 
 
 class CurveDistanceOptions(Frozen):
-    """How differences of two curves are interpolated between their points.
+    """Options on how differences of two curves are interpolated between their points.
 
     Attributes
     ----------
     coincident : float
-        Part of the length of a curve: points nearer to one another coincide.
+        Distance of two points, relative to the length of the curve, below which they coincide.
     max_halvings : int
-        Of a piece, to where its parameter is a value.
+        Number of bisections by which the place of a value of the parameter is found between two points.
     parts : int
-        Of the way from a point to the next, at which a curve may be higher than its top.
+        Number of parts of the way from a point to the next, at whose ends a curve may be higher than its top.
     """
 
     coincident: float = 1e-4
@@ -38,107 +38,121 @@ CURVE_DISTANCE = CurveDistanceOptions()
 
 
 class PairOptions(Frozen):
-    """How the reference of a curve is chosen, and how closely it is looked at.
+    """Options on how the reference of a curve is chosen, and how closely it is looked at.
 
     Attributes
     ----------
     harmonics_factor, min_harmonic, max_added : int
-        The reference has the harmonics up to so many times the number of those of the curve, and up to
-        the least, but no more than the most beyond that number.
+        Number of harmonics of the reference relative to that of the curve; highest harmonic of the reference,
+        at least; and most harmonics that it has more than the curve.
     max_named : int
-        So many more that the spectrum of the exact forces names,
+        Most further harmonics of the reference that the spectrum of the exact forces names.
     min_share : float
-        each with at least this part of what all that are left out would do.
+        Effect of a harmonic, relative to that of all harmonics left out, above which it is named.
     leading_share, min_resonant_share : float
-        Part of the greatest share at a point, and of an amplitude, from which on a harmonic that meets a mode
-        there is named.
+        Effect of a harmonic that meets a mode at a point, relative to the greatest effect there, and relative
+        to an amplitude: above both it is named.
     max_unknowns, min_added : int
-        No more unknowns than this, but so many harmonics more than the curve in any case.
+        Most unknowns of the reference; and number of harmonics that it may have more than the curve in any
+        case.
     point_interval : int
-        Points of the curve from one that is displaced to the next, before it is known how they change.
+        Number of points of the curve from one whose displacement to the reference is found at first to the
+        next; between them more are found where they are needed.
     interpolation_tolerance : float
-        Part of a displacement, by which it may be off where it is interpolated.
+        Error of an interpolated displacement, relative to it, from which on more of them are found.
     negligible_displacement : float
-        A displacement, relative, that is too small to be looked at more closely.
+        Relative displacement below which it is not resolved any further.
     max_steepness : float
-        Relative change of an amplitude over that of the frequency, up to which both count.
+        Slope of an amplitude by the frequency, both relative, that stands for all steeper ones.
     max_seconds : float
-        Of work, as of `fcm.harmonic_balance.cost_model`, that following the reference may take where no
-        point of it lies normal to the curve; as much again for points that are not found;
+        [s] Most work (see `fcm.harmonic_balance.cost_model`) of following the reference where no point of it
+        lies normal to the curve; as much again for points that are not found.
     work_fraction, min_seconds : float
-        but no more than this part of the work that the response itself took, or so many seconds;
+        Most work of following the reference, relative to that of the response itself; and [s] work that it
+        may take in any case.
     long_fraction : float
-        and, where that took long, this part of it.
+        Work that replaces `max_seconds`, relative to that of the response, where that is more.
     max_seconds_elsewhere, work_fraction_elsewhere, min_seconds_elsewhere : float
-        The same of what the reference has elsewhere.
+        Limits of the work for the parts of the reference that lie elsewhere: most seconds, share of the
+        response's work, and seconds allowed in any case.
     piece_fraction : float
-        Part of that, that following the reference one way may take before others are followed,
+        Work of following the reference one way before other ways are followed, relative to all work
+        elsewhere.
     level_fraction : float
-        and part of what is left of it, that the level of the forces may take at one frequency, times
-        the part of the points of which nothing is known yet.
+        Work of following the level of the forces at one frequency, relative to what is left elsewhere, times
+        the share of points of which nothing is known yet.
     interval_factor : int
-        `point_interval` over the next one, at which motions are tried that may lead to the reference.
+        Ratio of `point_interval` to the next smaller interval, at which motions are tried as starts of the
+        reference.
     probes, min_found : int, float
-        About so many points along a curve are displaced first. Where less than this part of them is found,
-        the reference is another curve.
+        Number of points along a curve, about, whose displacements are found first; and share of them that has
+        to be found, or else the reference is another curve.
     fewer_factors : tuple of int
-        `harmonics_factor` where following it takes longer than it may: about as many evaluations as the curve
-        did, for so many times as many harmonics. The first with which it does not is taken.
+        Numbers that replace `harmonics_factor`, in turn, where following the reference takes longer than it
+        may: until about as many evaluations as the curve took, times the ratio of the numbers of harmonics,
+        are affordable.
     following, following_of_many, coarse_following : FollowOptions
-        How the reference is followed; that of many contacts, most of whose corners are slight; and what it
-        has elsewhere, of which only the passings of frequencies matter.
+        How the reference is followed: with few contacts; with many, most of whose corners are slight; and
+        elsewhere, where only the points at given frequencies matter.
     many_contacts : int
-        Contacts that are many.
+        Number of contacts from which on they are many.
     max_point_seconds : float
-        The same that all points may take that are moved to the reference, those that are found too.
+        [s] Most work of all points whose displacements are found, those that are found included.
     span_margin : float
-        Times the width of a stretch, how far beyond it the reference is followed.
+        Distance beyond a stretch up to which the reference is followed, relative to the width of the stretch.
     end_tries : int
-        Points at an end of a stretch, from which the reference is sought.
+        Number of points at an end of a stretch from which the reference is looked for.
     end_tolerance : float
-        Relative difference of amplitudes up to which the reference has come to the other end of a stretch; of
-        amplitudes and frequency, up to which a fold elsewhere is that of the curve.
+        Relative difference of amplitudes below which the reference has reached the other end of a stretch;
+        and of amplitudes and frequency, below which a fold elsewhere is that of the curve.
     peak_spacing : float
-        Part of the length of a curve: of the greatest amplitudes of degrees of freedom that lie so closely
-        together one shows for all what the harmonics do that are left out, and of tops and folds which.
+        Distance of two tops or folds, relative to the length of the curve, within which one stands for the
+        others.
     reference_error : float
-        Part of a displacement, by which the reference itself is off: no estimated error at a point is less.
+        Error of the reference itself, relative to a displacement: no estimated error at a point is less.
     second_factor : int
-        Times the reference's harmonics those of its own reference are, which is looked for at peaks and where
-        the reference is not to be believed,
+        Number of harmonics of the reference's own reference, relative to that of the reference. It is looked
+        for at peaks, and where the reference is not reliable.
     second_named : int
-        with so many more that the spectrum names,
+        Most further harmonics of it that the spectrum names.
     max_second_unknowns : int
-        and with no more unknowns than this,
+        Most unknowns of it; with more there is none.
     feedback_factor : float
-        Times what harmonics do without feedback, what they do: where that of those that the reference lacks
-        is more than the error that it gives, what it is off by itself is looked for,
+        Effect of harmonics, relative to that without feedback. Where that of the harmonics which the
+        reference lacks exceeds the estimated error, the error of the reference itself is looked for.
     max_spectra, max_uncertain : int
-        at so many points of a curve at most, of so many at which the harmonics that it lacks are known.
+        Most points of a curve at which the harmonics that the reference lacks are computed, and most at which
+        its own error is.
     peak_offsets : tuple of int
-        Points to either side of a top where it is looked for, too, if it is not at the top.
+        Numbers of points to either side of a top at which the reference is looked for, in turn, if it is not
+        found at the top.
     rival_fraction : float
-        Part of the greatest amplitude: what is this high may become the greatest.
+        Height relative to the greatest amplitude, above which a top may become the greatest.
     residual_factor : float
-        Times the harmonic that meets the highest mode, up to which is looked at what the reference lacks,
+        Highest harmonic at which it is looked what the reference lacks, relative to the one that meets the
+        highest mode.
     max_residual_harmonic, max_products : int
-        the last that is looked at, and the multiplications of modes that this may take.
+        Highest harmonic in any case, and most multiplications of modes for all of them.
     samples_per_period : int
-        Of the period of the highest harmonic.
+        Number of samples for each period of the highest harmonic.
     newton_tolerance : float
-        Part of a displacement: when a step of Newton's method was less than this, what is left is far less.
+        Length of a Newton step, relative to the displacement, below which it is the last: the error is then
+        far less.
     max_kept : int
-        Balances that are kept for the next curve.
+        Most balances that are kept for the next curve.
     batch : int
-        Places that are compared with all points of a curve.
+        Number of places that are compared with all points of a curve at a time.
     least_peak : float
-        Part of the greatest amplitude of a degree of freedom, from which on a local maximum is a peak.
+        Height of a local maximum, relative to the greatest amplitude of its degree of freedom, from which on
+        it is a peak.
     peak_neighbours : int
-        Points to either side of the highest that may be higher where they are only interpolated.
+        Number of points to either side of the highest that are found if their interpolated heights are above
+        it.
     rounding : float
-        Part of the greatest of a force, slip or energy of a contact: differences of this are nothing.
+        Difference of a force, slip or energy of a contact, relative to its greatest, up to which it is
+        ignored.
     distance : CurveDistanceOptions
-        Between points of a curve.
+        How differences are interpolated between points of a curve.
     """
 
     harmonics_factor: int = 4
@@ -214,7 +228,7 @@ class PairOptions(Frozen):
 
     @cached_property
     def second_pair(self) -> PairOptions:
-        """Of the reference's own reference."""
+        """Options for choosing the reference's own reference, with still more harmonics."""
         return replace(
             self,
             harmonics_factor=self.second_factor,
@@ -235,30 +249,31 @@ AT_POINTS = PairOptions(
 
 
 class RefinementOptions(Frozen):
-    """How harmonics are added to a curve until its pair agrees.
+    """Options on how harmonics are added to a curve until its pair agrees.
 
     Attributes
     ----------
     max_rounds : int
-        Of tracing, estimating, choosing.
+        Most rounds of tracing, estimating the error and choosing harmonics.
     safety : float
-        Part of the accuracy, to which what is left out is chosen to come.
+        Effect of the harmonics left out that is aimed at, relative to the accuracy.
     feedback_factor : float
-        Times what harmonics do without feedback, what they do, as long as the pair does not tell.
+        Effect of harmonics, relative to that without feedback, as long as the pair does not tell it.
     max_first_added, max_growth : int
-        Harmonics that are added at most to one, and times as many as there are to more.
+        Most harmonics that are added at once; or, where more, the most relative to the number that there is.
     rival_fraction : float
-        Part of the greatest amplitude, from which on a top of a branch is looked at.
+        Height of a branch's top, relative to the greatest amplitude, above which it is looked at.
     min_amplitude : float
-        Part of the greatest amplitude: of degrees of freedom that move less no accuracy is asked.
+        Amplitude of a degree of freedom, relative to the greatest, up to which no accuracy is asked of it.
     peak_offsets : tuple of int
-        Points to either side of a top, where the reference may be found if it is not at the top.
+        Numbers of points to either side of a top at which the reference is looked for, in turn, if it is not
+        found at the top.
     max_folds : int
-        Folds of a branch that are looked at, at most.
+        Most folds of a branch that are looked at.
     complete_harmonics : int
-        Harmonic up to which no single one is left out: stability between folds may hang on it.
+        Harmonic up to which no single one is left out: stability between folds may depend on it.
     max_seconds_without_progress : float
-        [s] that rounds may take of which nothing shows that they bring the accuracy nearer.
+        [s] Most work of rounds of which nothing shows that they bring the accuracy nearer.
     """
 
     max_rounds: int = 8
@@ -278,18 +293,21 @@ REFINEMENT = RefinementOptions()
 
 
 class ValidityOptions(Frozen):
-    """Up to which errors the stability of solutions is known.
+    """Limits of the error up to which the stability of solutions is known.
 
     Attributes
     ----------
     max_error : float
-        Estimated relative error of the amplitudes, up to which a solution is called stable.
+        Estimated relative error of the amplitudes above which a solution is not called stable.
     max_fold_error : float
-        Part of its frequency, by which a fold may be moved where nothing is said of the accuracy.
+        Width of a stretch of stable solutions without an error beside a fold, relative to their frequency,
+        above which their stability is unknown.
     max_unknown_points : int
-        Points in a row without a reference, after which a branch is not one of more harmonics.
+        Number of points in a row without a reference, above which the branch does not belong to more
+        harmonics.
     max_change : float
-        Part of the greatest displacement: a change by more is not believed, as another branch may be there.
+        Change of a solution, relative to its greatest displacement, above which it is taken for one on
+        another branch.
     """
 
     max_error: float = 0.05
@@ -302,26 +320,28 @@ VALIDITY = ValidityOptions()
 
 
 class StabilityLimitOptions(Frozen):
-    """How the limits of stability of more harmonics are found beside those of fewer.
+    """Options on how the limits of stability of more harmonics are found beside those of fewer.
 
     Attributes
     ----------
     max_distance : float
-        Points to either side up to which the crossing of more harmonics is sought,
+        Number of points to either side of a crossing up to which that of more harmonics is looked for.
     first_distance : float
-        from these on.
+        Distance at which it is looked for first, in points; it is then doubled.
     tolerance : float
-        Part of the way between two points, to which it is found: an error is known to a few parts of itself,
+        Error of its place, relative to the way between two points, at which the search ends.
     relative_tolerance : float
-        or to this part of itself, and of what it may be,
+        Change of its frequency in a step, relative to its distance from the crossing of fewer harmonics, at
+        which the search ends.
     max_evaluations : int
-        with so many looks at most.
+        Most solutions that are computed for it.
     min_growth : float
-        Growth over a period, logarithmic, that is as good as any that is less.
+        Logarithm of the growth over a period that stands for any smaller one.
     crossing_distance : float
-        Part of the way to any other crossing, within which that of more harmonics is that of fewer.
+        Distance of the crossing of more harmonics from that of fewer, relative to the way to any other, below
+        which they belong together.
     sign_change : SignChangeOptions
-        How it is bracketed.
+        How the crossing is bracketed.
     """
 
     max_distance: float = 32.0

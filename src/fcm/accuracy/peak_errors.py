@@ -1,4 +1,4 @@
-r"""Peaks of a curve beside those of its reference: by how much they differ in height and in frequency.
+r"""Errors of the peaks of a curve against those of its reference, in height and in frequency.
 
 A peak of a degree of freedom is a local maximum of its amplitude a(s) along the curve. The reference's is
 that of a(s) + e(s), e what points are displaced by, between the same two minima. Both are the tops of
@@ -20,9 +20,10 @@ from fcm.model.scene import FloatArray
 
 
 class PeakErrors(Frozen):
-    """Of the peaks (peak,) along a path: their points and degrees of freedom; by how much the heights of the
-    reference's differ, as amplitudes, and the frequencies, relative. Those that the reference has not beside
-    them are not among them.
+    """Errors of the peaks (peak,) along a path, each with its point and degree of freedom.
+
+    `height` is the difference as an amplitude, `frequency` the relative difference. Peaks without a peak of
+    the reference beside them are left out.
     """
 
     point: Indices
@@ -31,7 +32,7 @@ class PeakErrors(Frozen):
     frequency: FloatArray
 
     def frequency_at(self, tops: Indices) -> FloatArray:
-        """Errors (dof,) of the frequencies of the peaks at some points; NaN where there is none."""
+        """Errors (dof,) of the frequencies of the peaks at given points; NaN where a point has no peak."""
         found = np.full(len(tops), np.nan)
         at_top = self.point == tops[self.dof]
         found[self.dof[at_top]] = self.frequency[at_top]
@@ -39,15 +40,14 @@ class PeakErrors(Frozen):
 
 
 class _Tops(NamedTuple):
-    """Tops (peak,) of parabolas through three points: how high, and at which frequency."""
+    """Heights and frequencies (peak,) of the tops of parabolas through three points each."""
 
     height: FloatArray
     frequency: FloatArray
 
 
 def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[FollowedStretch]) -> PeakErrors:
-    """The errors of all peaks of a curve whose displacements (point, 1 + dof) are known, or that the
-    reference was followed along."""
+    """Errors of all peaks of a curve where displacements (point, 1 + dof) or the reference are known."""
     curve, place = reference.amplitude, reference.place
     parameter = reference.path.parameter
     of_reference = curve + reference.unit * change[:, 1:]
@@ -71,7 +71,7 @@ def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[Fo
 
 
 def _between_minima(amplitude: FloatArray, least: float) -> list[tuple[int, int, int]]:
-    """Local maxima of at least a part of the greatest, each with the minima before and behind it.
+    """Local maxima above a fraction of the greatest amplitude, each with the minimum before and after it.
 
     >>> _between_minima(np.array([1.0, 3.0, 2.0, 4.0, 0.0]), 0.1)
     [(1, 0, 2), (3, 2, 4)]
@@ -82,7 +82,7 @@ def _between_minima(amplitude: FloatArray, least: float) -> list[tuple[int, int,
 
 
 def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None:
-    """The highest of amplitudes between two places, if it lies inside and all up to it are known."""
+    """Index of the highest amplitude between two places; None at an end, or beside unknown amplitudes."""
     inside = moved[low : high + 1]
     if np.isnan(moved[i]) or np.isnan(inside).all():
         return None
@@ -94,8 +94,11 @@ def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None
 def _followed_top(
     reference: ReferenceCurve, followed: list[FollowedStretch], d: int, i: int
 ) -> tuple[float, float] | None:
-    """Along a stretch that the reference was followed along its nearest peak: within
-    `PairOptions.end_tolerance` in both height and frequency, as with more it is another."""
+    """Height and frequency of the nearest peak of the followed reference, beside the peak at point i; or
+    None.
+
+    It must be within `PairOptions.end_tolerance` in both; one farther away is another peak.
+    """
     here = np.array((reference.amplitude[i, d], reference.path.parameter[i]))
     found = [
         top
@@ -110,7 +113,7 @@ def _followed_top(
 
 
 def _tops_of(piece: ReferencePiece, d: int) -> list[tuple[float, float]]:
-    """Heights and frequencies of the peaks of a degree of freedom along a piece."""
+    """Heights and frequencies of the peaks of a degree of freedom along a piece of the reference."""
     amplitude = piece.quantities.amplitude
     k = np.array([top for top, _, _ in _between_minima(amplitude[:, d], 0.0)], dtype=np.intp)
     tops = _tops(k, np.full_like(k, d), piece.place, amplitude, piece.path.parameter)
@@ -118,8 +121,7 @@ def _tops_of(piece: ReferencePiece, d: int) -> list[tuple[float, float]]:
 
 
 def _tops(k: Indices, d: Indices, place: FloatArray, amplitude: FloatArray, frequency: FloatArray) -> _Tops:
-    """Tops of parabolas through the amplitudes (point, dof) of d (peak,) at points k (peak,) and beside
-    them."""
+    """Tops of parabolas through amplitudes (point, dof) of d (peak,) at and beside points k (peak,)."""
     before, behind = place[k] - place[k - 1], place[k + 1] - place[k]
     apart = (before > 0.0) & (behind > 0.0)
     before, behind = np.where(apart, before, 1.0), np.where(apart, behind, 1.0)
@@ -134,7 +136,7 @@ def _tops(k: Indices, d: Indices, place: FloatArray, amplitude: FloatArray, freq
 def _parabola(
     before: FloatArray, behind: FloatArray, one: FloatArray, middle: FloatArray, other: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Slope and half the second derivative in the middle of parabolas through three values each."""
+    """Slope and half the second derivative at the middle of parabolas through three values each."""
     first, second = (middle - one) / before, (other - middle) / behind
     slope: FloatArray = (first * behind + second * before) / (before + behind)
     bend: FloatArray = (second - first) / (before + behind)

@@ -1,4 +1,4 @@
-"""The greatest amplitudes of the reference of a curve, and where they are unknown."""
+"""Greatest amplitudes of the reference of a curve, unknown where it could not be followed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def heights(
     tops: Indices,
     resonant: Indices,
 ) -> FloatArray:
-    """Greatest amplitudes (dof,) of the reference of a curve that is highest at the tops (dof,).
+    """Greatest amplitudes (dof,) of the reference of a curve whose own highest points are tops (dof,).
 
     change (point, dof): of the amplitudes along the curve, in their unit. resonant: points where a harmonic
     that only the reference has meets a mode: between these it may have a peak, and is followed where they are
@@ -49,8 +49,9 @@ def heights(
 
 
 def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: Indices) -> FloatArray:
-    """Rise (dof,) of a curve with displaced amplitudes (point, dof) between its highest points and the next;
-    places: the indices of the highest.
+    """Rise (dof,) of a displaced curve between its highest points and their neighbours.
+
+    moved (point, dof): displacements of the amplitudes. places: indices of the highest points.
 
     Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
     is told of what lies between a point and a corner.
@@ -68,9 +69,11 @@ def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: In
 
 
 def _highest(reference: ReferenceCurve, change: FloatArray) -> tuple[FloatArray, Indices]:
-    """Changes (point, dof) and where (dof,) with them the reference is highest of the points where it is
-    found: also at those near the highest that are expected to be higher, as an interpolated one may be, by
-    more than nothing."""
+    """Changes (point, dof) and indices (dof,) of the highest points of the reference.
+
+    Neighbours whose interpolated height is clearly greater are computed as well, until the highest is a
+    computed one.
+    """
     change, count, near = (
         change.copy(),
         len(change),

@@ -1,4 +1,4 @@
-"""Motions of the reference at frequencies to which no branch of it is known to come.
+"""Motions of the reference at frequencies that no known branch of it reaches.
 
 Where the reference is another curve, few of its points lie normal to the path, and it is followed here alone,
 with as many harmonics as the work allows.
@@ -43,8 +43,9 @@ def further_reference_pieces(
     first: int,
     options: PairOptions,
 ) -> list[list[CurvePiece]]:
-    """Pieces of the reference of each path, of which at least one passes each frequency that no piece is
-    known to pass, as far as the work allows.
+    """Further pieces of each path's reference, so that at least one piece passes each frequency.
+
+    The search ends when every frequency is passed, or the work allowed is spent.
 
     They are followed from points of the paths from the first on whose errors are unknown, those of the
     smallest motions before the others: there the reference has fewest. Where no motion of such a path leads
@@ -62,7 +63,7 @@ def further_reference_pieces(
 def affordable_reference(
     system: System, path: Path, share: FloatArray, options: PairOptions
 ) -> tuple[int, ...]:
-    """The reference's harmonics where it is another curve; fewer where following it takes longer than it may.
+    """Harmonics of the reference on other branches; fewer where following it would exceed its budget.
 
     That is about as many evaluations as the path took, for so many times as many harmonics. share as of
     `reference_harmonics`.
@@ -80,8 +81,10 @@ def affordable_reference(
 
 @dataclass(eq=False)
 class _Front:
-    """Where following the reference of a path begins or was left: a point, the direction there, and how many
-    points its last piece told of in a second of work."""
+    """A point from which the reference of a path is followed on, with the direction there.
+
+    `gain` is the number of points that its last piece reached first, per second of work.
+    """
 
     path: int
     z: FloatArray
@@ -91,7 +94,7 @@ class _Front:
 
 
 class _Search:
-    """Pieces of references found for each path, within a budget, until every frequency is passed."""
+    """Search for pieces of references of each path, within a budget, until every frequency is passed."""
 
     def __init__(
         self,
@@ -118,17 +121,17 @@ class _Search:
 
     @property
     def is_open(self) -> bool:
-        """Whether there is something to tell, and work that it may take."""
+        """Whether points without an error and budget are left."""
         return self.budget.seconds > 0.0 and self.unknown_fraction > 0.0
 
     @property
     def unknown_fraction(self) -> float:
-        """Part of the points of the paths from the first on of which nothing is known yet."""
+        """Fraction of the points, of the paths from the first on, that no piece has reached."""
         size = np.concatenate([one.size for one in self.unknown[self.first :]])
         return float(np.isfinite(size).mean()) if size.size else 0.0
 
     def extends(self, interval: int) -> bool:
-        """Whether points at least so far apart lead to any motion of a reference, and on from there."""
+        """Whether starting from points `interval` apart has found any new piece of a reference."""
         before = len(self.known)
         self.from_motions(interval)
         if interval == self.options.point_interval:
@@ -136,7 +139,7 @@ class _Search:
         return len(self.known) > before
 
     def from_motions(self, interval: int) -> None:
-        """First a piece from each, then on from where most is told."""
+        """Follows the reference from motions `interval` points apart, then on from the most useful fronts."""
         left = list[_Front]()
         for k, i in self._places(interval):
             if self.unknown[k].sought[i]:  # it was tried before
@@ -147,7 +150,10 @@ class _Search:
         self._follow(left)
 
     def from_levels(self, interval: int) -> None:
-        """The same by the level of the forces, until that takes more than it may."""
+        """Follows the reference from motions that the force level passes at points `interval` apart.
+
+        It stops when finding a motion takes more than the budget allows.
+        """
         for k, i in self._places(interval):
             fronts = self._fronts(k, i, by_level=True)
             self._follow(fronts)
@@ -155,7 +161,7 @@ class _Search:
                 break
 
     def _places(self, interval: int) -> Iterator[tuple[int, int]]:
-        """Paths and points on them, of the smallest motions of which nothing is known yet."""
+        """Yields (path, point) of the smallest motions that no piece has reached, `interval` points apart."""
         for one in self.unknown:
             one.tried[:] = False
         while self.budget.seconds > 0.0:
@@ -167,7 +173,7 @@ class _Search:
             yield k, i
 
     def _fronts(self, k: int, i: int, by_level: bool) -> list[_Front]:
-        """Both ways from a motion at a point of a path, if there is one."""
+        """Two fronts, forward and backward, at the reference's motion at a point; none if none is found."""
         stretches, most = self._stretches(k), self.each
         if by_level:
             most = self.budget.seconds * self.options.level_fraction * self.unknown_fraction
@@ -179,14 +185,14 @@ class _Search:
         return [_Front(k, z, None, forward) for forward in (True, False)]
 
     def _follow(self, fronts: list[_Front]) -> None:
-        """Follow the reference on from fronts, from the one that told most."""
+        """Follows the reference on from fronts, always from the one with the greatest gain."""
         while fronts and self.is_open:
             best = max(fronts, key=lambda one: one.gain)
             fronts.remove(best)
             fronts += self._followed(best)
 
     def _followed(self, front: _Front) -> list[_Front]:
-        """The front where the piece from another is left, if that told of any point."""
+        """Follows a piece from a front; returns the front at its end if it was useful and interrupted."""
         stretches, count = self._stretches(front.path), 0
         given = min(self.each, self.budget.seconds)
         if given <= 0.0 or any(front.z is begin for begin in self.closed):
@@ -209,7 +215,7 @@ class _Search:
         return [_Front(front.path, path.z[-1], path.direction[-1], True, count / spent)]
 
     def _stretches(self, k: int) -> StretchFollower:
-        """Stretches of the reference of a path, sought from motions that lie far from it."""
+        """The `StretchFollower` of the reference of path k, made for motions that lie far from the path."""
         if k not in self.followers:
             more = self.errors[k].reference
             finer, options = self.system.with_harmonics(more), self.options
@@ -229,8 +235,11 @@ class _Search:
 
 
 class _UnknownError:
-    """The points of a path whose errors are unknown, with the sizes of their motions; whether they were tried
-    at an interval, and whether the reference was sought from their motions at any."""
+    """The points of a path whose errors are unknown, with the sizes of their motions.
+
+    `tried` (point,): used at the present interval. `sought` (point,): the reference was sought from them at
+    any.
+    """
 
     def __init__(
         self, path: Path, quantities: ReportedQuantities, errors: Errors, harmonics: tuple[int, ...]
@@ -251,7 +260,7 @@ class _UnknownError:
 
 
 def _newly_known(piece: CurvePiece, unknown: Sequence[_UnknownError]) -> int:
-    """Number of points that a piece is the first to tell of."""
+    """Number of points whose frequency a piece is the first to pass."""
     count = 0
     for one in unknown:
         passed = piece.passes(one.path.parameter)
@@ -261,7 +270,7 @@ def _newly_known(piece: CurvePiece, unknown: Sequence[_UnknownError]) -> int:
 
 
 def _gap(known: Sequence[CurvePiece], omega: float, span: tuple[float, float]) -> tuple[float, float]:
-    """Between the frequencies next to one, below and above, that pieces are known to pass."""
+    """The frequency range around omega that no known piece passes, within a given span."""
     low = max((top for piece in known if (top := float(piece.frequency.max())) < omega), default=span[0])
     high = min((end for piece in known if (end := float(piece.frequency.min())) > omega), default=span[1])
     return max(low, span[0]), min(high, span[1])

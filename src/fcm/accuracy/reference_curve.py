@@ -1,5 +1,4 @@
-"""The reference of a curve: point by point normal to it, interpolated in between, followed where
-Newton's method diverges."""
+"""The reference of a curve: found point by point, interpolated, or followed where Newton diverges."""
 
 from __future__ import annotations
 
@@ -46,8 +45,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 class FollowedStretch(Frozen):
-    """A stretch of a curve, points first to before end, beside which the reference was followed: its
-    pieces."""
+    """A stretch of a curve (points first to before end) with the reference's pieces followed beside it."""
 
     first: int
     end: int
@@ -55,7 +53,7 @@ class FollowedStretch(Frozen):
 
 
 class ComparedQuantities(Frozen):
-    """What is compared of a curve with its reference: amplitudes, and then contact loads.
+    """The quantities in which a curve is compared with its reference: amplitudes, then contact loads.
 
     value, growth along the curve, unit (point, column); change (point, 1 + column) to the reference, that of
     the frequency first, the others in their unit.
@@ -68,7 +66,7 @@ class ComparedQuantities(Frozen):
 
 
 class SecondReference:
-    """The reference of a reference, looked for at single points of that."""
+    """The reference of a reference, computed at single points of it."""
 
     def __init__(self, finer: System, more: tuple[int, ...]) -> None:
         self.finer, self.more = finer, more
@@ -77,8 +75,11 @@ class SecondReference:
         self.amplitude = np.empty(0)
 
     def found(self, z: FloatArray, direction: FloatArray | None) -> bool:
-        """Whether it is found from a point of the reference: at its frequency, or normal to a direction;
-        amplitude (dof,) is then there."""
+        """Whether Newton's method finds the second reference from a point of the reference.
+
+        It is sought at the point's frequency, or normal to a direction if one is given; `amplitude` (dof,) is
+        then set.
+        """
         if direction is None:
             there = self.prolongation.find_at_frequency(self.system.extended(z, self.finer.harmonics), True)
         else:
@@ -87,13 +88,13 @@ class SecondReference:
         return bool(there)
 
     def seconds(self) -> float:
-        """About what looking for it has taken."""
+        """Estimated seconds that computing the second reference has taken."""
         count = self.prolongation.newton.evaluations - self.before
         return float(count * seconds_of(self.finer, 1, len(self.more)))
 
 
 class ReferenceCurve:
-    """Relative displacements from the points of a path to its reference: of the frequency, then of
+    """Relative displacements from the points of a path to its reference: of the frequency, then of the
     amplitudes.
 
     unit (point, dof): what the displacements of amplitudes are relative to. It is the amplitude or, of a
@@ -137,10 +138,12 @@ class ReferenceCurve:
         self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
-        """Displacements (point, 1 + dof), found at some points and interpolated elsewhere.
+        """Displacements (point, 1 + dof) to the reference, computed at some points and interpolated
+        elsewhere.
 
         They are found at special points, at every so many, next to linear parts, and between two of these
-        where the middle one is not as interpolated."""
+        where the middle one is not as interpolated.
+        """
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
         even = np.arange(0, count, self.options.point_interval)
@@ -162,14 +165,14 @@ class ReferenceCurve:
         return self.interpolated(np.arange(count))
 
     def is_same_curve(self) -> bool:
-        """Whether the reference is found from most of some points evenly along the curve."""
+        """Whether the reference is found from most of a few points spread evenly along the curve."""
         even = np.arange(0, len(self.known), self.options.point_interval)
         some = even[:: max(len(even) // self.options.probes, 1)].copy()
         self.find(some)
         return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.min_found)
 
     def distinct_points(self, points: Indices) -> Indices:
-        """The points, in order, that are not next to another of them.
+        """The given points, in order, without those close to one already taken.
 
         Of many degrees of freedom each has its own peak; what the reference has at one is interpolated to the
         next.
@@ -177,20 +180,19 @@ class ReferenceCurve:
         return points[distinct(self.place[points], self._near)]
 
     def release(self) -> None:
-        """Give back what the next curve can use."""
+        """Returns the prolongations to the cache, for the next curve."""
         keep_for_next(self.finding.prolongation, self.system, self.more)
         if self.second is not None:
             keep_for_next(self.second.prolongation, self.second.finer, self.second.more)
 
     def seconds(self) -> float:
-        """About what all that was looked for has taken."""
+        """Estimated seconds that all searches of this reference have taken."""
         point_by_point = self.finding.prolongation.newton.evaluations - self.before
         seconds = self.each * (point_by_point + self.stretches.evaluations)
         return float(seconds + (self.second.seconds() if self.second else 0.0))
 
     def find(self, points: Indices) -> None:
-        """The displacements of some points, which are then known; of those beyond what the work allows that
-        there is none."""
+        """Computes the displacements of given points; beyond the work allowed they are set to NaN."""
         most = self.options.max_point_seconds / self.each
         if most < np.inf:
             for k, i in enumerate(points.tolist()):
@@ -212,18 +214,22 @@ class ReferenceCurve:
 
     @cached_property
     def _further(self) -> FurtherHarmonics:
-        """What it lacks."""
+        """The harmonics that the reference itself leaves out."""
         return FurtherHarmonics(self.stretches.finer)
 
     @property
     def is_found(self) -> Mask:
-        """Points (point,) that are moved to the reference, where contacts slip or separate."""
+        """Mask (point,) of the points displaced to the reference at which contacts slip or separate."""
         found: Mask = self.known & ~self.linear & np.isfinite(self.change).all(axis=1)
         return found
 
     def left_out(self, points: Indices) -> FloatArray:
-        """What the harmonics that it lacks would do without feedback, all together, at points that are
-        found (place,): relative, of the degree of freedom to which each matters most."""
+        """Sum (place,) of the relative changes that the harmonics beyond the reference would make without
+        feedback.
+
+        The points must have been found. Each harmonic counts by the degree of freedom to which it matters
+        most.
+        """
         amplitude = self.amplitude[points] + self.unit[points] * self.change[points, 1:]
         shares = self._further.shares(self.reference_unknowns[points], amplitude)
         total: FloatArray = shares.sum(axis=1)
@@ -231,13 +237,15 @@ class ReferenceCurve:
 
     @property
     def may_have_second(self) -> bool:
-        """Whether a reference of its own is not too expensive already with no more harmonics than it has."""
+        """Whether a second reference is affordable, judged by the reference's number of harmonics."""
         finer = self.stretches.finer
         return 2 * finer.layout.ports * len(finer.harmonics) <= self.options.max_second_unknowns
 
     def own_error(self, i: int) -> FloatArray | None:
-        """By how much (dof,) a reference of its own differs from it, in the unit of the curve, at the
-        frequency to which a point is displaced; None where either has no motion there."""
+        """Differences (dof,) between the second reference and the reference, in the unit of the curve.
+
+        Compared at the frequency to which point i is displaced; None where either has no motion there.
+        """
         self.find(np.array([i]))
         z, amplitude = self.reference_unknowns[i], self.amplitude[i] + self.unit[i] * self.change[i, 1:]
         if np.isnan(amplitude).any():
@@ -249,8 +257,8 @@ class ReferenceCurve:
         return off
 
     def errors_at_peaks(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
-        """Errors (top, dof) of the reference itself at tops, in their order, and of what is left out even
-        then.
+        """Errors (top, dof) of the reference itself at tops, and what the harmonics beyond both would still
+        change.
 
         The first are differences from the amplitudes of a reference with still more harmonics; 0 where there
         is none. The second are by how much the harmonics that this lacks, too, would change them. Where a top
@@ -265,7 +273,7 @@ class ReferenceCurve:
         return each[0, which], each[1, which]
 
     def _error_at_peak(self, top: int, inside: bool) -> FloatArray:
-        """The same at one top (2, dof)."""
+        """Error of the reference at one top, and what is left out even then (2, dof)."""
         nothing, known = np.zeros(self.amplitude.shape[1]), None
         if self.linear[top]:
             return np.stack((nothing, nothing))
@@ -288,25 +296,27 @@ class ReferenceCurve:
         return np.stack((nothing, left))
 
     def _left_out(self, system: System, prolongation: Prolongation, z: FloatArray) -> FloatArray:
-        """Changes (dof,) of a motion of a system by the harmonics that it lacks."""
+        """Changes (dof,) of the amplitudes of a motion by the harmonics that its system leaves out."""
         return changes_left_out(system, prolongation.balance, z, self.options)
 
     def _points_around_peak(self, top: int) -> list[int]:
-        """A top and points to either side of it, as long as contacts slip or separate there."""
+        """A top and points on either side of it, as far as contacts slip or separate there."""
         neighbours = (0, *(way * step for step in self.options.peak_offsets for way in (-1, 1)))
         places = [top + step for step in neighbours if 0 <= top + step < len(self.linear)]
         return [i for i in places if not self.linear[i]]
 
     def _has_point(self, i: int, normal: bool) -> bool:
-        """Whether the reference has a point normal to a point of the curve, or at its frequency."""
+        """Whether Newton's method finds the reference normal to a point of the curve, or at its frequency."""
         prolongation, path = self.finding.prolongation, self.path
         if normal and prolongation.find_normal(path.z[i], path.direction[i], True):
             return True
         return not normal and bool(prolongation.find_at_frequency(self._guesses[i], True))
 
     def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondReference | None:
-        """A reference of its own; None where that has no more harmonics, or too many unknowns. It is that of
-        the place from which it is asked first."""
+        """The second reference; None where it has no more harmonics, or too many unknowns.
+
+        Its harmonics are chosen at the first point for which it is asked.
+        """
         finer, options = self.stretches.finer, self.options
         if self.is_costly:
             return None
@@ -319,8 +329,10 @@ class ReferenceCurve:
         return self.second
 
     def amplitude_at_frequency(self, i: int) -> FloatArray | None:
-        """Amplitudes (dof,) of the reference at the frequency of a point; None where Newton's method finds
-        none that is as even."""
+        """Amplitudes (dof,) of the reference at the frequency of point i, from Newton's method.
+
+        None where it diverges, or finds a motion whose number of real multipliers above 1 has other parity.
+        """
         prolongation, path = self.finding.prolongation, self.path
         if self.linear[i] or not prolongation.find_at_frequency(self._guesses[i], True):
             return None
@@ -331,11 +343,11 @@ class ReferenceCurve:
 
     @cached_property
     def _guesses(self) -> FloatArray:
-        """The points (point, unknown + 1) as guesses for the reference."""
+        """The points of the curve (point, unknown + 1) extended to the unknowns of the reference."""
         return self.stretches.finer.extended(self.path.z, self.fewer)
 
     def interpolated(self, points: Indices) -> FloatArray:
-        """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""
+        """Displacements (point, 1 + dof) at given points, by cubics through the known ones."""
         values = np.empty((len(points), self.change.shape[1]))
         self.filled.interpolate(points, values)
         return values
@@ -343,7 +355,8 @@ class ReferenceCurve:
     def _misses_expected(
         self, before: Indices, middle: Indices, after: Indices, expected: FloatArray
     ) -> Mask:
-        """Whether a displacement is not as the two around it predict, in terms of errors of an amplitude.
+        """Mask of the middle points whose displacement differs from the one interpolated from both
+        neighbours.
 
         Along a steep part one of the frequency is a so much larger error of the amplitude.
         """
@@ -360,8 +373,7 @@ class ReferenceCurve:
         return more.view(np.bool_)
 
     def follow_stretches(self, change: FloatArray) -> list[FollowedStretch]:
-        """The stretches without displacements, with the pieces of the reference there; the highest
-        are first."""
+        """The stretches without displacements, with the reference's pieces followed; highest first."""
         found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
         return [
@@ -370,8 +382,10 @@ class ReferenceCurve:
         ]
 
     def _is_bridged(self, first: int, end: int, change: FloatArray) -> bool:
-        """Whether points first to before end are so few between two of nearly the same displacement that this
-        is theirs: `change` and what is known then have it. Where the curve turns back it is not."""
+        """Whether a short gap (first to before end) can be interpolated from its two nearly equal neighbours.
+
+        If so, `change` is filled there. A gap at a fold is never bridged.
+        """
         before, after = first - 1, end
         if (self.path.mark[max(before, 0) : after + 1] & Mark.FOLD).any():
             return False
@@ -390,8 +404,12 @@ class ReferenceCurve:
         return float(self.options.peak_spacing * (self.place[-1] - self.place[0]))
 
     def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
-        """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and the contact loads in units
-        of the greatest along the curve; its changes are interpolated as those of amplitudes are."""
+        """Amplitudes and contact loads of the curve with their changes to the reference, interpolated
+        everywhere.
+
+        change (point, 1 + dof) is that of the amplitudes. The unit of a contact load is its greatest along
+        the curve.
+        """
         most = self.contact_loads.max(axis=0)
         unit = np.tile(np.where(most > 0.0, most, 1.0), (len(self.contact_loads), 1))
         found = np.zeros((len(change), 1 + self.contact_loads.shape[1]))
@@ -414,8 +432,10 @@ class ReferenceCurve:
         )
 
     def shifts(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> FloatArray:
-        """Differences (point, column) at the same frequency, in their unit; NaN where the reference does not
-        come to that."""
+        """Differences (point, column) from curve to reference at equal frequency, in their unit.
+
+        NaN where the reference does not reach that frequency.
+        """
         path, change = self.path, compared.change
         shift = shifted(
             self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
@@ -429,7 +449,7 @@ class ReferenceCurve:
     def _fill_beyond_folds(
         self, compared: ComparedQuantities, followed: list[FollowedStretch], shift: FloatArray
     ) -> None:
-        """Fill points that are missing although the reference is known there, as it turns back.
+        """Fills points without a shift at which the reference turns back before the frequency of the curve.
 
         Filled are those whose frequency curve and reference pass but once. Those that the reference passes
         less often, where all of it is known, are remembered.
@@ -452,8 +472,10 @@ class ReferenceCurve:
     def _fill_from_pieces(
         self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray
     ) -> None:
-        """Fill those along a stretch, and next to it where the way to the same frequency leads into
-        it: by the pieces, else by the reference before and behind them."""
+        """Fills the shifts along a followed stretch, and next to it, from the pieces followed.
+
+        Where these do not reach, the reference at the points before and behind the stretch is used.
+        """
         first, end = one.first, one.end
         missing: Mask = np.any(np.isnan(shift), axis=1)
         while first > 0 and missing[first - 1]:
@@ -479,7 +501,7 @@ class ReferenceCurve:
             shift[rows], number = new, np.minimum(number, -1)
 
     def _pieces_near(self, compared: ComparedQuantities, first: int, end: int) -> Iterator[CurvePiece]:
-        """The reference at the points before a stretch, and behind it, as far as it is known there."""
+        """Yields the reference at the known points before a stretch, and behind it, as pieces of a curve."""
         missed = np.flatnonzero(np.isnan(compared.change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
         high = min(missed[missed >= end], default=len(compared.change))
@@ -489,20 +511,20 @@ class ReferenceCurve:
                 yield piece
 
     def pieces(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> tuple[CurvePiece, ...]:
-        """All that is known of the reference: what points are displaced to, and what was followed."""
+        """All known pieces of the reference: through displaced points, and along followed stretches."""
         missed: Mask = np.any(np.isnan(compared.change), axis=1)
         through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
         along = [self._of_piece(piece) for one in followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
 
     def motions(self, followed: list[FollowedStretch]) -> KnownMotions:
-        """All motions of the reference that were found, in order along its curve."""
+        """All motions of the reference that were found, in order along each piece of its curve."""
         found = [self.reference_unknowns[np.isfinite(self.reference_unknowns).all(axis=1)]]
         found += [piece.path.z for one in followed for piece in one.pieces]
         return KnownMotions(self.stretches.finer.harmonics, tuple(one for one in found if len(one) > 1))
 
     def _displaced(self, compared: ComparedQuantities, rows: slice) -> CurvePiece | None:
-        """The reference at some points, all of them displaced to it."""
+        """The piece of the reference through points that are all displaced to it."""
         change = compared.change[rows]
         omega = self.path.parameter[rows] * (1.0 + change[:, 0])
         value = compared.value[rows] + compared.unit[rows] * change[:, 1:]
@@ -512,14 +534,15 @@ class ReferenceCurve:
         return curve_piece(self.stretches.finer, piece)
 
     def contact_loads_of(self, piece: ReferencePiece) -> FloatArray:
-        """The contact loads along a piece (point, 4 contact)."""
+        """Contact loads (point, 4 contact) along a followed piece of the reference."""
         return contact_loads_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
     def _passing_numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
-        """Which passing of the reference (row,) belongs to points of a stretch with folds.
+        """Which passing of the reference (row,) matches each point of a stretch with folds.
 
         It is the same in their order where both have as many, the nearest (-1) where the reference has more,
-        and none (-2) where it has fewer."""
+        and none (-2) where it has fewer.
+        """
         own, omega = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2], self.path.parameter[rows]
         offset, of_curve = rows[0] - max(rows[0] - 1, 0), passings(own, omega)
         of_reference = sum(
@@ -538,14 +561,15 @@ class ReferenceCurve:
 
 
 def curve_piece(finer: System, piece: ReferencePiece) -> CurvePiece:
-    """A piece of the reference that was followed, with the contact loads."""
+    """The `CurvePiece` of a followed piece of the reference, with its contact loads."""
     contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
     return piece_of(ReportedPath(piece.path, piece.quantities, contact_loads))
 
 
 def passings(parameter: FloatArray, omega: FloatArray) -> Indices:
-    """How often a curve passes frequencies (place,): the pieces of it that begin below and end at or above
-    them, or the other way round.
+    """How often (place,) a curve passes given frequencies.
+
+    Counted are pieces that begin below and end at or above the frequency, or the other way round.
 
     >>> passings(np.array([0.0, 2.0, 1.0, 3.0]), np.array([0.0, 0.5, 1.5, 3.0, 4.0])).tolist()
     [1, 1, 3, 1, 0]
@@ -561,7 +585,7 @@ def passings(parameter: FloatArray, omega: FloatArray) -> Indices:
 
 
 def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:
-    """Whether a curve passes frequencies (place,) on the piece from a point to the next, (place, piece)."""
+    """Mask (place, piece) of the pieces between neighbouring points that pass given frequencies."""
     below = parameter < omega[:, None]
     passes: Mask = below[:, 1:] != below[:, :-1]
     if passes.shape[1]:  # an end on it counts, too
@@ -571,7 +595,10 @@ def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:
 
 
 def _with_ends(path: Path, linear: Mask) -> Mask:
-    """The linear points, with the corners at which linear parts end: rounding decides what a corner is."""
+    """The linear points, together with the corners at which linear parts end.
+
+    Rounding decides on which side of a corner its point lies.
+    """
     neighbours = np.zeros_like(linear)
     neighbours[1:] |= linear[:-1]
     neighbours[:-1] |= linear[1:]

@@ -1,4 +1,4 @@
-r"""What a reference is off by itself, where that may be more than the error that it tells.
+r"""The reference's own error, where it may exceed the error that the pair estimates.
 
 What the harmonics that it lacks would do without feedback is known all along of the spectrum of its exact
 forces times the receptance. Feedback makes
@@ -20,8 +20,10 @@ from fcm.model.scene import FloatArray
 
 
 def with_reference_errors(reference: ReferenceCurve, error: FloatArray) -> FloatArray:
-    """Errors (point, dof) in units of the reference's curve, at least what that is off by itself. NaN
-    stays."""
+    """Errors (point, dof) in units of the reference's curve, raised to at least the reference's own error.
+
+    NaN stays NaN.
+    """
     options, place = reference.options, reference.place
     known = np.flatnonzero(reference.is_found & ~np.isnan(error).any(axis=1))
     known = known[:: -(-len(known) // options.max_spectra) or 1]

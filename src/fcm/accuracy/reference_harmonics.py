@@ -18,7 +18,7 @@ from fcm.scene.options import LIMITS
 def reference_harmonics(
     harmonics: Sequence[int], share: FloatArray, ports: int, options: PairOptions = PAIR
 ) -> tuple[int, ...]:
-    """Harmonics of the reference of a curve that has some, as of `PairOptions`.
+    """Harmonics of the reference of a curve with given harmonics, chosen by `PairOptions`.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def reference_harmonics(
 
 
 class _BalanceCache(threading.local):
-    """The balances that each thread used last, by what they are for."""
+    """Cache of each thread: the prolongations used last, by structure and harmonics."""
 
     def __init__(self) -> None:
         self.by_key: OrderedDict[tuple[object, ...], Prolongation] = OrderedDict()
@@ -62,8 +62,10 @@ _BALANCES = _BalanceCache()
 
 
 def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
-    """From points of a system to those of its reference; as if it were new: in a sweep the contacts are
-    others. Nobody else has it until it is given back, see `keep_for_next`."""
+    """The prolongation from points of a system to those of its reference, from the cache if possible.
+
+    A cached one is reset for the present contacts. It has one owner until `keep_for_next` returns it.
+    """
     made = _BALANCES.by_key.pop(_key(system, more), None) if _is_shareable(system) else None
     if made is None:
         made = Prolongation(
@@ -80,7 +82,7 @@ def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
 
 
 def keep_for_next(prolongation: Prolongation, system: System, more: tuple[int, ...]) -> None:
-    """Keep what `prolongation_to` the same has made for the next curve."""
+    """Returns the prolongation made by `prolongation_to` for the same arguments to the cache."""
     prolongation.newton.poll = None
     if _is_shareable(system):
         _BALANCES.by_key[_key(system, more)] = prolongation
@@ -89,7 +91,7 @@ def keep_for_next(prolongation: Prolongation, system: System, more: tuple[int, .
 
 
 def _is_shareable(system: System) -> bool:
-    """Whether the next curve may have the same structure, seen by other contacts."""
+    """Whether prolongations may be cached: no ring, no loads and no contact laws of one's own."""
     return system.scene.ring is None and not system.scene.loads and not system.own_laws
 
 

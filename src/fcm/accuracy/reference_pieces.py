@@ -1,4 +1,4 @@
-"""Pieces of the reference of a curve as they are known, and what it has at the frequencies of the curve."""
+"""Known pieces of the reference of a curve, and its values at the frequencies of the curve."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from fcm.model.scene import FloatArray
 
 
 class CurvePiece(Frozen):
-    """A piece of a curve: frequency (point,) along it, what is compared and its slopes (point, column), of
-    which the amplitudes are the first.
+    """A piece of a curve: frequency (point,), compared quantities and their slopes (point, column).
+
+    The first columns are the amplitudes.
 
     orientation (point,) times the sign of the rate of the frequency tells whether the number of real
     multipliers above 1 is even.
@@ -29,12 +30,12 @@ class CurvePiece(Frozen):
     slope: FloatArray
 
     def passes(self, omega: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether it passes frequencies (place,)."""
+        """Mask (place,) of the frequencies that lie within the piece's frequency range."""
         inside: npt.NDArray[np.bool_] = (self.frequency.min() <= omega) & (omega <= self.frequency.max())
         return inside
 
     def turns(self, side: float) -> npt.NDArray[np.intp]:
-        """Its points where the frequency turns back: highest where side is 1, lowest where it is -1."""
+        """Indices of the points where the frequency turns back: maxima for side 1, minima for side -1."""
         rise = side * np.diff(self.frequency)
         found: npt.NDArray[np.intp] = np.flatnonzero((rise[:-1] > 0.0) & (rise[1:] <= 0.0)) + 1
         return found
@@ -46,9 +47,11 @@ class CurvePiece(Frozen):
         target: FloatArray,
         number: npt.NDArray[np.intc] | None = None,
     ) -> FloatArray:
-        """Values (place, column) where it passes frequencies omega (place,), whose amplitudes are nearest to
-        target values (place, dof); as of `ReferenceCurveData.values_at_crossings`, with no number where all
-        count."""
+        """Values (place, column) where the piece passes frequencies omega (place,), nearest to target (place,
+        dof).
+
+        See `ReferenceCurveData.values_at_crossings`; without `number` every passing is considered.
+        """
         found, every = np.empty((len(omega), self.value.shape[1])), np.full(len(omega), -1, dtype=np.intc)
         which = every if number is None else number
         self.curve.values_at_crossings(
@@ -58,7 +61,7 @@ class CurvePiece(Frozen):
 
 
 class ReportedPath(Frozen):
-    """A path that was followed, what is reported of it, and its contact loads (point, 4 contact)."""
+    """A followed path, the quantities reported along it, and its contact loads (point, 4 contact)."""
 
     path: Path
     quantities: ReportedQuantities
@@ -66,7 +69,7 @@ class ReportedPath(Frozen):
 
 
 def piece_of(reported: ReportedPath) -> CurvePiece:
-    """A path that has been followed, as a piece of a curve."""
+    """The `CurvePiece` of a followed path."""
     path, quantities, contact_loads = reported.path, reported.quantities, reported.contact_loads
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
     place = lengths(path)
@@ -82,8 +85,11 @@ def piece_of(reported: ReportedPath) -> CurvePiece:
 def piece_through(
     place: FloatArray, omega: FloatArray, orientation: FloatArray, value: FloatArray
 ) -> CurvePiece | None:
-    """A curve through points with these places, frequencies and orientations (point,) and values
-    (point, column); of points that coincide through the first. None through less than two."""
+    """A curve piece through points with given places, frequencies, orientations and values.
+
+    Places, frequencies and orientations are (point,), values (point, column). Of coincident points the first
+    is used. None if fewer than two remain.
+    """
     apart = np.append(True, np.diff(place) > 0.0)
     if np.count_nonzero(apart) < 2:
         return None
@@ -101,7 +107,7 @@ def piece_through(
 def nearest(
     pieces: Iterable[CurvePiece], omega: FloatArray, even: FloatArray, target: FloatArray
 ) -> FloatArray:
-    """Values (place, column) of the nearest of all motions that pieces have at frequencies omega (place,).
+    """Values (place, column) of the nearest motion among all pieces at frequencies omega (place,).
 
     The nearest to target values (place, dof) of those that are as even, else of all; NaN where there is none.
     """
@@ -116,7 +122,7 @@ def nearest(
 def _nearest(
     pieces: tuple[CurvePiece, ...], omega: FloatArray, even: FloatArray, target: FloatArray
 ) -> FloatArray:
-    """The same of those that are as even, or of all where that is zero."""
+    """Values (place, column) of the nearest motion with parity `even`; of any where that is zero."""
     best, dofs = np.full((len(omega), pieces[0].value.shape[1]), np.nan), target.shape[1]
     omega, even = np.ascontiguousarray(omega), np.ascontiguousarray(even)
     target = np.ascontiguousarray(target)
@@ -129,14 +135,14 @@ def _nearest(
 
 
 def lengths(path: Path) -> FloatArray:
-    """Along a path (point,)."""
+    """Arc lengths (point,) along a path, from its first point."""
     length = np.zeros(len(path.z))
     arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, length)
     return length
 
 
 def rates(values: FloatArray, place: FloatArray) -> FloatArray:
-    """Rates of change (point, column) along a curve, from the point before to that behind."""
+    """Rates of change (point, column) along a curve: difference quotients of the neighbours."""
     k = np.arange(len(place))
     before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(place) - 1)
     step = place[after] - place[before]
@@ -145,7 +151,7 @@ def rates(values: FloatArray, place: FloatArray) -> FloatArray:
 
 
 def distinct(place: FloatArray, near: float) -> npt.NDArray[np.intp]:
-    """Which of places, in their order, lie farther than that behind the one before of these.
+    """Indices of the places, in order, that lie farther than `near` behind the last one taken.
 
     >>> distinct(np.array([0.0, 0.1, 0.4, 0.6]), 0.3).tolist()
     [0, 2]

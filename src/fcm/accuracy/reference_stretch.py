@@ -1,4 +1,4 @@
-"""Stretches of the reference that are followed: beside them no point of it lies normal to the curve.
+"""Follows the reference along stretches of a curve beside which no point of it lies normal to the curve.
 
 Where a corner or a pair of folds has moved, Newton's method in the normal plane diverges. But it does on both
 sides, and from one of them the reference can be followed to the other.
@@ -29,11 +29,11 @@ from fcm.model.scene import FloatArray
 
 
 class BudgetSpentError(Exception):
-    """Following the reference takes more than it may."""
+    """Raised when following the reference would exceed its budget."""
 
 
 class ReferencePiece(Frozen):
-    """A piece of the reference, from one end of a stretch; reached_end: up to the other."""
+    """A piece of the reference followed from one end of a stretch; `reached_end`: up to the other."""
 
     path: Path
     quantities: ReportedQuantities
@@ -41,24 +41,25 @@ class ReferencePiece(Frozen):
 
     @property
     def whole(self) -> bool:
-        """Whether it ends where the reference does, or the stretch."""
+        """Whether the piece ends at an end of the reference or stretch, not by interruption or stalling."""
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
 
     @cached_property
     def place(self) -> FloatArray:
-        """Lengths along it (point,)."""
+        """Arc lengths (point,) along the piece."""
         return lengths(self.path)
 
     def passes(self, frequency: FloatArray) -> bool:
-        """Whether it has any of the frequencies between the least and the greatest of some; what has none
-        leads away from a stretch."""
+        """Whether the piece shares frequencies with a range from the least to the greatest of the given ones.
+
+        A piece that shares none leads away from the stretch.
+        """
         there = self.path.parameter
         return bool(there.min() < frequency.max() and there.max() > frequency.min())
 
 
 class StretchEnd(Frozen):
-    """A point of the reference at an end of a stretch, and whether the frequency rises there along the
-    curve."""
+    """A point of the reference at an end of a stretch; `rises`: whether the frequency rises there."""
 
     number: int
     z: FloatArray
@@ -67,7 +68,7 @@ class StretchEnd(Frozen):
 
 
 class StretchFollower:
-    """`between` two points of a curve the reference is followed, as long as the budget allows."""
+    """Follows the reference `between` two points of a curve, as long as the budget allows."""
 
     def __init__(
         self,
@@ -86,7 +87,7 @@ class StretchFollower:
         self.budget, self.evaluations = budget, 0
 
     def between(self, first: int, last: int, found: FloatArray) -> list[ReferencePiece]:
-        """The reference between point first and point last of the curve, which may be beyond its ends.
+        """Pieces of the reference between points first and last of the curve, which may lie beyond its ends.
 
         One piece that leads from one to the other, or what hangs on both as far as that stays near the
         stretch, and as the work allows. found (point, unknown + 1): where it was found; NaN elsewhere.
@@ -112,7 +113,7 @@ class StretchFollower:
         return pieces
 
     def _from_ends(self, before: StretchEnd | None, behind: StretchEnd | None) -> list[ReferencePiece]:
-        """One piece that leads from one end to the other, or those that hang on each that there is."""
+        """Pieces followed from the ends of a stretch: one that joins both, or one from each existing end."""
         span, pieces = self._span(before, behind), list[ReferencePiece]()
         for begin, end in ((before, behind), (behind, before)):
             if begin is None or not span[0] < span[1]:
@@ -126,8 +127,10 @@ class StretchFollower:
         return pieces
 
     def _towards(self, frequency: FloatArray, found: FloatArray) -> list[ReferencePiece]:
-        """What leads to the frequencies of a stretch from the nearest to them of what was found; nothing if
-        that is among them."""
+        """A piece followed towards a stretch's frequencies from the found motion nearest to them.
+
+        Empty if a found motion already lies within these frequencies.
+        """
         known = found[np.isfinite(found[:, -1])]
         low, high = float(frequency.min()), float(frequency.max())
         off = np.maximum(low - known[:, -1], known[:, -1] - high)
@@ -139,10 +142,11 @@ class StretchFollower:
         return [piece] if len(piece.path.z) > 1 else []
 
     def start(self, i: int, by_level: bool) -> FloatArray | None:
-        """A motion of the reference at the frequency of a point, if one is found within the work allowed.
+        """A motion of the reference at the frequency of point i; None if the work allowed finds none.
 
         It is the one that Newton's method finds from the motion there, or one that the level of the forces
-        passes."""
+        passes.
+        """
         before = self.prolongation.newton.evaluations
         begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
         new = int(self.prolongation.newton.evaluations - before)
@@ -153,13 +157,16 @@ class StretchFollower:
     def along(
         self, z: FloatArray, direction: FloatArray | None, span: tuple[float, float], forward: bool
     ) -> ReferencePiece:
-        """The reference from a point, where its direction may be known, as far as it stays in a span and the
-        work allows."""
+        """The reference followed from a point, as far as it stays in a frequency span and the budget lasts.
+
+        `direction` is the tangent at the point, if known.
+        """
         path = self._path(z, direction, span, Events(), forward)
         return ReferencePiece(path, reported_quantities(self.finer, path), False)
 
     def _end(self, places: Iterable[int], found: FloatArray) -> StretchEnd | None:
-        """At the first of some places where there is one: where it was found from there, if it was.
+        """The end of a stretch at the first of some points from which the reference is found; None if there
+        is none.
 
         Of many contacts that was from beside another, and may not be found from the point alone.
         """
@@ -173,19 +180,24 @@ class StretchFollower:
         return None
 
     def _same_frequency(self, i: int) -> StretchEnd | None:
-        """The motion of the reference at the frequency of a point that Newton's method finds from the motion
-        there."""
+        """The reference's motion at the frequency of point i, by Newton's method; None if it diverges."""
         guess = self.finer.extended(self.curve.z[i], self.fewer)
         return self._found(i) if self.prolongation.find_at_frequency(guess, True) else None
 
     def _same_parity(self, i: int) -> StretchEnd | None:
-        """The motion found at the frequency of a point from its motion, else one of the same parity that the
-        level passes."""
+        """The reference's motion at the frequency of point i.
+
+        It comes from Newton's method, else from the level of the forces with the parity of the point.
+        """
         return self._same_frequency(i) or self._nearest_passed(i, True)
 
     def _nearest_passed(self, i: int, same_parity: bool) -> StretchEnd | None:
-        """The nearest motion, at the frequency of a point, that the level of the forces passes; if
-        same_parity, with an odd or even number of real multipliers above 1 as the point has."""
+        """The nearest motion at the frequency of point i that the level of the forces passes; None if there
+        is none.
+
+        With `same_parity` only motions count whose number of real multipliers above 1 has the parity of the
+        point.
+        """
         prolongation, curve = self.prolongation, self.curve
         guess = self.finer.extended(curve.z[i], self.fewer)
         even = curve.parity[i]
@@ -203,7 +215,7 @@ class StretchFollower:
         return None
 
     def _passed(self, omega: float) -> tuple[FloatArray, ...]:
-        """What the level of the forces passes at a frequency, as the budget allows."""
+        """The motions that the level of the forces passes at a frequency, as far as the budget allows."""
         work, before = self.finer.work, self.finer.work.seconds
         try:
             with work.limited_to(before + max(self.budget.seconds, 0.0)):
@@ -214,13 +226,13 @@ class StretchFollower:
             self.budget.seconds -= work.seconds - before
 
     def _found(self, i: int) -> StretchEnd:
-        """Where the reference was found last, beside a point."""
+        """The `StretchEnd` beside point i, from the motion that Newton's method found last."""
         newton = self.prolongation.newton
         rises = bool(newton.tangent[-1] * self.curve.direction[i, -1] > 0.0)
         return StretchEnd(i, np.array(newton.z), np.array(self.prolongation.found[1:]), rises)
 
     def _span(self, before: StretchEnd | None, behind: StretchEnd | None) -> tuple[float, float]:
-        """Frequencies of a stretch, and beyond them, as folds may have moved."""
+        """Frequency range in which a stretch is followed, with a margin as folds may have moved."""
         ends = [end for end in (before, behind) if end]
         first = before.number if before else 0
         last = behind.number if behind else len(self.curve.z) - 1
@@ -233,7 +245,7 @@ class StretchFollower:
     def _followed(
         self, begin: StretchEnd, end: StretchEnd | None, span: tuple[float, float], forward: bool
     ) -> ReferencePiece:
-        """The reference from one end to the other, or as far as it stays in the span."""
+        """The reference followed from one end of a stretch to the other, or within the span."""
         if end is None:
             path = self._path(begin.z, None, span, Events(), forward)
             return ReferencePiece(path, reported_quantities(self.finer, path), False)
@@ -250,7 +262,7 @@ class StretchFollower:
         return ReferencePiece(path, reported_quantities(self.finer, path), reached)
 
     def _is_at(self, path: Path, end: StretchEnd) -> bool:
-        """Whether a path ends there, and not at another motion of that frequency."""
+        """Whether a path ends at a given end of the stretch, and not at another motion of that frequency."""
         last = slice(len(path.z) - 1, len(path.z))
         amplitude = reported_quantities(self.finer, _part(path, last)).amplitude[0]
         off = np.abs(amplitude - end.amplitude).max(initial=0.0)
@@ -264,7 +276,7 @@ class StretchFollower:
         events: Events,
         forward: bool,
     ) -> Path:
-        """The reference from a point, as far as the work allows."""
+        """The path of the reference from a point, as far as the budget allows."""
         balance, stepper, known = self.finer.reset_balance(), self.finer.shared_stepper, 0
 
         def pay() -> None:
@@ -293,12 +305,12 @@ class StretchFollower:
 
 
 def _any_passes(pieces: Sequence[ReferencePiece], frequency: FloatArray) -> bool:
-    """Whether one that is whole has frequencies of a stretch."""
+    """Whether any whole piece has frequencies of a stretch."""
     return any(piece.whole and piece.passes(frequency) for piece in pieces)
 
 
 def _part(path: Path, rows: slice) -> Path:
-    """Some points of a path."""
+    """The path restricted to some of its points."""
     return Path(
         path.z[rows], path.direction[rows], path.mark[rows], path.orientation[rows],
         path.status, path.evaluations,

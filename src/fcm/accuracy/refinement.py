@@ -1,5 +1,4 @@
-"""As many harmonics as an accuracy takes: trace, compare with the reference, add what the spectrum
-names, again."""
+"""Adds harmonics until a response reaches an accuracy: trace, compare with the reference, add, repeat."""
 
 from __future__ import annotations
 
@@ -29,7 +28,7 @@ OnTraced = Callable[[UncheckedResponse, float, tuple[int, ...]], None]
 
 
 class RefinedResponse(UncheckedResponse):
-    """A response, its errors, and the accuracy that was asked for.
+    """A response with its estimated errors and the accuracy that was asked for.
 
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
     amplitude over all of them; max_error the greatest of these and of the errors of the folds, NaN where
@@ -44,13 +43,15 @@ class RefinedResponse(UncheckedResponse):
 
     @property
     def reached(self) -> bool:
-        """Whether all errors are below the accuracy."""
+        """Whether the greatest error is within the accuracy; False where an error is unknown."""
         return self.max_error <= self.accuracy
 
     @property
     def peak_frequency(self) -> FloatArray:
-        """Relative errors (dof,) of the frequencies of the greatest amplitudes; NaN where they are unknown
-        or no peaks."""
+        """Relative errors (dof,) of the frequencies of the greatest amplitudes.
+
+        NaN where they are unknown, or the greatest amplitude is not a peak.
+        """
         which = np.array([one.amplitude.max(axis=0) for one in self.quantities]).argmax(axis=0)
         found: FloatArray = np.array([one.peak_frequency for one in self.errors])[
             which, np.arange(len(which))
@@ -59,11 +60,11 @@ class RefinedResponse(UncheckedResponse):
 
     @property
     def folds(self) -> FloatArray:
-        """Errors of all folds, branch after branch."""
+        """Relative errors of the frequencies of all folds, branch after branch."""
         return np.concatenate([np.empty(0), *(one.fold for one in self.errors)])
 
     def thinned(self, most: int) -> UncheckedResponse:
-        """With the errors that are told."""
+        """The response reduced to about `most` points, with the errors of the points kept."""
         few = super().thinned(most)
         if few is self:
             return self
@@ -79,12 +80,15 @@ class RefinedResponse(UncheckedResponse):
 
     @property
     def dofs_of_interest(self) -> Mask:
-        """Degrees of freedom (dof,) of whose peaks the accuracy is asked."""
+        """Mask (dof,) of the degrees of freedom whose peaks must reach the accuracy."""
         return dofs_of_interest(self.system.scene, self.height)
 
     @property
     def agrees(self) -> bool:
-        """Whether the pair does: it is accurate, or folds alone are unknown, which more do not change."""
+        """Whether the pair agrees: the accuracy is reached, or only errors of folds are unknown.
+
+        More harmonics would not make the latter known.
+        """
         unknown = np.isnan(self.peak[self.dofs_of_interest]).any()
         return self.reached or (self.max_known_error <= self.accuracy and not unknown)
 
@@ -145,8 +149,10 @@ def refined_response(
 
 
 def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
-    """The response traced again with more harmonics; None where no solution is found, or that takes longer
-    than is worth it."""
+    """The response traced again with more harmonics.
+
+    None where no solution is found, or where all would take longer than `WorkOptions` allows.
+    """
     work = found.system.work
     if work.seconds + found.seconds_with(harmonics) > found.system.options.work.max_seconds:
         return None
@@ -166,7 +172,7 @@ def with_given_harmonics(
 def unchecked_with_given_harmonics(
     system: System, progress: Progress | None = None, on_traced: OnTraced | None = None
 ) -> UncheckedResponse:
-    """The response with the harmonics that a system has, of whose errors none is known.
+    """The response with the harmonics of the system, without errors.
 
     It is traced with one of them first, then with those that tell how far the level of all is to be followed,
     then with half. Solutions with more harmonics beside the stable peaks are starts, too, as the level of the
@@ -188,8 +194,7 @@ def unchecked_with_given_harmonics(
 
 
 def every_branch(system: System) -> UncheckedResponse:
-    """The response with the harmonics that a system has, isolated branches and those at branch points
-    with it."""
+    """The response with the system's harmonics, isolated branches and those at branch points included."""
     return unchecked_with_given_harmonics(system).with_every_branch()
 
 
@@ -199,7 +204,7 @@ def _after(
     progress: Progress | None = None,
     peaks: tuple[FoundPeak, ...] = (),
 ) -> UncheckedResponse:
-    """The response of a system, after that with fewer harmonics."""
+    """The response of a system, started from the response with fewer harmonics if there is one."""
     if before is None:
         return unchecked_response(system, progress)
     near = prolongated_solutions(before, system.harmonics)
@@ -212,7 +217,7 @@ def with_errors(
     known: tuple[Errors, ...] = (),
     options: PairOptions | None = None,
 ) -> RefinedResponse:
-    """A response with its errors, of which those of its first branches may be known.
+    """A response with its errors; those of its first branches may be given as `known`.
 
     Without an accuracy, which is infinite then, its harmonics are given.
     """
@@ -237,7 +242,7 @@ def with_errors(
 
 
 def without_errors(outline: UncheckedResponse) -> RefinedResponse:
-    """A response of whose errors none is known."""
+    """A response with every error unknown (NaN)."""
     system, response, quantities = outline.system, outline.traced, outline.quantities
     every = zip(response.branches.paths, quantities, strict=True)
     errors = tuple(unknown_errors(system, *one) for one in every)
@@ -248,7 +253,7 @@ def without_errors(outline: UncheckedResponse) -> RefinedResponse:
 
 
 def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
-    """Relative error of the greatest of heights (path, dof) of each degree of freedom.
+    """Relative errors (dof,) of the greatest of heights (path, dof) over all paths.
 
     Another path may be the highest of the reference's; unknown where that of one nearly as high is.
     """
@@ -264,7 +269,7 @@ def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
 
 
 def enlarged(found: RefinedResponse, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:
-    """The harmonics of a response and those that the spectrum names for the accuracy.
+    """The harmonics of a response together with those that the spectrum requires for the accuracy.
 
     No more are added than can be followed in some seconds.
     """

@@ -1,4 +1,4 @@
-r"""Which harmonics an accuracy takes: the spectrum of the exact forces times the receptance of the structure.
+r"""Harmonics that an accuracy requires, from the spectrum of the exact forces and the receptance.
 
 The peaks and folds of a curve are displaced to its reference. There every harmonic has, or would have without
 feedback, |G(h omega) F_h| of the amplitude. What those that the curve lacks do together is more, as
@@ -28,8 +28,9 @@ from fcm.scene.options import LIMITS
 
 
 class RequiredHarmonics(Frozen):
-    """change: by how much a peak or fold is changed by the reference, relative, at most, as far as it is
-    told.
+    """What the reference tells of the harmonics that a response lacks.
+
+    change: greatest relative change of a peak or fold by the reference, of those that are known.
 
     is_known: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. reference:
     its harmonics.
@@ -42,9 +43,10 @@ class RequiredHarmonics(Frozen):
 
 
 class _SpecialPoint(Frozen):
-    """A peak or a fold: places of a path where the reference is looked for, one after the other.
+    """A peak or fold, with the points of a path at which the reference is looked for in turn.
 
-    With them, which of the frequency and the amplitudes (1 + dof,) count there."""
+    With them, which of the frequency and the amplitudes (1 + dof,) count there.
+    """
 
     path: Path
     amplitude: FloatArray
@@ -53,7 +55,7 @@ class _SpecialPoint(Frozen):
 
 
 def dofs_of_interest(scene: Scene, height: FloatArray, options: RefinementOptions = REFINEMENT) -> Mask:
-    """Degrees of freedom (dof,) whose greatest amplitudes, the height, are to be as accurate as is asked.
+    """Mask (dof,) of the degrees of freedom whose greatest amplitudes (`height`) must reach the accuracy.
 
     Those of `output` where the scene has it, else all in the results; not those that hardly move beside them.
     """
@@ -65,7 +67,7 @@ def dofs_of_interest(scene: Scene, height: FloatArray, options: RefinementOption
 def required_harmonics(
     found: UncheckedResponse, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
 ) -> RequiredHarmonics:
-    """What the reference changes of a response, at its peaks and folds alone."""
+    """The change of a response by its reference, computed at its peaks and folds only."""
     system, amplitudes = found.system, [one.amplitude for one in found.quantities]
     height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
     size = np.where(dofs_of_interest(system.scene, height, options), height, np.inf)
@@ -100,7 +102,7 @@ def needed(
     accuracy: float,
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[int, ...]:
-    """Harmonics, and those that have most of what they lack, until what is left is a part of the accuracy."""
+    """The present harmonics with the largest missing ones added, as many as the accuracy needs."""
     share = required.share.copy()
     share[np.array(harmonics) - 1] = 0.0
     order = np.argsort(-share, kind="stable")
@@ -126,7 +128,9 @@ def _places(
     options: RefinementOptions,
     pair: PairOptions,
 ) -> list[_SpecialPoint]:
-    """Tops of paths nearly as high as the height (dof,), which is infinite where none counts; and folds.
+    """The special points of all paths: tops nearly as high as height (dof,), and folds.
+
+    The height is infinite for a degree of freedom that does not count.
 
     Of tops that lie closely together, as those of many degrees of freedom do, the first stands for all.
     """
@@ -149,8 +153,7 @@ def _places(
 
 
 def _displaced(prolongation: Prolongation, place: _SpecialPoint) -> FloatArray | None:
-    """Displacements (1 + dof,) of the frequency, relative, and of the amplitudes to the reference beside a
-    place."""
+    """Changes (1 + dof,) of frequency (relative) and amplitudes to the reference at a point; or None."""
     for i in place.tries:
         if prolongation.find_normal(place.path.z[i], place.path.direction[i], True):
             found, omega = np.asarray(prolongation.found), place.path.parameter[i]
@@ -162,6 +165,6 @@ def _displaced(prolongation: Prolongation, place: _SpecialPoint) -> FloatArray |
 def _greatest_shares(
     further: FurtherHarmonics, z: FloatArray, size: FloatArray, known: tuple[int, ...] | None = None
 ) -> FloatArray:
-    """What each harmonic (harmonic,) but the known ones has at most at motions z (place, unknown + 1)."""
+    """Greatest share (harmonic,) of each harmonic, but the known ones, at motions z (place, unknown + 1)."""
     share: FloatArray = further.shares(z, np.tile(size, (len(z), 1)), known).max(axis=0, initial=0.0)
     return share[: LIMITS.harmonics]

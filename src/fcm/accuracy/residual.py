@@ -1,4 +1,4 @@
-r"""What the harmonics that the reference lacks would still do to a motion of it, without feedback.
+r"""Changes that the harmonics beyond the reference would still make to one of its motions, without feedback.
 
 Each is the coefficient of the exact forces times the receptance, as in `residual_spectrum`; all of them
 together are added to the motion, whose half peak-to-peak displacement then differs. Far below some
@@ -19,7 +19,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 def changes_left_out(system: System, balance: Balance, z: FloatArray, options: PairOptions) -> FloatArray:
-    """Changes (dof,) of the amplitudes of a motion z (unknown + 1,) by what the balance of a system leaves
+    """Changes (dof,) of the amplitudes of a motion z (unknown + 1,) by the harmonics that a balance leaves
     out.
 
     Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
@@ -42,7 +42,7 @@ def changes_left_out(system: System, balance: Balance, z: FloatArray, options: P
 
 
 def _reach(system: System, omega: float, options: PairOptions) -> int:
-    """The last harmonic that is looked at."""
+    """The highest harmonic whose force is evaluated; 0 for a ring or a structure without modes."""
     linear = system.linear
     if system.scene.ring is not None or not linear.natural.size:
         return 0
@@ -53,7 +53,7 @@ def _reach(system: System, omega: float, options: PairOptions) -> int:
 
 
 def _moved(system: System, z: FloatArray, others: tuple[int, ...]) -> ComplexArray:
-    """What the forces of other harmonics displace (harmonic, dof)."""
+    """Displacements (harmonic, dof) by the contact forces in harmonics that the balance leaves out."""
     motion, forces = np.ascontiguousarray(z), []
     for i, law in enumerate(system.exact_laws(others)):
         law.probe(motion, i * law.width)

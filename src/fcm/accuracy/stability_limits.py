@@ -1,4 +1,4 @@
-r"""How far the frequencies at which stability is lost are from where more harmonics have them.
+r"""Errors of the frequencies at which stability is lost, against a balance with more harmonics.
 
 Places of the curve around a crossing are displaced to the curve of the balance with those further harmonics
 that would change it most. The crossing of more harmonics is where the growth of disturbances changes its sign
@@ -30,8 +30,10 @@ from fcm.stability.inserted_points import MultiplierCrossing
 
 
 class StabilityLimit(Frozen):
-    """A crossing as more harmonics have it: by how much its frequency is another, relative; NaN where that
-    cannot be told. harmonics are those that the accuracy takes."""
+    """A crossing of multipliers and the relative error of its frequency; NaN where that is unknown.
+
+    `harmonics` are those that the accuracy requires.
+    """
 
     frequency: float  # [rad/s] of the crossing
     error: float
@@ -41,7 +43,7 @@ class StabilityLimit(Frozen):
 def stability_limits(
     system: System, path: Path, crossings: Sequence[MultiplierCrossing], accuracy: float = 0.0
 ) -> list[StabilityLimit]:
-    """Errors of the crossings of a path, which may be as large as accuracy."""
+    """Errors of the crossings of a path; each need only be known to the accuracy."""
     known: dict[tuple[int, ...], _ReferenceGrowth] = {}
     found = [_lost(system, path, one, accuracy, known) for one in crossings]
     for more, beside in known.items():
@@ -50,8 +52,8 @@ def stability_limits(
 
 
 def distances_from(lost: Sequence[StabilityLimit], fewer: Sequence[StabilityLimit]) -> list[StabilityLimit]:
-    """Crossings of a response, and where more harmonics do not tell the error of one, how far it is from
-    where fewer have it: of one that is the same in both."""
+    """Crossings whose unknown errors are replaced by the distance to the same crossing with fewer
+    harmonics."""
     return [_moved(one, lost, fewer) if math.isnan(one.error) else one for one in lost]
 
 
@@ -74,7 +76,7 @@ def _lost(
     accuracy: float,
     known: dict[tuple[int, ...], _ReferenceGrowth],
 ) -> StabilityLimit:
-    """The limit at one crossing; known are the curves of more harmonics that served for others."""
+    """The `StabilityLimit` at one crossing; `known` caches the curves with more harmonics."""
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     share = FurtherHarmonics(system).shares(z, amplitude[None])[0]
@@ -94,7 +96,7 @@ def _lost(
 
 
 class _ReferenceGrowth:
-    """The curve of more harmonics beside a path, at places of this: points, by number, and part of a way."""
+    """The curve with more harmonics beside a path; a place is a point number with a fraction."""
 
     def __init__(self, finer: System, path: Path, prolongation: Prolongation, system: System) -> None:
         self.path, self.prolongation, self.balance = path, prolongation, system.new_balance()
@@ -102,7 +104,7 @@ class _ReferenceGrowth:
         self.frequency = math.nan  # of the place that was looked at last
 
     def growth(self, place: float) -> float:
-        """Growth of disturbances on the curve of more harmonics beside a place; NaN where it is not known.
+        """Growth of disturbances on the curve with more harmonics beside a place; NaN where it is unknown.
 
         The finer motion of so many harmonics tells it: to balance its own as well would be expensive, and is
         done only where it does not tell.
@@ -123,11 +125,12 @@ class _ReferenceGrowth:
         return max(growth, STABILITY_LIMITS.min_growth)
 
     def crossing(self, one: MultiplierCrossing, fine: float) -> float:
-        """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
+        """Frequency at which the growth changes sign next to a crossing; NaN where it is not found.
 
         It is within `StabilityLimitOptions.tolerance`. The search also ends where two frequencies differ by
         less than fine, relative, or by less than `StabilityLimitOptions.relative_tolerance` of their distance
-        from the crossing."""
+        from the crossing.
+        """
         near = self._enclosed(one.place)
         if near is None:
             return math.nan
@@ -148,8 +151,10 @@ class _ReferenceGrowth:
         return self.frequency if not math.isnan(value) else math.nan
 
     def _enclosed(self, place: float) -> SignChange | None:
-        """The change of sign nearest to a place, of which both sides are looked at further and further away;
-        None if there is none up to where the growth is not known, or even that there is not."""
+        """A bracket of the growth's sign change nearest to a place, sought on both sides; or None.
+
+        None if there is none up to where the growth is unknown, or up to the greatest distance.
+        """
         now, last, near = self.growth(place), float(len(self.path.z) - 1), STABILITY_LIMITS.first_distance
         before = {} if math.isnan(now) else {1.0: (place, now), -1.0: (place, now)}
         while before and near <= STABILITY_LIMITS.max_distance:

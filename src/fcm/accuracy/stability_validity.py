@@ -1,4 +1,4 @@
-"""Where a curve of a balance is too far from the motion, or may be, for its solutions to be called stable."""
+"""Points of a curve that are too far from the exact motion for their stability to be trusted."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def unreliable_points(
     fold: Mask,
     options: ValidityOptions = VALIDITY,
 ) -> Mask:
-    """Which points of branches, one after the other, are too far from the motion, or may be.
+    """Mask of the points of successive branches that are, or may be, too far from the exact motion.
 
     Parameters
     ----------
@@ -40,8 +40,10 @@ def unreliable_points(
 
 
 def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY) -> Mask:
-    """The points (point,) at which a branch has long lost that of more harmonics, and says nothing of the
-    motion."""
+    """Mask (point,) of long stretches on which the reference was not found.
+
+    There a branch tells nothing of the exact motion.
+    """
     far = np.zeros(len(truncation), dtype=np.bool_)
     for first, end in runs(np.isnan(truncation)):
         far[first:end] = end - first > options.max_unknown_points
@@ -51,7 +53,7 @@ def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY)
 def without_neighbour(
     truncation: FloatArray, is_same_curve: Mask, options: ValidityOptions = VALIDITY
 ) -> Mask:
-    """Beside which points (point,) the pair has looked for a motion with more harmonics, and found none.
+    """Mask (point,) of points beside which no motion with more harmonics was found.
 
     truncation: how far they are from the reference's curve, or from its nearest motion, relative.
     """
@@ -62,7 +64,7 @@ def without_neighbour(
 def _without_error(
     frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask, options: ValidityOptions
 ) -> Mask:
-    """Stretches (point,) without an error: marches leave many of them.
+    """Mask (point,) of stretches without a known error, which marches in time often leave.
 
     Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
     is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.

@@ -1,8 +1,9 @@
-"""A balance's response without its errors, and with more harmonics, within the time that it may take.
+"""A response without its errors, and with more harmonics, within the time allowed.
 
 To see which harmonics it takes the branches will do that those of fewer lead to. The levels of the forces,
 which take about as long as these, are followed at last, with the harmonics that are enough
-(`UncheckedResponse.with_levels`)."""
+(`UncheckedResponse.with_levels`).
+"""
 
 from __future__ import annotations
 
@@ -29,12 +30,13 @@ from fcm.model.scene import FloatArray
 
 
 class UncheckedResponse(Frozen):
-    """A response whose errors are not known yet; quantities (path,) belongs to the branches' paths.
+    """A response whose errors are not known yet; `quantities` (path,) belongs to the paths of its branches.
 
     seconds: about what following its levels and branches took. further: the harmonics that would do more but
     take too long, if any, and whether that was seen only when they had been begun. before: the response of
     fewer harmonics that its branches come of, as long as no level was followed with its own, see
-    `with_levels`."""
+    `with_levels`.
+    """
 
     system: System
     traced: Traced
@@ -45,21 +47,21 @@ class UncheckedResponse(Frozen):
     before: UncheckedResponse | None = field(default=None, kw_only=True)
 
     def with_traced(self, traced: Traced) -> UncheckedResponse:
-        """The response with further branches, which come after its own."""
+        """The response with further branches appended after its own."""
         further = traced.branches.paths[len(self.quantities) :]
         quantities = (*self.quantities, *(reported_quantities(self.system, path) for path in further))
         return UncheckedResponse(self.system, traced, quantities, self.seconds)
 
     def with_every_branch(self) -> UncheckedResponse:
-        """The response with isolated branches, and those through branch points."""
+        """The response with isolated branches, and with those through branch points."""
         return self.with_traced(with_further_branches(self.system, self.traced))
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:
-        """About what following its levels and branches with other harmonics takes."""
+        """Estimated seconds for following the levels and branches with other harmonics."""
         return self._seconds_with(self.seconds, harmonics)
 
     def _seconds_with(self, seconds: float, harmonics: tuple[int, ...]) -> float:
-        """What takes some seconds, with other harmonics."""
+        """Scales seconds of work from the present harmonics to others."""
         few, many = len(self.system.harmonics), len(harmonics)
         if not seconds:  # nothing was to be followed
             return 0.0
@@ -69,7 +71,7 @@ class UncheckedResponse(Frozen):
     def limited_harmonics(
         self, seconds: float, more: tuple[int, ...], options: RefinementOptions = REFINEMENT
     ) -> tuple[int, ...]:
-        """More harmonics without the highest of those that are new, until following them takes no longer.
+        """`more` without its highest new harmonics, so that following takes at most the given seconds.
 
         The lowest stay: a branch of one harmonic may be of no motion at all.
         """
@@ -82,8 +84,10 @@ class UncheckedResponse(Frozen):
     def prolongated(
         self, harmonics: tuple[int, ...], near: Sequence[FloatArray], progress: Progress | None
     ) -> UncheckedResponse:
-        """The response with more harmonics: the branches that its own lead to, and those through solutions
-        near. Where these are none, what the level of the forces leads to."""
+        """The response with more harmonics, from its own branches and from the solutions `near`.
+
+        Where these lead to no branch, the level of the forces is followed.
+        """
         system = self.system.with_harmonics(harmonics)
         begin = system.work.seconds
         response = traced_from(system, self.traced, near, progress)
@@ -96,8 +100,7 @@ class UncheckedResponse(Frozen):
         )
 
     def thinned(self, most: int) -> UncheckedResponse:
-        """The response with about so many points, and what is quantities of them; itself if it has no
-        more."""
+        """The response reduced to about `most` points; the response itself if it has no more."""
         paths = self.traced.branches.paths
         if points_of(self) <= most and len(self.quantities) == len(paths):
             return self
@@ -111,23 +114,22 @@ class UncheckedResponse(Frozen):
         return UncheckedResponse(self.system, response, quantities, self.seconds)
 
     def of_thinned(self, values: Sequence[FloatArray], most: int) -> list[FloatArray]:
-        """Values (path, point) of the points that it has when it is thinned to about so many."""
+        """Values (path, point) at the points that the response keeps when it is thinned to about `most`."""
         if points_of(self) <= most:
             return list(values)
         return [one[rows] for one, rows in zip(values, self._rows(most), strict=True)]
 
     def _rows(self, most: int) -> list[npt.NDArray[np.intp]]:
-        """About so many points of all paths, of each path its share."""
+        """Indices of about `most` points of all paths, each path with its share."""
         count = max(points_of(self), 1)
         paths = self.traced.branches.paths
         return [path.representative(math.ceil(len(path.z) * most / count)) for path in paths]
 
     def with_levels(self, most: float | None = None) -> UncheckedResponse:
-        """The response with the branches that the level of the forces leads to and those of fewer harmonics
-        do not.
+        """The response with the branches that only the level of the forces leads to, with its own harmonics.
 
-        Where all comes to more seconds than the most, which is that of the system's options where nothing
-        else is said, the response of fewer harmonics, which says so.
+        If that takes more than `most` seconds in all, the response with fewer harmonics is returned, marked
+        so. `most` is by default that of the system's options.
         """
         if self.before is None:
             return self
@@ -145,8 +147,7 @@ class UncheckedResponse(Frozen):
 
 
 class ResponseInterrupted(KeyboardInterrupt):
-    """Tracing a response was interrupted; response: the branches up to there, of which nothing is
-    quantities."""
+    """Raised when tracing is interrupted; `response` has the branches so far, without quantities."""
 
     def __init__(self, response: UncheckedResponse) -> None:
         super().__init__()
@@ -160,7 +161,7 @@ def unchecked_response(
     near: Sequence[FloatArray] = (),
     peaks: tuple[FoundPeak, ...] = (),
 ) -> UncheckedResponse:
-    """The response of a system; fewer, near and peaks as of `traced`.
+    """The response of a system; the other arguments are those of `traced`.
 
     Raises
     ------
@@ -182,7 +183,7 @@ def unchecked_response(
 
 
 def points_of(response: UncheckedResponse) -> int:
-    """How many points its branches have."""
+    """Number of points of all branches of a response."""
     return sum(len(path.z) for path in response.traced.branches.paths)
 
 
@@ -197,9 +198,12 @@ def with_more(
     progress: Progress | None = None,
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[UncheckedResponse | None, tuple[int, ...], bool]:
-    """The response with more harmonics; if there is none, those that take too long, and whether they had
-    been begun. is_known: whether something tells that they bring the accuracy nearer. Where it does not, or
-    they take too long, as many as are quick, the lowest three at least."""
+    """The response with more harmonics, or None; then the harmonics that take too long, and whether tracing
+    had begun.
+
+    is_known tells whether these harmonics are known to improve the accuracy. Otherwise, or if they take too
+    long, only as many are added as are quick, at least the lowest three.
+    """
     work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
     if not is_known or work.seconds + found.seconds_with(more) > most:
         more = found.limited_harmonics(options.max_seconds_without_progress - work.seconds, more, options)

@@ -38,12 +38,12 @@ class Folds(Frozen):
 
     @property
     def frequency(self) -> FloatArray:
-        """[rad/s]."""
+        """Frequency [rad/s] of each fold (point,)."""
         return self.z[:, -2]
 
     @property
     def level(self) -> FloatArray:
-        """Level of the forces."""
+        """Level of the forces at each fold (point,)."""
         return self.z[:, -1]
 
     @property

@@ -50,29 +50,29 @@ class LevelSolutions(Frozen):
 
 
 class LevelReachOptions(Frozen):
-    """How far the level of the forces is followed with many contacts.
+    """Options on how far the level of the forces is followed with many contacts.
 
     Of these there always is one that slips or opens only far above 1.
 
     Attributes
     ----------
     min_contacts : int
-        Contacts that are many.
+        Number of contacts from which on they are many.
     max_level : float
         Level up to which the curve is followed.
     max_level_without_fold : float
-        The same where the curve has not turned until then.
+        Level up to which it is followed where it has not turned back until then.
     max_reversal : float
-        Part of its level by which a curve may turn back and not count as turned. A contact that begins to
+        Relative fall of its level up to which a curve does not count as turned back. A contact that begins to
         slip in a plane turns its mean displacement as a root, which turns the level back a little.
     target_turn, target_miss, min_cosine, max_miss, tolerance : float
-        Of the steps of a curve of which the passings of the level 1 alone matter, as of
-        `fcm.continuation.options`, and to what its other points are known.
+        Options of the steps of a curve of which only the points at the level 1 matter, as of
+        `fcm.continuation.options`; and the tolerance of its other points.
     corner_tolerance : float
-        Part of a step, to which its corners are known.
+        Error of the place of a corner, relative to the step.
     beyond_fraction, min_seconds_beyond : float
-        Part of what the way to the level 1 takes, that the way beyond may take, and seconds of work that it
-        may in any case. A curve that is left there is not complete: it may come back to 1.
+        Most work of the way beyond the level 1, relative to that of the way to it; and [s] work that it may
+        take in any case. A curve that is left there is not complete: it may come back to 1.
     """
 
     min_contacts: int = 12
@@ -126,14 +126,17 @@ def solutions_at(
 def solutions_in_turn(
     system: System, frequencies: Sequence[float], fewer: Sequence[LevelSolutions] = ()
 ) -> Iterator[LevelSolutions]:
-    """The same as each is asked for."""
+    """Solutions at some frequencies, as `solutions_at`, each computed when it is asked for."""
     precompute(system, frequencies)
     reach = {one.omega: one.max_level for one in fewer if np.isfinite(one.max_level)}
     yield from (solutions(system, omega, reach.get(omega)) for omega in frequencies)
 
 
 def _followed(system: System, omega: float, linear: float, top: float, most: float) -> LevelSolutions:
-    """What the level passes from where it is linear to its top, which may be less than the most."""
+    """Solutions at the level 1 on the curve from where it is linear to its top.
+
+    most: the level up to which curves are shared by systems of other preloads.
+    """
     if linear >= top:
         return LevelSolutions(
             omega, system.harmonics, (), True, _level_reach(system, Status.COMPLETE, np.empty(0))
@@ -158,14 +161,16 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
 
 
 def turned_back(path: Path, options: LevelReachOptions) -> bool:
-    """Whether a curve turns back by more than a beginning slip does, no further below 1 than it was followed
-    above."""
+    """Whether a curve of the level turns back by more than where slip begins.
+
+    That counts above a level as far below 1 as the curve was followed above it.
+    """
     levels = path.parameter[path.parameter > 1.0 / options.max_level_without_fold]
     return bool((levels < (1.0 - options.max_reversal) * np.maximum.accumulate(levels)).any())
 
 
 def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
-    """The same from the curve that systems of other preloads have, too, if it goes as far.
+    """Solutions from the curve that systems of other preloads share, if it goes as far; else None.
 
     That is followed to its end, which is expensive where fewer harmonics tell that less is enough.
     """
@@ -198,8 +203,10 @@ def _to_level_one(system: System, omega: float) -> Path:
 def _coarse_curve(
     system: System, omega: float, linear: float, top: float, user_values: tuple[float, ...]
 ) -> Path:
-    """The curve of the level, by long steps if those come to its end, and to its user points; shorter ones
-    may where they do not."""
+    """The curve of the level by long steps, or by shorter ones where those fail.
+
+    They fail where they do not come to the end of the curve, and to its user points.
+    """
     options = system.option(LEVEL_CURVE)
     for step, over_corners in ((options.max_step_user_points, True), (options.max_step, False)):
         path = level_curve(
@@ -223,7 +230,7 @@ def _skips_user_point(path: Path, user_values: tuple[float, ...]) -> bool:
 
 
 def few_harmonics(system: System) -> int:
-    """How many harmonics tell how far the level of more is to be followed."""
+    """Number of harmonics that tell how far the level of more harmonics is to be followed."""
     layout, options = system.layout, system.option(LEVEL_CURVE)
     means, each = layout.directions, layout.stride
     return min(
@@ -233,7 +240,7 @@ def few_harmonics(system: System) -> int:
 
 
 def _level_reach(system: System, status: Status, levels: FloatArray) -> float:
-    """Up to which level the curve of more harmonics is to be followed, if those of a system tell it."""
+    """Level up to which the curve of more harmonics is to be followed, or inf if a system does not tell."""
     if status is not Status.COMPLETE or len(system.harmonics) < few_harmonics(system):
         return np.inf
     options = system.option(LEVEL_CURVE)
@@ -243,7 +250,7 @@ def _level_reach(system: System, status: Status, levels: FloatArray) -> float:
 
 
 class LevelRange(Frozen):
-    """Levels over which a response is followed, and how.
+    """A range of levels over which a response is followed, and how.
 
     Attributes
     ----------
@@ -321,10 +328,13 @@ def _follow_level(system: System, start: FloatArray, omega: float, levels: Level
 
 
 class _WayBeyond:
-    """Of a curve of the level: 1 as long as it may be followed, then -1; see `LevelReachOptions`."""
+    """End function of a curve of the level: 1 as long as it may be followed, then -1.
+
+    See `LevelReachOptions`.
+    """
 
     def __init__(self, newton: Newton, each: float, options: LevelReachOptions) -> None:
-        """Each evaluation of newton takes so many seconds of work."""
+        """Begin to count the evaluations of newton, each of which takes `each` seconds of work."""
         self.newton, self.each, self.options = newton, each, options
         self.to_one: float | None = None
 
@@ -406,7 +416,7 @@ def frequencies_in_gaps(
 
 
 def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple[int, ...]:
-    """Harmonics of a system, and the lowest where with these other solutions are reached from rest.
+    """Harmonics of a system with the lowest added, if these find other solutions from rest.
 
     found: where solutions were looked for with those of the system, and what was found. With one harmonic the
     level of the forces may turn back just above 1, or not at all, where with three it turns just below 1.

@@ -1,4 +1,4 @@
-"""Where the level of the forces turns back before 1, and what solutions come of that at other frequencies.
+"""Folds where the level of the forces turns back before 1, and solutions beside them at other frequencies.
 
 The level of the forces at which its curve turns is another at each frequency. Where it is 1 a window of
 several solutions begins or ends: a fold of the response. It may be a fold of a closed branch that lies
@@ -29,13 +29,15 @@ class ProblemAtLevel(Protocol):
     scale: FloatArray
 
     def measure(self, z: FloatArray) -> int:
-        """See `Problem`."""
+        """Fill the units of lengths at z, see `Problem.measure`."""
 
 
 class LevelFold(NamedTuple):
-    """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's directions before
-    and after, which differ at a corner, (unknown + 2,): displacements, frequency, which does not change, and
-    level; unfinished if it turns before it passes the level 1."""
+    """A fold of the level of the forces at one frequency: z (unknown + 1,), with the frequency.
+
+    before, after (unknown + 2,): the curve's directions, which differ at a corner, of displacements,
+    frequency, which does not change, and level. unfinished: whether it turns before it passes the level 1.
+    """
 
     level: float
     z: FloatArray
@@ -45,12 +47,12 @@ class LevelFold(NamedTuple):
 
     @property
     def direction(self) -> FloatArray:
-        """Direction (unknown + 1,) of displacements and frequency there."""
+        """Direction (unknown + 1,) of displacements and frequency at the fold."""
         return self.before[:-1]
 
     @property
     def directions(self) -> tuple[FloatArray, ...]:
-        """Directions of displacements, frequency and level there: in the middle, before, after."""
+        """Directions of displacements, frequency and level at the fold: in the middle, before, after."""
         smooth = self.before is self.after
         return (self.before,) if smooth else (self.before + self.after, self.before, self.after)
 
@@ -86,8 +88,10 @@ def _direction(path: Path, i: int, unit: float) -> FloatArray:
 
 
 def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) -> bool:
-    """Whether a turn leads to a solution at the level 1, by shorter stages where one was too long; newton is
-    of that problem, and comes to it."""
+    """Whether a fold is brought to the level 1, by shorter stages where one was too long.
+
+    newton belongs to that problem, and is then at the solution.
+    """
     problem.load = turn.level
     problem.measure(turn.z)
     newton.z[:], newton.scale[:] = turn.z, problem.scale

@@ -108,7 +108,7 @@ def lowest_linear_limit(system: System, omega: float) -> float:
 
 
 def lowest_linear_limits(system: System, frequencies: Sequence[float]) -> FloatArray:
-    """The same at some frequencies (frequency,), without static loads and laws of one's own."""
+    """Least levels (frequency,) at which a contact changes from rest, without static loads and own laws."""
     contacts = system.scene.contacts
     ports = np.array([_on_ports(system, omega)[0] for omega in frequencies])
     n_0, mu = (np.array([getattr(one, name) for one in contacts], dtype=np.float64) for name in ("n_0", "mu"))
@@ -133,8 +133,10 @@ def _ratios(limit: FloatArray, motion: FloatArray) -> FloatArray:
 def _motions(
     system: System, ports: ComplexArray, together: Callable[..., FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Of each contact the variation of its load (..., contact), and the sizes of the motions of its two
-    limits (..., contact, 2), in the direction in which they are greater; of ports (..., driven, port).
+    """Variation of each contact's load, and the sizes of the motions of its two limits.
+
+    Of ports (..., driven, port); the loads are (..., contact), the limits (..., contact, 2), in the direction
+    in which they are greater.
 
     Those of the driven harmonics together: their sum is never less than that of the motion, and the greatest
     of them no more than 4 / pi times it.

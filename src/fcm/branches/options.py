@@ -9,52 +9,59 @@ from fcm.frozen import Frozen
 
 
 class SurfaceOptions(Frozen):
-    """How places on the surface of all solutions are found; lengths are in the scaled unknowns."""
+    """Options on how places on the surface of all solutions are found.
 
-    level_floor: float = 0.1  # levels are measured by themselves, and below this by this
-    max_iterations: int = 8  # of Newton's method, before a place is judged too far away
-    tolerance: float = 1e-4  # a step that ends them: about its square is left
-    singular_step: float = 1e-7  # a step along which the matrix does not change,
-    singular_fraction: float = 1e-3  # or this share of the way from the centre
-    diverged_step: float = 1e6  # a step at which Newton's method diverges
+    Lengths are in the scaled unknowns.
+    """
+
+    # least unit of the level of the forces: above it the level is measured by itself
+    level_floor: float = 0.1
+    max_iterations: int = 8  # number of Newton steps after which a guess is given up as too far away
+    tolerance: float = 1e-4  # length of a Newton step that is the last: about its square is left as an error
+    singular_step: float = 1e-7  # length of a last Newton step after which the matrix is not factored anew
+    # length of a last Newton step, relative to the place's distance from the centre, after which the matrix
+    # is not factored anew
+    singular_fraction: float = 1e-3
+    diverged_step: float = 1e6  # length of a Newton step from which on the iteration counts as divergent
 
 
 SURFACE = SurfaceOptions()
 
 
 class FoldOptions(Frozen):
-    """How folds of the level of the forces are followed in (frequency, level).
+    """Options on how folds of the level of the forces are followed in (frequency, level).
 
     Lengths are in the scaled unknowns: displacements by their own size, the frequency by its range, the level
     by itself.
     """
 
-    min_level: float = 0.25  # level at which a curve of folds is left, being too far below 1,
-    max_level: float = 4.0  # and above it
-    initial_step: float = 0.01  # step,
-    max_step: float = 0.1
-    min_step: float = 1e-4  # with which no fold was found any more; of half that width, a strip has ended
-    strip_width: float = 3e-3  # widest strip between two curves of folds of which the end is looked for
-    target_turn: float = 0.25  # [rad] by which the chord of a step is to leave the tangent,
-    max_turn: float = 0.9  # and by which it may at most
-    angle_tolerance: float = 0.005  # [rad] to which the direction of the chord is found
-    max_tangent: float = 100.0  # times the axes: tangents longer than this are of another part of the surface
-    start_circles: tuple[float, ...] = (
-        1.0,
-        5.0,
-        25.0,
-    )  # times the first step: circles about a start beside a fold
-    corner_roundness: float = (
-        0.01  # square of the axes of the ellipse in (frequency, level) that a circle about a fold
-    )
-    # of a smooth surface is: where it is rounder, the fold is in a corner
-    circle_points: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
-    max_steps: int = 400  # steps of a curve
-    max_retreats: int = 4  # of a curve by a step after which no fold was found, to take a shorter one
-    report_interval: int = 16  # steps after which it is reported what they took
-    curve_tolerance: float = 0.3  # of a step: a known fold this near to a curve is on it
-    work_fraction: float = 0.5  # of the work before, that all curves may take,
-    min_seconds: float = 1.0  # and seconds of work that they may in any case
+    min_level: float = 0.25  # level below which a curve of folds is left: too far below 1
+    max_level: float = 4.0  # level above which a curve of folds is left: too far above 1
+    initial_step: float = 0.01  # length of the first step
+    max_step: float = 0.1  # length of the longest step
+    min_step: float = 1e-4  # step below which no fold is looked for any more; a strip half as wide has ended
+    # width of a strip between two curves of folds, up to which the end of the strip is looked for
+    strip_width: float = 3e-3
+    target_turn: float = 0.25  # [rad] angle between the chord of a step and the tangent at which a step aims
+    # [rad] angle between the chord of a step and the tangent within which the next place is looked for
+    max_turn: float = 0.9
+    angle_tolerance: float = 0.005  # [rad] error to which the direction of the chord is found
+    # tangent relative to the axes from which on a place lies on another part of the surface
+    max_tangent: float = 100.0
+    # radii, relative to `initial_step`, of the circles about a start on which folds are looked for in turn
+    start_circles: tuple[float, ...] = (1.0, 5.0, 25.0)
+    # ratio of the squared axes of the ellipse that a circle about a fold of a smooth surface maps to, in
+    # (frequency, level): where it is rounder, the fold lies in a corner
+    corner_roundness: float = 0.01
+    circle_points: int = 16  # number of places on a circle at which folds are looked for
+    max_steps: int = 400  # most steps of a curve of folds
+    # most times that a curve goes back by a step where no fold was found, to take a shorter one
+    max_retreats: int = 4
+    report_interval: int = 16  # number of steps after which their work is charged to the budget
+    # distance of a known fold from a chord of a curve, relative to the chord, below which it is on it
+    curve_tolerance: float = 0.3
+    work_fraction: float = 0.5  # most work of all curves of folds, relative to the work done before
+    min_seconds: float = 1.0  # [s] work that the curves of folds may take in any case
 
     def covers(self, level: float) -> bool:
         """Whether folds at a level are looked at."""
@@ -65,66 +72,84 @@ FOLDS = FoldOptions()
 
 
 class LevelOptions(Frozen):
-    """Where the level of the forces is followed besides the resonances and the ends of the range."""
+    """Options on where the force level is followed besides resonances and the ends of the range."""
 
-    strong_harmonics: int = 3  # harmonics whose resonances are strong enough to keep themselves up
-    distinct_frequency: float = 0.02  # to a frequency that was looked at: a closed branch is about as wide
-    wide_range: float = 0.1  # of the range: of a range without a stable motion that is wider, halves as well
-    max_harmonics: int = 9  # harmonics with which it is followed there: the branches of more are theirs, too
-    work_fraction: float = 0.2  # of the work before, that all may take,
-    min_seconds: float = 0.1  # and seconds of work that they may in any case
+    # highest harmonic whose resonances are taken for strong enough to sustain a motion of their own
+    strong_harmonics: int = 3
+    # relative distance from a known frequency, up to which another is not looked at: a closed branch is
+    # about as wide
+    distinct_frequency: float = 0.02
+    # width of a gap without a stable motion, relative to the frequency range, above which its halves are
+    # looked at, too
+    wide_range: float = 0.1
+    # number of harmonics with which the level is followed: further ones have the same branches
+    max_harmonics: int = 9
+    work_fraction: float = 0.2  # most work of all these curves, relative to the work done before
+    min_seconds: float = 0.1  # [s] work that these curves may take in any case
 
 
 LEVELS = LevelOptions()
 
 
 class ProlongationOptions(Frozen):
-    """Which points of a branch are prolongated to more harmonics."""
+    """Options on which points of a branch are prolongated to more harmonics."""
 
-    max_of_a_kind: int = 8  # peaks, and folds
-    spaced_points: int = 9  # points along the branch
-    max_change: float = 0.5  # of a solution's size: what moves further has come to another one
-    same_point: float = 1e-6  # of the greatest unknown: a point nearer to a corner or a fold is at it
-    harmonics_factor: int = 3  # as many harmonics at once, where Newton's method diverges with all
-    tolerance: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
+    max_of_a_kind: int = 8  # most peaks, and most folds, that are prolongated
+    spaced_points: int = 9  # number of points, evenly spaced along the branch, that are prolongated, too
+    # change of the solution, relative to its size, from which on another one was found
+    max_change: float = 0.5
+    # distance from a corner or a fold, relative to the greatest unknown, below which a point is the same
+    same_point: float = 1e-6
+    # ratio of the numbers of harmonics of two stages, where Newton's method diverges with all at once
+    harmonics_factor: int = 3
+    # length of the last Newton step, relative to a displacement: beyond that steps end at rounding
+    tolerance: float = 1e-6
 
 
 PROLONGATION = ProlongationOptions()
 
 
 class BranchingOptions(Frozen):
-    """How branches are left at branch points; lengths are in the scaled unknowns."""
+    """Options on how branches are left at branch points.
 
-    tolerance: float = 1e-4  # of a step, to which a branch point is found
-    distances: tuple[float, ...] = (0.003, 0.01, 0.03, 0.1)  # from it at which other branches are looked for
-    max_deviation: float = (
-        0.9  # of such a distance: what Newton's method finds further away is no such solution
-    )
-    motion_tolerance: float = 1e-5  # of a displacement: motions that differ by less are the same
-    max_rounds: int = 4  # branches that leave branches that leave ...
-    max_starts: int = 64  # starts
-    min_residual: float = 1e-6  # of a displacement: harmonics that a motion would have more of belong to it
-    max_displacement: float = 0.01  # relative, of a branch point's frequency by harmonics that lack
-    min_leading_fraction: float = 0.1  # of the greatest, of even harmonics by which a level loses symmetry
-    max_level_step: float = 0.1  # longest, of branches that leave a curve of the level
-    symmetry_points: int = 16  # of a path, all of which are symmetric if it is
+    Lengths are in the scaled unknowns.
+    """
+
+    tolerance: float = 1e-4  # error of a branch point's place, relative to the step in which it lies
+    # distances from a branch point at which other branches are looked for, in turn
+    distances: tuple[float, ...] = (0.003, 0.01, 0.03, 0.1)
+    # distance of a solution from its guess, relative to that one of `distances`, beyond which it is rejected
+    max_deviation: float = 0.9
+    # difference of two motions, relative to a displacement, below which they are the same
+    motion_tolerance: float = 1e-5
+    max_rounds: int = 4  # most rounds of branches that leave branches that leave ...
+    max_starts: int = 64  # most branch points that are left
+    # residual of harmonics left out, relative to a displacement, from which on they belong to the motion
+    min_residual: float = 1e-6
+    # largest relative change of a branch point's frequency by lacking harmonics that is ignored
+    max_displacement: float = 0.01
+    # even harmonic relative to the greatest, above which it counts where a level loses symmetry
+    min_leading_fraction: float = 0.1
+    max_level_step: float = 0.1  # longest step of branches that leave a curve of the level
+    symmetry_points: int = 16  # number of points of a path whose symmetry decides on that of the path
 
 
 BRANCHING = BranchingOptions()
 
 
 class FrictionOptions(Frozen):
-    """Where contacts shake down, and how friction is raised from none.
+    """Options on where contacts shake down, and how friction is raised from none.
 
     Attributes
     ----------
     load_tolerance : float
-        Change of a contact's load, relative to the residual friction of another: less is rounding.
+        Change of a contact's load, relative to the residual friction of another, below which it counts as
+        rounding.
     shakedown_level : float
         Level of the forces below which a contact that began unstressed would slip, although none does at 1.
     difference : float
-        Part of the coefficients, by which the residual is differentiated: less than what is between a point
-        and the next change of a contact.
+        Step of the difference quotient of the residual, relative to the coefficients: less than the distance
+        from a point to the next change of a contact.
     """
 
     load_tolerance: float = 1e-9
@@ -136,7 +161,7 @@ FRICTION = FrictionOptions()
 
 
 class LevelCurveOptions(Frozen):
-    """How the level of the forces is followed at one frequency, from rest.
+    """Options on how the level of the forces is followed at one frequency, from rest.
 
     Levels are relative to that of the scene. Steps are lengths along the curve in its scaled unknowns, where
     the level is measured by itself.
@@ -144,45 +169,51 @@ class LevelCurveOptions(Frozen):
     Attributes
     ----------
     linear_levels : tuple of float
-        Levels at which contacts are nearly linear.
+        Levels at which contacts are nearly linear, tried in turn as starts of the curve.
     linear_fraction : float
-        Times the least level at which a contact is nonlinear: up to there nothing is to be followed.
+        Level at which the curve starts, relative to the least level at which a contact is nonlinear: below it
+        the response is linear.
     max_step : float
-        Longest step,
+        Longest step of the curve where its course matters.
     max_step_user_points : float
-        and where the passings of the level 1 alone matter.
+        Longest step where only the points at the level 1 matter.
     stalled_fraction : float
-        Part of the longest step, where a curve has stalled,
+        Longest step of the next attempt, relative to `max_step`, after a curve has stalled.
     reversed_fraction : float
-        and where it has gone back on itself.
+        Longest step of the next attempt, relative to the longest before, after a curve has gone back on
+        itself.
     reversal_tolerance : float
-        Relative difference of the levels from which both go back, up to which they are at one corner. Then no
-        other step goes on.
+        Relative difference of the levels at which both attempts go back, up to which they went back at the
+        same corner. Then no other step leads on.
     few_harmonics : int
-        Harmonics whose curve shows those of more how far they are to be followed,
+        Number of harmonics, at most, whose curve shows how far that of more is to be followed.
     few_unknowns : int
-        or as many as make this many unknowns.
+        Number of unknowns that limits those few harmonics, where contacts are many.
     reliable_harmonics : int
-        Harmonics with which a peak that one harmonic has at twice its height is within some per cent.
+        Number of harmonics with which a peak that one harmonic has at twice its height is within some per
+        cent.
     clear_level : float
-        Level that a curve has to stay above for that of more harmonics not to come back to 1.
+        Level above which a curve has to stay, so that the curve of more harmonics is taken not to come back
+        to 1.
     reach_factor : float
-        Times its greatest level before, up to which that of more harmonics is followed.
+        Level up to which the curve of more harmonics is followed, relative to the greatest level before the
+        few harmonics' curve stays clear.
     level_tolerance : float
-        Relative difference by which two ways to one level may differ.
+        Relative difference of two levels, computed in two ways, up to which they are the same.
     resonance_offset : float
-        Relative distance from a resonance, which an undamped structure has no response at.
+        Relative distance at which the response is computed beside a resonance: there an undamped structure
+        has none.
     max_gap : float
-        Relative distance of two frequencies between which a mode may resonate, from where it is open to
-        where it is stuck: in wider gaps the level is followed, too.
+        Relative distance of two frequencies at which the level is followed, above which more are put between
+        them; only where a mode may resonate, from all contacts open to all stuck.
     distinct_peak : float
-        Relative distance from other such frequencies, from which on that of a peak is used, too, that fewer
-        harmonics have and more have lost.
+        Relative distance of a peak's frequency from those frequencies, above which the level is followed
+        there, too. It is a peak that fewer harmonics have and more have lost.
     same_peak : tuple of float
-        Relative distance of the frequencies of a peak with fewer harmonics and with more, at most; and part
-        of its size that it has with more, at least.
+        Two numbers for a peak to be the same with fewer and with more harmonics: the greatest relative
+        distance of its frequencies; and its least size with fewer, relative to that with more.
     step : StepOptions
-        How its steps are chosen.
+        Options of the step control.
     """
 
     linear_levels: tuple[float, ...] = (1e-3, 1e-6, 1e-9)
@@ -209,20 +240,23 @@ LEVEL_CURVE = LevelCurveOptions()
 
 
 class LevelFoldOptions(Frozen):
-    """How folds of the level of the forces are brought to the level 1.
+    """Options on how folds of the level of the forces are brought to the level 1.
 
     Attributes
     ----------
     max_level : float
-        Folds between this level and its reciprocal may come to 1 within a range,
+        Level, and its reciprocal, between which folds are brought to the level 1.
     stage_factor : float
-        by stages, each of so many times the level,
+        Ratio of the levels of two stages on the way to the level 1.
     min_stage : float
-        and this part of that where Newton's method does not lead from one to the next.
+        Shortest stage, in the logarithm of the level, relative to the first: where Newton's method fails, a
+        stage is halved down to this.
     offsets : tuple of float
-        Part of a solution's size: from one beside a fold to those on either side of the fold.
+        Distances along the curve, relative to a solution's size, at which solutions on either side of the
+        fold are looked for.
     max_change : float
-        Part of a solution's size: what Newton's method finds further away has little to do with the fold.
+        Change of a solution in a stage, relative to its size, from which on it has little to do with the
+        fold.
     """
 
     max_level: float = 4.0
@@ -236,19 +270,20 @@ LEVEL_FOLDS = LevelFoldOptions()
 
 
 class LinearLimitOptions(Frozen):
-    """Up to which level contacts change what they do; levels are relative to that of the scene.
+    """Options on the level up to which contacts keep their states; levels are relative to that of the scene.
 
     Attributes
     ----------
     level_factor : float
-        Times the level at which the last contact changes what it does, up to which the level is followed,
+        Level up to which the level is followed, relative to the one at which the last contact changes what it
+        does.
     max_level : float
-        but no further than this level.
+        Level beyond which the level is never followed.
     max_kept : int
-        Systems of which linear responses are kept, as contacts of a sweep are closed at rest, or open.
+        Most systems whose linear responses are kept, for the next systems of a sweep.
     max_resonances : int
-        Narrow resonances that are looked at; of more the widest, and so those of the lowest harmonics, as
-        each costs a point.
+        Most narrow resonances that are looked at, as each costs a point. Of more the widest are taken, and so
+        those of the lowest harmonics.
     """
 
     level_factor: float = 3.0
@@ -261,14 +296,15 @@ LINEAR_LIMITS = LinearLimitOptions()
 
 
 class SharedLevelOptions(Frozen):
-    """How curves of the level are shared by systems of other preloads.
+    """Options on how curves of the level are shared by systems of other preloads.
 
     Attributes
     ----------
     max_kept : int
-        Curves that are kept for each thread.
+        Most curves that are kept in each thread.
     extrapolation : float
-        Part of the way from a point to the next, by which a solution between them may lie beyond.
+        Distance beyond the end of a chord between two points, relative to the chord, up to which a solution
+        is taken to lie on it.
     """
 
     max_kept: int = 32

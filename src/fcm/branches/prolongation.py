@@ -46,7 +46,7 @@ def prolongated(
 
 
 class _ProlongatedPath:
-    """A path, and what its points lead to."""
+    """A path of few harmonics, and the solutions with more that its points lead to."""
 
     def __init__(self, path: Path, ways: Sequence[Sequence[Prolongation]], places: Sequence[int]) -> None:
         self.path, self.ways, self.places = path, ways, places
@@ -110,7 +110,7 @@ def _prolongation(
 def _prolongated_by_stages(
     way: Sequence[Prolongation], z: FloatArray, direction: FloatArray
 ) -> FloatArray | None:
-    """The solution near a point of a curve by one step after the other; None where one diverges."""
+    """The solution near a point of a curve, by stages of more and more harmonics; None where one diverges."""
     for prolongation in way:
         if not (prolongation.find_normal(z, direction) and prolongation.newton.correct(1.0)):
             return None
@@ -146,7 +146,7 @@ def _plain_points(path: Path, options: ProlongationOptions) -> npt.NDArray[np.in
 
 
 def _spaced(places: npt.NDArray[np.intp], most: int) -> npt.NDArray[np.intp]:
-    """No more than so many of some places, evenly."""
+    """At most `most` of the places, evenly spaced among them."""
     if len(places) <= most:
         return places
     return places[np.linspace(0, len(places) - 1, most).astype(np.intp)]

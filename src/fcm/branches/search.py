@@ -46,8 +46,11 @@ def with_isolas(system: System, found: Traced) -> Traced:
 
 
 def with_unsymmetric(system: System, found: Traced) -> Traced:
-    """With the unsymmetric branches that curves of the level lead to, of two mirror images one; those that
-    take other harmonics, and where the level was not followed to its end, are noted."""
+    """The branches with unsymmetric ones that curves of the level lead to; one of two mirror images.
+
+    Solutions that take other harmonics, and frequencies where the level was not followed to its end, are
+    noted.
+    """
     if system.harmonics[-1] < 2:
         return found
     looked = unsymmetric_solutions(system, found.found, found.branches.paths)

@@ -18,7 +18,8 @@ from fcm.model.scene import FloatArray, Scene
 
 
 def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.str_]) -> float:
-    """Where contacts that slip nowhere on curves would slip if they began unstressed [rad/s], or NaN.
+    """Frequency [rad/s] at which contacts that never slip on curves would slip if they began unstressed; or
+    NaN.
 
     frequency (point,); states (point, contact). The frequency is that at which they would begin to slip at
     the least force.

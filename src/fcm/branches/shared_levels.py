@@ -23,7 +23,7 @@ Followed = Callable[[System, float], Path]
 
 
 class _CurveCache(threading.local):
-    """Curves by what they are of; nothing for those that did not come to their end."""
+    """Curves of the level that each thread keeps, by what they depend on; None for those that did not end."""
 
     def __init__(self) -> None:
         self.paths: OrderedDict[tuple[object, ...], Path | None] = OrderedDict()
@@ -33,7 +33,7 @@ _CURVES = _CurveCache()
 
 
 def clear() -> None:
-    """Begin another sweep."""
+    """Forget all curves, at the beginning of another sweep."""
     _CURVES.paths.clear()
 
 
@@ -55,7 +55,7 @@ def shared_curve(system: System, omega: float, followed: Followed) -> Path | Non
 
 
 def _curve_key(system: System) -> tuple[object, ...]:
-    """What the curve is of, besides the frequency."""
+    """The numbers that a curve of the level depends on, besides the frequency."""
     laws = tuple((c.mu, c.k_u, c.k_v, c.n_0) for c in system.normalised.scene.contacts)
     return *system.linear.numbers, laws, system.harmonics, system.other_options
 

@@ -40,7 +40,9 @@ from fcm.model.scene import FloatArray
 
 @cython.cclass
 class Surface:
-    """`begin` at a place, then `find`: z is a place near it, value its test function g.
+    """Points of the surface of solutions at all frequencies and levels, about a centre.
+
+    `begin` at a place, then `find`: z is a place near it, value its test function g.
 
     z, centre, scale (n + 2,): displacements, frequency [rad/s], level; axes, tangents (2, n + 2), scaled.
     """
@@ -150,7 +152,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def evaluate(self) -> cython.int:
-        """The balance at z."""
+        """Evaluate the balance at z, with its frequency and level."""
         i: cython.Py_ssize_t
         for i in range(self.n + 1):
             self.balance_point[i] = self.z[i]
@@ -183,14 +185,14 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def factor(self) -> cython.bint:
-        """The equations at z, with the two axes."""
+        """Evaluate and factor the equations at z, closed by the two axes."""
         self.evaluate()
         return self.factor_condensed() if self.condensed else self.factor_dense()
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def factor_dense(self) -> cython.bint:
-        """The whole matrix."""
+        """Factor the whole matrix of the equations, closed by the two axes."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -275,7 +277,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-2, check=False)
     def correct(self, ahead: cython.double, aside: cython.double) -> cython.double:
-        """Move z by a step of Newton's method; its length."""
+        """Move z by a Newton step, and return the length of that."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         total: cython.double = 0.0
@@ -294,7 +296,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def compute_tangents(self) -> cython.bint:
-        """The tangents and the test function, from the equations as they are factored."""
+        """Compute the tangents and the test function from the equations as they are factored."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -315,7 +317,7 @@ PI = cython.declare(cython.double, np.pi)
 
 
 class Ending(Enum):
-    """How a curve of folds ended."""
+    """The reason why a curve of folds ended."""
 
     RANGE = "it left the range of frequencies"
     LEVEL = "it left the levels that are looked at"
@@ -341,8 +343,11 @@ class Side:
 
 @cython.cclass
 class Departure:
-    """From the centre to a place of the curve: length, angle; directions (n + 2,), in the units of z, to
-    there and across, in the middle of both sides of the curve; the sign of the test function on its left."""
+    """A way from the centre to a place of the curve of folds.
+
+    radius, angle: its length and angle; along, across (n + 2,): directions to there and across the curve, in
+    the units of z; left: the sign of the test function on its left.
+    """
 
     radius = cython.declare(cython.double, visibility="readonly")
     angle = cython.declare(cython.double, visibility="readonly")
@@ -364,7 +369,7 @@ class Departure:
 
 @cython.cclass
 class FoldSteps:
-    """`departures` of a start, then `run` by each of them."""
+    """Steps along a curve of folds: `departures` of a start, then `run` by each of them."""
 
     surface: Surface
     options: FoldOptions
@@ -395,7 +400,7 @@ class FoldSteps:
         )
 
     def departures(self, start: FloatArray, singular: FloatArray) -> list[Departure]:
-        """The two ways of the curve from its start."""
+        """The two ways in which the curve of folds leaves its start."""
         if not self.begin(start, singular):
             return []
         for wider in self.options.start_circles:
@@ -472,7 +477,7 @@ class FoldSteps:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def test_value(self, side: Side, radius: cython.double, angle: cython.double) -> cython.int:
-        """A place on a circle about the centre; its value is NaN where there is none on this part."""
+        """Evaluate the test function at a place on a circle about the centre; NaN where there is no place."""
         surface: Surface = self.surface
         c: cython.double = cos(angle)
         s: cython.double = sin(angle)
@@ -493,7 +498,10 @@ class FoldSteps:
         return 0
 
     def around(self, radius: float, left: float) -> list[Departure]:
-        """Ways to where the sign changes on a circle, with that sign on the left if one is given."""
+        """Ways to the changes of sign on a circle about the centre.
+
+        left: the sign of the test function on the left of a way, or 0 for any.
+        """
         self.surface.z[:] = self.surface.centre
         circle, sides, found = self.options.circle_points, list[Side](), list[Departure]()
         for k in range(circle + 1):
@@ -595,8 +603,10 @@ class FoldSteps:
         return bool(surface.recentre(axes[0], axes[1]))
 
     def other_side(self, thin: float, left: float) -> float:
-        """How far to the left of the centre the strip beside the curve has its other side, negative to the
-        right; zero if it is no strip, or not so thin."""
+        """Distance from the centre to the other side of the strip beside the curve, positive to the left.
+
+        Zero if it is no strip, or not as thin as `thin`.
+        """
         surface: Surface = self.surface
         side: Side = Side(self.n)
         surface.z[:] = surface.centre

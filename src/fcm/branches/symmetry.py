@@ -33,8 +33,10 @@ class Symmetry(Frozen):
 
 
 def parts_of(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Of the displacements of a motion the greatest means and amplitudes of each even harmonic, which a
-    symmetric one has not; and those of the odd ones."""
+    """Greatest even parts of a motion's displacements, and greatest odd ones.
+
+    Even are the means and the even harmonics, which a symmetric motion has not.
+    """
     parts = np.abs(system.layout.complex_ports(z)).max(axis=0, initial=0.0)
     even = np.array([True, *(h % 2 == 0 for h in system.harmonics)])
     return parts[even], parts[~even]

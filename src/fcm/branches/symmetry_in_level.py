@@ -37,8 +37,11 @@ class UnsymmetricSolution(NamedTuple):
 
 
 class UnsymmetricSolutions(NamedTuple):
-    """What was found, and the frequencies [rad/s] at which the curve of the level, or what leaves it, was not
-    followed to its end."""
+    """Unsymmetric solutions, and the frequencies at which the search for them came to no end.
+
+    unfinished: frequencies [rad/s] at which the curve of the level, or what leaves it, was not followed to
+    its end.
+    """
 
     solutions: tuple[UnsymmetricSolution, ...] = ()
     unfinished: tuple[float, ...] = ()
@@ -97,7 +100,7 @@ def _branch_through(
     span: tuple[float, float],
     options: BranchingOptions,
 ) -> list[Path]:
-    """The branch both ways from a start; one way where it is closed."""
+    """The branch through a start, followed both ways; one way where it is closed."""
     ways, wanted = list[Path](), Events((1.0,))
     for forward in (True, False):
         steps = FollowOptions(options.max_level_step)

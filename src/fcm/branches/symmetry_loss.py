@@ -1,4 +1,4 @@
-r"""Where symmetric motions lose their symmetry by even harmonics that are not balanced.
+r"""Frequencies at which symmetric motions lose their symmetry by even harmonics that are not balanced.
 
 A symmetric motion has odd harmonics alone, and loses its symmetry by even ones. So its branch points are
 those of the balance with all even harmonics up to the highest, which it solves with none of these. Where the

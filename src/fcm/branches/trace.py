@@ -39,14 +39,15 @@ class FoundPeak(NamedTuple):
 
 
 class Traced(Frozen):
-    """Branches, and what was found at the frequencies where solutions were looked for, maybe with fewer
-    harmonics; work is what that took, in seconds of `cost_model`. mirrored: the numbers of the
-    branches whose mirror images are branches, too, and are not among them. folds_lost: frequencies [rad/s]
-    from where curves of folds were not followed further, so that isolated branches may be missing.
-    symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are not among those balanced.
-    symmetry_lost_in_level: frequencies at which what leaves the curve of the level is unsymmetric by even
-    harmonics that are not among those balanced, and which lead. fewer_peaks: those of the responses with
-    fewer harmonics.
+    """The traced branches, and the solutions at the frequencies where these were looked for.
+
+    found: those solutions, maybe with fewer harmonics; work: what that took, in seconds of `cost_model`.
+    mirrored: the numbers of the branches whose mirror images are branches, too, and are not among them.
+    folds_lost: frequencies [rad/s] from where curves of folds were not followed further, so that isolated
+    branches may be missing. symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are
+    not among those balanced. symmetry_lost_in_level: frequencies at which what leaves the curve of the level
+    is unsymmetric by even harmonics that are not among those balanced, and which lead. fewer_peaks: those of
+    the responses with fewer harmonics.
     """
 
     branches: Branches
@@ -60,13 +61,13 @@ class Traced(Frozen):
 
     @property
     def own_peaks(self) -> tuple[FoundPeak, ...]:
-        """The peaks of the branches."""
+        """Peaks of the traced branches."""
         tops = (path.z[path.where(Mark.PEAK)] for path in self.branches.paths)
         return tuple(FoundPeak(float(z[-1]), float(np.linalg.norm(z[:-1]))) for one in tops for z in one)
 
     @property
     def peaks(self) -> tuple[FoundPeak, ...]:
-        """The peaks of the branches, then those of the response with fewer harmonics."""
+        """Peaks of the traced branches, then those of the response with fewer harmonics."""
         return *self.own_peaks, *self.fewer_peaks
 
     def lost_peaks(self, options: LevelCurveOptions) -> tuple[float, ...]:
@@ -131,7 +132,10 @@ def traced_from(
 
 
 def with_levels(system: System, before: Traced) -> Traced:
-    """With what the levels of the forces lead to, and the branches through what is on none that is known."""
+    """The traced response with what the levels of the forces lead to.
+
+    Branches are traced through those solutions that lie on none that is known.
+    """
     begin = system.work.seconds
     found, passed = _level_solutions(system, before)
     work, span = system.work.seconds - begin, system.scene.frequency_range
@@ -140,7 +144,7 @@ def with_levels(system: System, before: Traced) -> Traced:
 
 
 def _level_solutions(system: System, before: Traced) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
-    """What is found where the levels are followed, with all solutions that this leads to."""
+    """The solutions where the levels are followed, for each frequency and all together."""
     lost = before.lost_peaks(system.option(LEVEL_CURVE))
     found = solutions_at(system, level_frequencies(system, lost), before.found)
     return found, [z for one in found for z in one.solutions]
@@ -161,8 +165,10 @@ def _branches_through(
 def with_further(
     system: System, before: Traced, found: Sequence[LevelSolutions], starts: Sequence[FloatArray]
 ) -> Traced:
-    """With what was found at further frequencies, and the branches through further solutions, after those
-    that were traced before."""
+    """The traced response with solutions at further frequencies, and the branches through further starts.
+
+    New branches come after those that were traced before.
+    """
     span, known = system.scene.frequency_range, before.branches
     following = Following(FollowOptions(system.scene.max_step), _follow_shared(system))
     branches = all_branches(system.reset_balance, starts, span, following, known.paths)
@@ -172,14 +178,16 @@ def with_further(
 
 
 def _without_images(system: System, found: Traced) -> Traced:
-    """What was traced, with one of two branches that are mirror images."""
+    """The traced response with one of two branches that are mirror images."""
     paths, mirrored = without_images(system, found.branches.paths)
     return replace(found, branches=replace(found.branches, paths=paths), mirrored=mirrored)
 
 
 def _follow_shared(system: System, progress: Progress | None = None) -> Follow:
-    """Follows the balance that a system looks with, on the one stepper that it has for that; progress is told
-    of each path."""
+    """A function that follows the balance a system shares, on the one stepper that it has for that.
+
+    progress: is told the share of each path that is covered.
+    """
     stepper, places = system.shared_stepper, narrow_resonances(system)
 
     def along(
@@ -199,7 +207,7 @@ def _follow_shared(system: System, progress: Progress | None = None) -> Follow:
 
 
 def _without_unsteady(system: System, branches: Branches) -> Branches:
-    """Without the branches that are none, beside one that is.
+    """The branches without those that are no steady motion, if one is left.
 
     The mean of a rigid-body mode that nothing holds is not among the equations: a branch on all of which
     friction pushes along such a mode does not balance it.
@@ -212,7 +220,7 @@ def _without_unsteady(system: System, branches: Branches) -> Branches:
 
 
 def _is_unsteady(system: System, path: Path) -> bool:
-    """Whether it is such a branch."""
+    """Whether friction pushes along a rigid-body mode that nothing holds, on all of a path."""
     if system.linear.natural.min(initial=1.0) > 0.0:
         return False
     points = recorded(system, [path])

@@ -1,4 +1,4 @@
-"""What ``fcm respond`` is asked to calculate: curves, levels, a mode, tracked points, an optimum, motion."""
+"""Runs the calculation of ``fcm respond``: curves, levels, a mode, tracking, an optimum or a motion."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _options(messages: Messages, asked: Asked) -> ResponseOptions:
 
 
 def _balanced(messages: Messages, asked: Asked) -> dict[str, Any]:
-    """What a balance is to do."""
+    """Options of a calculation by harmonic balance."""
     return {
         "harmonics": asked.harmonics,
         "accuracy": asked.accuracy,
@@ -130,7 +130,7 @@ def _method(asked: Asked) -> Any:
 
 
 def _say_outside(messages: Messages, path: str | None, table: Any) -> None:
-    """How often a table was asked for what it does not hold."""
+    """Says how often a table was asked for points that it does not hold."""
     if outside := getattr(table, "outside", 0):
         messages.info(
             f"{path}: {outside} look-ups outside the part it holds were answered by the closed form"

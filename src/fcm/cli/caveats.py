@@ -1,4 +1,4 @@
-"""What may be missing in curves that are complete, or lacking in what they tell: a sentence on each."""
+"""Caveats on complete curves, a sentence each: branches that may be missing, and doubtful results."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
 
 
 def linear(summary: Mapping[str, Any]) -> str:
-    """That every contact sticks, or is open, on all of each curve, which may not be meant; empty if not."""
+    """Caveat that every contact sticks, or is open, all along each curve, which may not be meant; or ''."""
     curves = summary["curves"]
     found = {key for curve in curves for key in _LINEAR if curve.get(key)}
     if not curves or not all(any(curve.get(key) for key in _LINEAR) for curve in curves):
@@ -50,7 +50,10 @@ def linear(summary: Mapping[str, Any]) -> str:
 
 
 def never_closed(summary: Mapping[str, Any]) -> str:
-    """Which contacts touch on no curve, beside others that do; empty if none, or if `linear` says so."""
+    """Caveat on contacts that never touch on any curve, beside others that do; or ''.
+
+    Empty as well if `linear` says so.
+    """
     curves = summary["curves"]
     if not curves or linear(summary) or not all(curve.get("contacts") for curve in curves):
         return ""
@@ -70,7 +73,7 @@ def never_closed(summary: Mapping[str, Any]) -> str:
 
 
 def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
-    """That contacts which stick would slip if they began unstressed, so that there may be other motions."""
+    """Caveat that sticking contacts would slip if they began unstressed, so that other motions may exist."""
     unit = summary["frequency_unit"]
     how = _how(summary).replace("--at F", f"--at {at:.5g}")
     looks = f". {how} looks for them" if how else ""
@@ -81,14 +84,18 @@ def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
 
 
 def branches_uncertain(summary: Mapping[str, Any]) -> str:
-    """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
+    """Caveat on frequencies where the search for solutions was cut short, so branches may be missing; or
+    ''."""
     what = "other branches may be missing at {}: there the level of the forces was not followed to its end"
     helps = f"{_BY_LEVEL} {{}} looks there: amplitudes at the level 1 that the curve lacks are such a branch"
     return _may_be_missing(summary, "branches_unsure_at", what, helps)
 
 
 def folds_uncertain(summary: Mapping[str, Any]) -> str:
-    """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
+    """Caveat on frequencies where folds of the level were not followed to their end; or ''.
+
+    Branches may be missing there.
+    """
     what = (
         "isolated branches may be missing {side} {}: from there a fold of the level of the forces was not "
         "followed to its end. What was found is whole"
@@ -118,7 +125,7 @@ def of_more_harmonics(summary: Mapping[str, Any]) -> str:
 
 
 def symmetry_lost(summary: Mapping[str, Any]) -> str:
-    """Where symmetric motions lose their symmetry by harmonics that are not balanced; empty if nowhere."""
+    """Caveat on symmetric motions that lose their symmetry by harmonics left out, with places; or ''."""
     what = (
         "unsymmetric branches may be missing at {}: there the motion loses its symmetry, by even harmonics "
         "that are not balanced"
@@ -129,7 +136,7 @@ def symmetry_lost(summary: Mapping[str, Any]) -> str:
 
 
 def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str) -> str:
-    """What may be missing where, and what helps, each with a place for the first frequency."""
+    """Sentence on what may be missing where, and on remedies, each with the first frequency."""
     curves, unit = summary["curves"], summary["frequency_unit"]
     uncertain_at = [curve for curve in curves if curve.get(key)]
     if not uncertain_at:
@@ -143,7 +150,7 @@ def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str)
 
 
 def _side(at: float, span: Sequence[float] | None) -> str:
-    """On which side of a frequency the rest of the range is, if it is an end.
+    """Side of a frequency on which the rest of the range lies, if it is an end of the range.
 
     >>> _side(40.0, (40.0, 90.0)), _side(90.0, (40.0, 90.0)), _side(50.0, (40.0, 90.0)), _side(50.0, None)
     ('above', 'below', 'beyond', 'beyond')
@@ -159,8 +166,7 @@ def _given(curve: Mapping[str, Any]) -> str:
 
 
 def not_confirmed(summary: Mapping[str, Any]) -> str:
-    """At how many points stability is unknown because no more of many contacts were looked at; empty if at
-    none."""
+    """Caveat on the number of points of unconfirmed stability, as there are many contacts; or ''."""
     count = sum(curve.get("stability_not_confirmed", 0) for curve in summary["curves"])
     if not count:
         return ""
@@ -185,7 +191,7 @@ def mirrored(summary: Mapping[str, Any]) -> str:
 
 
 def searched_levels(summary: Mapping[str, Any]) -> str:
-    """Between which levels of the forces isolated branches were looked for; empty if nowhere."""
+    """Remark on the force levels between which isolated branches were searched; or ''."""
     found = [curve["levels_looked_at"] for curve in summary["curves"] if "levels_looked_at" in curve]
     if not found:
         return ""
@@ -194,7 +200,7 @@ def searched_levels(summary: Mapping[str, Any]) -> str:
 
 
 def tracked_uncertain(summary: Mapping[str, Any]) -> str:
-    """Where branches may be missing from those that tracked curves begin on; empty if nowhere."""
+    """Caveat on curves from which tracking began where branches may be missing; or ''."""
     tracked = summary.get("tracked", {})
     uncertain_at = tracked.get("branches_unsure_at")
     if not uncertain_at:
@@ -237,7 +243,7 @@ def peaks_not_followed(summary: Mapping[str, Any]) -> str:
 
 
 def nothing_stable(summary: Mapping[str, Any]) -> str:
-    """Between which frequencies no motion that was found is stable, the widest; empty if nowhere."""
+    """Caveat on the widest frequency range without a stable motion; or ''."""
     curves, unit, least = summary["curves"], summary["frequency_unit"], resolution_of(summary)
     every = {i: curve["no_stable_motion"] for i, curve in enumerate(curves) if curve.get("no_stable_motion")}
     wide = {i: seen for i, found in every.items() if (seen := [x for x in found if x[1] - x[0] >= least])}
@@ -263,7 +269,7 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
 
 
 def _between(low: float, high: float) -> str:
-    """Where, between two frequencies or at one.
+    """Clause on a place: between two frequencies, or at one.
 
     >>> _between(1.0, 1.5), _between(1.5, 1.5 + 1e-9)
     ('between 1 and 1.5', 'at 1.5')
@@ -277,7 +283,7 @@ def _widest_first(stretches: list[list[float]]) -> list[list[float]]:
 
 
 def _not_searched(curve: Mapping[str, Any]) -> str:
-    """In how many of the stretches without a stable motion no branch was looked for; empty if in none."""
+    """Clause on the stretches without a stable motion in which no branch was searched; or ''."""
     missing = _widest_first(curve.get("no_stable_motion_not_looked_at", []))
     if not missing:
         return ""
@@ -287,7 +293,7 @@ def _not_searched(curve: Mapping[str, Any]) -> str:
 
 
 def kept_friction(summary: Mapping[str, Any]) -> str:
-    """What friction does that contacts keep which never slip: to peaks, elsewhere; empty if nothing."""
+    """Caveat on the effect of residual friction that contacts keep which never slip; or ''."""
     of_peaks, elsewhere = residual_friction(summary), maybe_not_unique(summary)
     if of_peaks and elsewhere:
         return f"{of_peaks}. {elsewhere[:1].upper()}{elsewhere[1:]}"
@@ -295,7 +301,7 @@ def kept_friction(summary: Mapping[str, Any]) -> str:
 
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
-    """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
+    """Caveat on points where the motion may be one of many, and how to find the others; or ''."""
     followed = [*_completed(summary), *summary.get("tracked", {}).get("curves", ())]
     shown = shown_dofs(summary) if summary["curves"] and "peak" in summary["curves"][0] else []
     one_of_many = [
@@ -357,8 +363,11 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
 
 
 def _how(summary: Mapping[str, Any]) -> str:
-    """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
-    nonlinear mode, which has no forces, or takes long, as of many contacts."""
+    """Hint on the option by which the exact motion at a frequency F is visited.
+
+    Empty where it is not computed, as for a nonlinear mode, which has no forces, or takes long, as with many
+    contacts.
+    """
     from fcm.model.scene import InTime
     from fcm.response.options import SENTENCES as OF_RESPONSE
 

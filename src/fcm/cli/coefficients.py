@@ -77,7 +77,7 @@ def _panels(
     n0_range: tuple[float, float],
     b_range: tuple[float, float],
 ) -> list[tuple[str, Plane]]:
-    """What each panel shows: two phases of a coefficient side by side, else two coefficients of a phase."""
+    """Coefficient and plane of each panel: two phases side by side, else two coefficients of a phase."""
     from fcm.contact.surface import Plane
 
     coefficients, phases = tuple(dict.fromkeys(coefficients)), tuple(dict.fromkeys(phases))

@@ -48,7 +48,7 @@ class DofTable(Frozen):
     width: int = SENTENCES.width
 
     def text(self, last: int) -> str:
-        """Its lines, of which the last so many columns are to the left."""
+        """Text of the table, with its last `last` columns aligned to the left."""
         beside = self._beside(last)
         return beside if _width(beside) <= self.width else self._below(last)
 

@@ -51,7 +51,7 @@ def refuse_other_options() -> None:
 def write_comparison(
     messages: Messages, scene: Scene, table: str | None, tolerance: float, output: Path | None, to_json: bool
 ) -> None:
-    """Compare, print, write."""
+    """Runs a comparison, prints it and writes it."""
     if not scene.has_range:
         raise click.UsageError(f"--compare needs curves; {scene.name} has no [response] frequency.")
     from fcm.compare import IncomparableError, compare
@@ -77,7 +77,7 @@ def write_comparison(
 
 
 def as_text(summary: dict[str, Any]) -> str:
-    """The tables of a comparison."""
+    """Text of the tables of a comparison."""
     from fcm.compare.tables import every, marked
 
     parts = [aligned(_to_the_left(rows), left=0) for rows in every(summary)]

@@ -1,4 +1,4 @@
-"""What a response run says to a reader: tables of its curves and jumps, a line or two of cost and error."""
+"""Output of a response run for a reader: tables of curves and jumps, and lines on cost and error."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ _OF_RESIDUAL = "residual: the friction that stuck contacts keep may change the p
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
-    """One line a curve; then one for each jump of a slow sweep, if there are any."""
+    """Table with one line for each curve; then one with a line for each jump of a slow sweep, if any."""
     from fcm.plot.labels import short_names
 
     curves = summary["curves"]
@@ -142,7 +142,7 @@ def _peak_heads(unit: str) -> list[str]:
 
 
 def _error(peak: Mapping[str, Any]) -> str:
-    """That of a peak; where it is not known that of the motion at its frequency, with a mark."""
+    """Error of a peak; where it is unknown, that of the motion at its frequency, with a mark."""
     there = peak.get("error_at_frequency")
     if peak.get("error") is None and there is not None:
         return f"{short(there)}{_THERE}"
@@ -210,7 +210,7 @@ def _of_stable(peak: Mapping[str, Any]) -> str:
 
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
-    """Of how many curves the percentiles of a jump are, and of how many it is not known."""
+    """Clause on the share of curves that the percentiles of a jump cover, and the share unknown."""
     unknown = f", unknown of {100.0 * jump['untold']:.0f} %" if jump["untold"] else ""
     return f"of {100.0 * jump['share']:.0f} % of the curves{unknown}"
 
@@ -221,7 +221,7 @@ def _minimised(summary: Mapping[str, Any]) -> list[str]:
 
 
 def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
-    """Those degrees of freedom whose peaks are the greatest, and what is minimised, in the order of the file.
+    """Degrees of freedom shown: those with the greatest peaks, and those minimised, in the file's order.
 
     Of those that the scene asks for, where it says so by `output`.
     Rotations, which are of another unit, come after all displacements.
@@ -242,7 +242,7 @@ def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
 def _curves(
     summary: Mapping[str, Any], names: list[str], dofs: list[str], unit: str, length: str, shown: str
 ) -> str:
-    """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
+    """Table of swept values, peaks, points, time and folds of each curve, and whether it is complete."""
     from fcm.results.result import NOT_BEGUN
 
     curves: Sequence[Curve] = summary["curves"]
@@ -321,7 +321,7 @@ def _curves(
 
 
 def _which_are_shown(summary: Mapping[str, Any], dofs: list[str]) -> str:
-    """By what the degrees of freedom are chosen; empty where all are shown."""
+    """Clause on how the shown degrees of freedom are chosen; empty where all are shown."""
     every, asked = summary["curves"][0]["peak"], summary.get("output", ())
     if len(every) == len(dofs):
         return ""
@@ -348,7 +348,7 @@ def _at_rest(curve: Curve, dof: str) -> bool:
 
 
 def _lower_peaks(curves: Sequence[Curve], dofs: Sequence[str]) -> list[Mapping[str, Any]]:
-    """All peaks of degrees of freedom that have several."""
+    """All peaks of the degrees of freedom that have several."""
     return [one for curve in curves for dof in dofs for one in curve.get("peaks", {}).get(dof, ())]
 
 
@@ -416,7 +416,7 @@ def _seen_folds(curve: Curve, dofs: list[str], least: float) -> tuple[list[float
 
 
 def _folds(folds: Sequence[float | None], hooks: int = 0) -> str:
-    """All of them, or of many how many there are and between which they lie; and how many are in close pairs.
+    """Folds of a curve as text: all, or of many their number and range; and those in close pairs.
 
     >>> _folds([]), _folds([1.0, 2.0]), _folds([1.0, 4.0, 2.0, 3.0, 5.0])
     ('none', '1.00000  2.00000', '5: 1.00000 to 5.00000')
@@ -439,7 +439,7 @@ def nowhere_stable(curve: Curve, peak: Mapping[str, Any]) -> bool:
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:
-    """What the run cost and how wrong it is, in a line or two."""
+    """One or two lines on the cost of a run and its error."""
     curves = summary["curves"]
     points = sum(curve["points"] for curve in curves)
     begun = sum(curve["points"] > 0 for curve in curves)
@@ -494,7 +494,7 @@ def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[dict[str, 
 
 
 def _of_lower_peaks(summary: Mapping[str, Any]) -> str:
-    """That lower peaks of exact curves are points of these, and not sought between them; empty without any.
+    """Remark that lower peaks of exact curves are only points, not searched between points; or ''.
 
     >>> _of_lower_peaks({"curves": [{"peak": {"u": {}}, "peaks": {"u": [{}, {}]}}], "output": ["u"]})
     ', at the points; lower peaks are the highest of these, and what lies between points is not estimated'
@@ -513,7 +513,7 @@ def _amount(error: float) -> str:
 
 
 def _known_of_modes(curves: Sequence[Curve]) -> str:
-    """At how many points of nonlinear modes the error is known, and how far up, where not at all of them.
+    """Remark on the points of nonlinear modes at which the error is known, if not at all; or ''.
 
     >>> mode = {"modal_amplitude": [1e-6, 1e-4], "error_known": {"points": 1, "modal_amplitude": 1e-5}}
     >>> _known_of_modes([{"points": 62, "mode": mode}])
@@ -531,7 +531,7 @@ def _known_of_modes(curves: Sequence[Curve]) -> str:
 
 
 def _where(summary: Mapping[str, Any], error: float) -> str:
-    """At which frequency an error of a curve is as large; empty where that is unknown."""
+    """Clause on the frequency at which a curve's error is greatest; empty where that is unknown."""
     at = [one.get("truncation_error_at") for one in summary["curves"] if one.get("truncation_error") == error]
     return f", most at {at[0]:.6g} {summary['frequency_unit']}" if at and at[0] is not None else ""
 

@@ -1,4 +1,4 @@
-"""What the commands that draw share: angles on the command line, and the picture written whole."""
+"""Shared by the commands that draw: angles on the command line, and writing a picture whole."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def draws_file(ending: str, page: bool = False) -> Callable[[Any], Any]:
 
 
 def picture_of(file: Path, output: Path | None, ending: str, *read: Path | None, page: bool = False) -> Path:
-    """Where the picture of a file of results goes, which is none of those that are read."""
+    """Path of the picture of a result file, which is none of the files that are read."""
     if output is None and file.suffix == ending:
         raise click.UsageError(
             f"{str(file)!r} is not a netCDF file of results; fcm respond SCENE -o {file.stem}.nc writes one."
@@ -106,7 +106,7 @@ def save_picture_of(drawn: Callable[[], Figure], output: Path) -> None:
 
 @contextmanager
 def drawing() -> Iterator[None]:
-    """Of what is read from a file, numbers may be so far apart that their sums are none."""
+    """Context for drawing what was read from a file, whose numbers may be too far apart to be summed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         yield

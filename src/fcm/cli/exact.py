@@ -99,7 +99,7 @@ def traced(
 
 
 def remarks(response: Response) -> list[str]:
-    """What to know of points whose motion does not repeat after every period, or is one of many."""
+    """Remarks on points whose motion repeats only after several periods, or is one of many."""
     found = [curve.orbits for curve in response.curves if curve.orbits is not None]
     return [
         *_several_periods(found),
@@ -122,7 +122,7 @@ def _several_periods(found: Sequence[Orbits]) -> Iterator[str]:
 
 
 def _doubles(found: Sequence[Orbits], unit: str) -> Iterator[str]:
-    """Where the period doubles to motions that are not followed, and what follows them."""
+    """Remark on where the period doubles to motions that are not followed, and what follows them."""
     import numpy as np
 
     from fcm.units import in_unit

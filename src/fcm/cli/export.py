@@ -1,4 +1,4 @@
-"""What goes back to other programs: motions on their mesh, contact forces, modal amplitudes."""
+"""Export to other programs: motions on their mesh, contact forces, modal amplitudes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _RING = (
 
 
 def export_options(command: Any) -> Any:
-    """The options."""
+    """Decorator that adds the options of export to a command."""
     options: list[Callable[[Any], Any]] = [
         output_option(
             "--export", endings=(".vtu", *UNIVERSAL, *HDF5),
@@ -99,7 +99,7 @@ def check_options(asked: Asked) -> None:
 
 @dataclass
 class Exporting:
-    """What is exported of a scene with every row, once its response is known."""
+    """Export of a scene with every row, once its response is known."""
 
     messages: Messages
     scene: Scene
@@ -109,7 +109,7 @@ class Exporting:
 
     @property
     def files(self) -> list[tuple[Path, Callable[[Response, Path], None]]]:
-        """What writes each file."""
+        """Path of each exported file, and the function that writes it."""
         found = [(self.asked.export, self._export), (self.asked.contact_forces, self._forces)]
         return [(path, write) for path, write in found if path is not None]
 
@@ -156,7 +156,7 @@ class Exporting:
 
 
 def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | None:
-    """What is to be exported of a scene that has every row; None for nothing.
+    """The export that was asked of a scene with every row; None for nothing.
 
     Whatever stands in the way of it is said before anything is calculated.
     """

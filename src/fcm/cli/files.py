@@ -46,7 +46,7 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
 
 
 def wrote(path: Path, since_then: bool = False) -> str:
-    """That a file is written, and whether one that was there before the command has been replaced.
+    """Message that a file is written, and whether one from before the command was replaced.
 
     since_then: whether it is an earlier part of the same result.
     """
@@ -74,7 +74,7 @@ def check_not_read(outputs: Mapping[str, Path | None], inputs: Iterable[str | Pa
 
 @contextmanager
 def alone(outputs: Iterable[Path | None]) -> Iterator[None]:
-    """No other run writes these files meanwhile; `CheckpointError` if one is at work on one of them."""
+    """Context in which no other run writes these files; raises `CheckpointError` if one is at work."""
     from fcm.run import Checkpoint
     from fcm.run.checkpoint import unfinished
 
@@ -104,7 +104,7 @@ def _problem(path: Path, endings: tuple[str, ...]) -> str:
 
 
 def _try(path: Path) -> None:
-    """Make what is written meanwhile, for permissions alone know no read-only disk and no longest name."""
+    """Creates and removes the temporary file of a path: permissions alone do not show that writing works."""
     target = real(path)
     probe = partial_of(target)
     os.close(os.open(probe, os.O_CREAT | os.O_WRONLY))

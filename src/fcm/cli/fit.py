@@ -47,7 +47,7 @@ def fitted(
 
 
 def as_table(result: Mapping[str, Any]) -> str:
-    """The numbers, then the data."""
+    """Tables of the fitted numbers, then of the data."""
     from fcm.plot.labels import with_mode
 
     found = result["fitted"]
@@ -91,7 +91,7 @@ def _scale(data: Mapping[str, Any]) -> str:
 
 
 def _searches(found: Mapping[str, Any]) -> str:
-    """Where each search ended."""
+    """Table of the end of each search."""
     from fcm.plot.labels import with_mode
 
     rows = [["search", "points", "cost", *(plain(with_mode(key)) for key in found["numbers"]), "harmonics"]]
@@ -107,7 +107,7 @@ def _searches(found: Mapping[str, Any]) -> str:
 
 
 def caveats(result: Mapping[str, Any]) -> list[str]:
-    """Which numbers are undetermined, and what would determine them."""
+    """Caveats on numbers that are undetermined, and on what would determine them."""
     found = result.get("fitted")
     return [] if found is None else [*found["problems"], *found["advice"]]
 

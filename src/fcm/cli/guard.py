@@ -1,4 +1,4 @@
-"""How a run ends: every exception becomes one line on standard error and an exit code."""
+"""End of a run: turns every exception into one line on standard error and an exit code."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _exit_code_and_line(error: BaseException) -> tuple[int, str]:
 
 
 def outdated_kernels(package: Path | None = None) -> str:
-    """What to try where a kernel of a package (fcm) is not compiled, or older than its source."""
+    """Remedy where a kernel of a package (fcm) is not compiled, or older than its source."""
     from pathlib import Path
 
     package = package or Path(__file__).parents[1]
@@ -145,6 +145,6 @@ def _shown_by(messages: Messages) -> Callable[..., None]:
 
 
 def _discard_output() -> None:
-    """Nobody reads standard output any more: let the interpreter's last flush go nowhere."""
+    """Discards standard output once nobody reads it, so that the interpreter's last flush cannot fail."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -60,7 +60,7 @@ def history(
 
 
 def _chosen(motions: tuple[DrawnMotion, ...], curves: tuple[int, ...]) -> tuple[DrawnMotion, ...]:
-    """The motions of some curves."""
+    """The motions of the chosen curves."""
     if max(curves) >= len(motions):
         from fcm.plot.read import curves_there
 

@@ -72,8 +72,11 @@ def is_seen(
 def _beyond_gap(
     jump: Mapping[str, Any], curve: Mapping[str, Any], resolution: float
 ) -> Mapping[str, float] | None:
-    """Where a sweep finds no stable motion any more over less than the resolution, the amplitudes beyond, at
-    which the opposite sweep comes to it; None where it is not so."""
+    """Amplitudes beyond a gap without stable motion, narrower than the resolution; None if there is no such
+    gap.
+
+    They are where the opposite sweep comes to the gap.
+    """
     upwards = jump["sweep"] == "up"
     for low, high in curve.get("no_stable_motion", ()):
         near, far = (low, high) if upwards else (high, low)
@@ -94,7 +97,7 @@ def _step(jump: Mapping[str, Any], dofs: Sequence[str]) -> float:
 
 
 def _change(before: Mapping[str, Any], after: Mapping[str, Any], dof: str) -> float:
-    """Of an amplitude, relative to the greater."""
+    """Change of an amplitude by a jump, relative to the greater one."""
     one, other = float(before.get(dof) or 0.0), float(after.get(dof) or 0.0)
     return abs(one - other) / (max(one, other) or 1.0)
 

@@ -243,7 +243,7 @@ def _check(given: set[str], of_file: bool) -> None:
 
 
 def _useless(given: set[str], names: tuple[str, ...], why: str) -> str:
-    """What is said of those of some options that are given; empty if none is."""
+    """Message on given options that have no effect; empty if there are none."""
     wrong = [_option(name) for name in names if name in given]
     return f"{', '.join(wrong)} {'are' if len(wrong) > 1 else 'is'} of no use{why}" if wrong else ""
 

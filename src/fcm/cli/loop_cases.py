@@ -37,7 +37,7 @@ class Case(Frozen):
     units: tuple[str, str] | None = None  # of length and force, if both are known
 
     def record(self, from_greatest: bool) -> dict[str, Any]:
-        """What ``--json`` prints of the loop; displacements and forces are divided by a and k_u a."""
+        """Output of ``--json`` for the loop; displacements and forces are divided by a and k_u a."""
         from fcm.contact.sampled import shown_degrees, transitions
 
         loop = self.loop
@@ -90,7 +90,7 @@ class PlanarCase(Frozen):
         return planar_loop(*motion, loop.mu, 1.0, loop.k_v / loop.k_u, loop.n_0 / force)
 
     def record(self, _from_greatest: bool) -> dict[str, Any]:
-        """What ``--json`` prints of the loop."""
+        """Output of ``--json`` for the loop in a plane."""
         import numpy as np
 
         loop = self.loop
@@ -207,7 +207,7 @@ def of_file(
 
 
 def _beside(place: PlaceOnCurve, points: Iterable[LoopPoint], file: LoopFile) -> str:
-    """Where the points of the file are that are drawn in place of one between them; empty if there is one."""
+    """Message on points of the file drawn in place of one between them; empty if there are none."""
     wanted, there = place.value, map(place.of, points)
     off = [f"{at:.6g}" for at in there if abs(at - wanted) > SENTENCES.resolution * 1e-3 * abs(wanted)]
     unit = "" if file.unit == "level" else f" {file.unit}"

@@ -1,4 +1,4 @@
-"""How the parameters of drawn loops are named, in a picture and in a message, with units that are known."""
+"""Names of the parameters of drawn loops, in a picture and in a message, with known units."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Harmonic(NamedTuple):
     phase: float  # [rad]
 
     def name(self, length: str) -> Name:
-        """As it is written, in a picture and in a message, with the unit of length if there is one."""
+        """Name of the harmonic in a picture and in a message, with the unit of length if there is one."""
         phase = f"at {math.degrees(self.phase):.4g}°"
         plain = f"= {_with_unit(f'{self.amplitude:.4g}', length)} {phase}"
         drawn = plain.replace("-", "−").replace("$", r"\$")
@@ -42,7 +42,7 @@ class Name(NamedTuple):
 
 
 def titles(cases: Sequence[Case]) -> tuple[str, list[str]]:
-    """What all loops share, for the picture; what tells each from the others, for its panel."""
+    """Title of a picture, with what all loops share, and titles of the panels, with what differs."""
     columns = list(zip(*(case.names for case in cases), strict=True))
     shared = {column[0] for column in columns if len(set(column)) == 1}
     several = len(cases) > 1
@@ -77,7 +77,7 @@ def _with_unit(text: str, unit: str) -> str:
 
 
 def unit_of(key: str, units: tuple[str, str] | None) -> str:
-    """Of a parameter of a contact, with units of length and force; empty without these."""
+    """Unit of a parameter of a contact, from units of length and force; empty without these."""
     length, force = units or ("", "")
     return length if key in ("a", "b") else unit_of_number(f"contact.{key}", length, force, "")
 

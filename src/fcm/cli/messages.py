@@ -1,4 +1,4 @@
-"""What a command says beside its result: messages, warnings and progress, all on standard error."""
+"""Messages, warnings and progress of a command beside its result, all on standard error."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Messages:
             self._say(f"fcm: warning: {text}")
 
     def note(self, text: str) -> None:
-        """What is to be known of how a scene was read; what is hardly meant as a warning."""
+        """Prints a note on how a scene was read; as a warning if it is hardly meant."""
         if isinstance(text, Question):
             self.warning(text)
         else:
@@ -49,7 +49,7 @@ class Messages:
             self._say(text)
 
     def expect(self, curves: int) -> None:
-        """So many curves begin: by the first of them it is said, once, how long all take."""
+        """Prepares for a number of curves: after the first one the expected time of all is said once."""
         self._curves, self._begun = curves if curves > 1 else 0, self.settings.clock()
 
     def progress(self, fraction: float, text: str = "") -> None:

@@ -64,7 +64,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
 
 def as_table(found: dict[str, Any]) -> str:
-    """One line for each mode, with as many directions as it has room for; one for each resonance."""
+    """Table with a line for each mode, with as many directions as fit; then a line for each resonance."""
     return "\n\n".join(filter(None, [_lines(found, _shown(found)), _resonances(found)]))
 
 

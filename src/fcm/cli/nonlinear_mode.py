@@ -51,7 +51,7 @@ def check_options(
 
 
 def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
-    """One line a mode: at its ends, where it is damped most, and in resonance with the scene's forces."""
+    """Table with a line for each mode: its ends, greatest damping, and resonances with the scene's forces."""
     wide = _lines(summary, names, unit, ["points", "time [s]"])
     fits = max(map(len, wide.splitlines())) <= SENTENCES.width
     table = wide if fits else _lines(summary, names, unit, [])
@@ -101,7 +101,7 @@ def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[s
 
 
 def outside_range(summary: Mapping[str, Any]) -> str:
-    """That a mode has no frequency within the range of the scene, and is perhaps not that meant; else ''."""
+    """Caveat that a mode has no frequency within the scene's range, and may not be the one meant; or ''."""
     modes = [curve["mode"] for curve in summary["curves"] if curve.get("mode")]
     if not modes or "range" not in summary:
         return ""
@@ -118,7 +118,7 @@ def outside_range(summary: Mapping[str, Any]) -> str:
 
 
 def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
-    """One line for each resonance with the scene's forces: frequency, damping, amplitudes; empty if none."""
+    """Table of resonances with the scene's forces: frequency, damping, amplitudes; empty if none."""
     dofs, length = _shown(summary), summary.get("units", {}).get("length", "")
     rows = [
         [
@@ -152,7 +152,7 @@ def _shown(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _of_dofs(summary: Mapping[str, Any]) -> str:
-    """What a modal amplitude is of displacements, by which its span is chosen; empty where no mode is."""
+    """Remark on the displacements of a modal amplitude of 1, by which its span is chosen; or ''."""
     first = next((curve["mode"] for curve in summary["curves"] if curve.get("mode")), None)
     if first is None:
         return ""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Outputs:
-    """What one run writes: netCDF, CSV of the curves, CSV of the motion, what is exported, a summary."""
+    """Files that a run writes: netCDF, CSV of curves and of motion, exports; and a summary."""
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class Outputs:
 
     @contextmanager
     def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
-        """What is finished is kept beside the first of the files as long as they are not written."""
+        """Context with a checkpoint beside the first file, for as long as the files are not written."""
         files = [path for path in (self.output, self.csv, self.history_csv) if path is not None]
         files += [path for path, _ in self.exported]
         if not files:
@@ -122,7 +122,7 @@ class Outputs:
         self.messages.info(wrote(path, since_then=earlier))
 
     def _say_kept(self, what: str, nothing: str) -> None:
-        """Where the work is kept that can be gone on from; that there is none, if that is to be said."""
+        """Says where work is kept that can be continued, or that there is none."""
         if self.checkpoint is not None and self.checkpoint.resumable:
             self.messages.warning(f"{what} in {plain(self.checkpoint.path)}: continue with --resume")
         elif nothing:

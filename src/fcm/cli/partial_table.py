@@ -95,13 +95,13 @@ def _shipped(resolution: Resolution) -> Path | None:
 
 
 def _bytes(part: Part) -> int:
-    """Of the file's large arrays: n0_bar and three coefficients at every node, three slopes in slip."""
+    """Bytes of the file's large arrays: n0_bar, three coefficients at every node, three slopes in slip."""
     slip = part.nodes * (part.slip[1] - part.slip[0]) // sum(end - first for first, end in part[1:3])
     return 20 * part.nodes + 12 * slip
 
 
 def _seconds(run: Any, times: int) -> float:
-    """Least time of some runs."""
+    """Least time [s] of several runs."""
     taken = []
     for _ in range(times):
         began = time.perf_counter()

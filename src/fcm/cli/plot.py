@@ -135,7 +135,7 @@ def response(
 def _bands(
     file: Path, dof: str | None, log: bool | None, points: Path | None, band: tuple[float, float]
 ) -> Figure:
-    """The figure of --band."""
+    """Figure of the option --band."""
     import numpy as np
 
     from fcm.plot import read_response

@@ -1,4 +1,4 @@
-"""What ``fcm respond`` says before and after a calculation; the exit code of one that stopped early."""
+"""Remarks of ``fcm respond`` before and after a calculation, and the exit code of an early stop."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Announced(NamedTuple):
 
 
 def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
-    """What is going to be computed; without being asked where that is a great deal."""
+    """Announces what is going to be computed; without being asked only where that is a great deal."""
     from fcm.scene.listing import resonance_doubt
     from fcm.scene.rules import least_points
 
@@ -66,7 +66,7 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
 
 
 def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
-    """Which contacts the static loads of a curve close: a sign may be wrong, or a bolt too weak."""
+    """Says which contacts the static loads of a curve close: a sign may be wrong, or a bolt too weak."""
     from fcm.harmonic_balance.static_equilibrium import RestError, normal_forces_at_rest
 
     try:
@@ -93,7 +93,7 @@ def close(
     announced: Announced,
     table_wanted: bool,
 ) -> None:
-    """What the run left out, cost, and how wrong it is; the exit code of one that stopped early.
+    """Prints what the run left out, its cost and error; sets the exit code of one that stopped early.
 
     That a table has no effect is said where the command line asks for one. That contacts change no state is
     said where a resonance is near the range: elsewhere it is no wonder.

@@ -1,4 +1,4 @@
-"""What a run will take is told where that is a great deal, and refused where there is no room for it."""
+"""Tells what a run will take where that is a great deal, and refuses it where there is no room."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _folder(path: Path) -> Path:
 
 
 def _seconds_of_curve(scene: Scene, harmonics: int, asked: Asked) -> float:
-    """About what the shortest run takes that traces a curve; 0 of one that traces none."""
+    """Estimated seconds of the shortest run that traces a curve; 0 if none is traced."""
     from fcm.harmonic_balance.cost_model import seconds_of_curve
 
     if not scene.has_range or asked.at or asked.level is not None or asked.mode is not None:

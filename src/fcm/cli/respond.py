@@ -158,7 +158,7 @@ def _check_cluster(address: str | None, level: object) -> None:
 
 
 def _place_of(address: str | None, options: RunOptions | None) -> AbstractContextManager[Factory | None]:
-    """Where to compute: on that cluster, as long as it is open; None for this machine."""
+    """Context with the place to compute: a cluster, for as long as it is open; None for this machine."""
     if address is None:
         return nullcontext()
     from fcm.run.cluster import connected

@@ -186,14 +186,14 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
 
 
 def respond_options(command: Any) -> Any:
-    """All options of the command."""
+    """Decorator that adds all options of the command."""
     for option in reversed(OPTIONS):
         command = option(command)
     return command
 
 
 class Asked(Frozen):
-    """What a command line asks for; each option by its name."""
+    """Values of the command line options, by their names."""
 
     output: Path | None
     csv: Path | None

@@ -66,7 +66,7 @@ def simulated(messages: Messages, scene: Scene, response: Response, keep: Checkp
 
 
 def write_csv(response: Response, path: Path) -> None:
-    """Write the motion as CSV."""
+    """Writes the motion as CSV."""
     from fcm.time_domain.history_output import write_csv
 
     if response.histories is not None:
@@ -77,7 +77,7 @@ _NOT_SETTLED = "settled, no: by this share the amplitudes still change, estimate
 
 
 def as_table(histories: Sequence[Summary], unit: str) -> str:
-    """One line for each phase of each curve: amplitudes, states, whether the motion has settled."""
+    """Table with a line for each phase of each curve: amplitudes, states, whether the motion has settled."""
     from fcm.plot.labels import short_names
 
     first = next((one["phases"][0] for one in histories if one["phases"]), None)
@@ -124,7 +124,7 @@ def _settled(phase: Mapping[str, Any]) -> str:
 
 
 def cost_and_error(histories: Sequence[Summary]) -> str:
-    """What the simulation cost, how wrong it is, and what of it is kept."""
+    """Lines on the cost and error of a simulation, and on what is kept of it."""
     cycles = sum(one["cycles"] for one in histories)
     transitions = sum(one["transitions"] for one in histories)
     every = histories[0]["cycles_per_sampled_cycle"]

@@ -1,4 +1,4 @@
-"""What commands are run with beside their options, for who calls them from Python."""
+"""Settings of commands beside their options, for callers from Python."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Settings(Frozen):
-    """What no option of the command line says: ``main(args, obj=Messages(settings=Settings(...)))``.
+    """Settings that no option covers: ``main(args, obj=Messages(settings=Settings(...)))``.
 
     Attributes
     ----------

@@ -69,7 +69,7 @@ def streams() -> None:
 
 
 def give_back() -> None:
-    """The streams as they were."""
+    """Restores the streams."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if isinstance(stream, Terminal):

@@ -59,7 +59,7 @@ def _only_one(context: click.Context, parameter: click.Parameter, given: tuple[s
 
 
 def track_options(command: Any) -> Any:
-    """The options of tracking."""
+    """Decorator that adds the options of tracking."""
     options: list[Callable[[Any], Any]] = [
         click.option(
             "--track", type=click.Choice(WHAT), multiple=True, callback=_only_one,
@@ -157,7 +157,7 @@ def as_table(result: Mapping[str, Any], unit: str) -> str:
 
 
 def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str:
-    """What is least, where, and how sure that is."""
+    """Sentence on the least value, where it is, and how sure that is."""
     where = ", ".join(f"{plain(key)} = {value:.6g}" for key, value in one["values"].items())
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
@@ -187,7 +187,7 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
 
 
 def _higher_at_edge(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str:
-    """That the response there is higher at an end of the range, which a peak does not count."""
+    """Remark that the response is higher at an end of the range, which is not counted as a peak; or ''."""
     dofs = [name.removeprefix("peak.") for name in one["minimise"] if name.startswith("peak.")]
     ends = [(dof, curve.get("peak", {}).get(dof) or {}) for dof in dofs]
     higher = [
@@ -200,7 +200,7 @@ def _higher_at_edge(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str)
 
 
 def _nearly(one: Mapping[str, Any]) -> str:
-    """With which numbers the peak is hardly greater: how sharp the optimum is."""
+    """Remark on how sharp the optimum is: the numbers with which the peak is hardly greater; or ''."""
     if (near := one.get("nearly_least")) is None or one["kind"] == "unfinished":
         return ""
     low, high = (
@@ -212,7 +212,7 @@ def _nearly(one: Mapping[str, Any]) -> str:
 
 
 def _tried(one: Mapping[str, Any]) -> str:
-    """Of an optimum by trials, the peaks at the values next to it: how near a higher one may begin."""
+    """Remark on an optimum by trials: the peaks at neighbouring values; or ''."""
     if not one["tried"]:
         return ""
     (best,) = one["values"].values()
@@ -233,7 +233,7 @@ def _tried(one: Mapping[str, Any]) -> str:
 
 
 def _at_corner(one: Mapping[str, Any], unit: str) -> str:
-    """That the response has a corner there, or the range of frequencies an end."""
+    """Clause that the response has a corner there, or that the frequency range ends."""
     if (at := one["leaves_range"]) is None:
         return ", at a corner of the response"
     return (
@@ -243,7 +243,7 @@ def _at_corner(one: Mapping[str, Any], unit: str) -> str:
 
 
 def _where_higher_ends(one: Mapping[str, Any], unit: str) -> str:
-    """That a higher peak ends there, and why; how far off the number is at which it does."""
+    """Clause that a higher peak ends there, why, and how accurately the number is known; or ''."""
     if one["kind"] != "end":
         return ""
     if (at := one["leaves_range"]) is not None:
@@ -258,31 +258,29 @@ def _where_higher_ends(one: Mapping[str, Any], unit: str) -> str:
 
 
 def _error(one: Mapping[str, Any]) -> str:
-    """Of equal peaks the greatest, which the table of the curve shows of the highest alone."""
+    """Clause on the error of the least peak; of equal peaks the greatest."""
     count = len(one["at"])
     of = f", the greatest of {count} equal peaks" if count > 1 and one["error"] else ""
     return f"error {short(one['error'])}{of}"
 
 
 def _higher(one: Mapping[str, Any]) -> str:
-    """That it is none, where the response there has a higher peak that was not followed."""
+    """Warning that this is not the least, where the response has a higher peak not followed; or ''."""
     if (higher := one["higher"]) is None:
         return ""
-    return (
-        f" - NOT THE LEAST: the response there has a higher {plain(higher['what'])}, {higher['value']:.6g}, "
-        "on a branch that the search has not. A [sweep] of the number, or more --harmonics, shows how it goes "
-        "on"
-    )
+    what = f"a higher {plain(higher['what'])}, {higher['value']:.6g}, on a branch that the search has not"
+    helps = "A [sweep] of the number, or more --harmonics, shows how it goes on"
+    return f" - NOT THE LEAST: the response there has {what}. {helps}"
 
 
 def _flat(one: Mapping[str, Any]) -> str:
-    """On which numbers the least peak does not depend, and from where to where."""
+    """Clause on numbers on which the least peak does not depend, with their ranges; or ''."""
     found = [f"{plain(key)} from {low:.6g} to {high:.6g}" for key, (low, high) in one["flat"].items()]
     return f"; it does not depend on {', nor on '.join(found)}" if found else ""
 
 
 def _stays(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
-    """What is said beside the least peak where no motion stays at it, or that is unknown.
+    """Clause where no motion stays at the least peak, or where that is unknown.
 
     curve: the response there.
     """
@@ -294,7 +292,7 @@ def _stays(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
 
 
 def _ranges(one: Mapping[str, Any]) -> str:
-    """What is said beside the error where residual friction may change the least peak, or that is unknown."""
+    """Clause where residual friction may change the least peak, or where that is unknown."""
     found = [place["residual_change"] for place in one["at"]]
     if one["kind"] == "unfinished" or not found:
         return ""
@@ -303,7 +301,7 @@ def _ranges(one: Mapping[str, Any]) -> str:
 
 
 def _mark(place: Mapping[str, Any]) -> str:
-    """Beside a peak of which it is not known that it is stable."""
+    """Mark of a peak that is unstable, or not known to be stable."""
     return {True: "", False: UNSTABLE, None: UNKNOWN}[place["stable"]]
 
 
@@ -328,7 +326,7 @@ def _swept(tracked: Mapping[str, Any]) -> list[str]:
 
 
 def _turns(tracked: Mapping[str, Any], unit: str) -> str:
-    """Where windows of several solutions open and close."""
+    """Table of the turns of tracked curves, where windows of several solutions open and close."""
     rows = [[*_swept(tracked), f"turns at {plain(tracked['over'])}", unit, "kind"]]
     for curve in tracked["curves"]:
         for turn in curve["turns"]:
@@ -338,7 +336,7 @@ def _turns(tracked: Mapping[str, Any], unit: str) -> str:
 
 
 def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
-    """Between which numbers no motion stays at what is tracked, or none may."""
+    """Table of ranges of the number in which the tracked motion is unstable, or may be."""
     over = plain(tracked["over"])
     rows = [[*_swept(tracked), "what", f"{over} from", "to", f"{unit} from", "to", "motion"]]
     for curve in tracked["curves"]:
@@ -355,7 +353,7 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
 
 
 def _errors(tracked: Mapping[str, Any], unit: str) -> str:
-    """What the harmonics left out would change, where it was looked for; at turns that of the number, too."""
+    """Table of the estimated effects of the harmonics left out; at turns on the number as well."""
     turned = any("error_of_number" in one for curve in tracked["curves"] for one in curve["errors"])
     number = ["of the number"] if turned else []
     rows = [[*_swept(tracked), "what", f"at {plain(tracked['over'])}", unit, "error", *number, "place"]]
@@ -373,7 +371,7 @@ def _errors(tracked: Mapping[str, Any], unit: str) -> str:
 
 
 def cost(result: Mapping[str, Any]) -> str:
-    """What a run took that has traced no curve of the response."""
+    """Sentence on the time of a run that has traced no response curve."""
     from fcm.scene.errors import counted
 
     seconds = f"{result['seconds']:.2f} s"
@@ -383,7 +381,7 @@ def cost(result: Mapping[str, Any]) -> str:
 
 
 def incomplete(result: Mapping[str, Any]) -> str:
-    """What of the tracked curves is missing; empty if nothing is."""
+    """Sentence on what is missing of the tracked curves; empty if nothing is."""
     from fcm.scene.address import LEVEL
 
     tracked = result.get("tracked")

@@ -25,7 +25,7 @@ Progress = Callable[[float, str], None]
 
 
 class IncomparableError(RuntimeError):
-    """There is nothing to compare; the message says why."""
+    """Raised when there is nothing to compare; the message says why."""
 
 
 @dataclass
@@ -45,12 +45,12 @@ class Comparison:
 
     @property
     def parameters(self) -> list[dict[str, float]]:
-        """What was swept, of each curve."""
+        """Swept values of each curve."""
         return [scene.parameters for scene in self.scene.each_curve()]
 
     @property
     def names(self) -> list[str]:
-        """What tells the curves apart, of each."""
+        """Name of each curve, made of its swept values."""
         return [", ".join(f"{k} = {v:g}" for k, v in p.items()) or "the curve" for p in self.parameters]
 
     @property
@@ -64,7 +64,7 @@ class Comparison:
 
     @property
     def notes(self) -> list[str]:
-        """What else a reader of the errors has to know."""
+        """Notes that a reader of the errors has to know."""
         found = []
         lines = (self.references[CLOSED_FORM].lines, self.references[EXACT].lines)
         for name, harmonic, exact in zip(self.names, *lines, strict=True):
@@ -79,7 +79,7 @@ class Comparison:
         return found + self._stopped()
 
     def _stopped(self) -> list[str]:
-        """By which methods curves stopped early; of a table as it is, why that may be."""
+        """Sentences on methods whose curves stopped early; for an uncorrected table with a likely reason."""
         found: dict[tuple[str, bool], list[float]] = {}
         for one in self.runs:  # of exact curves it is said which
             if one.method != EXACT and not all(line.complete for line in one.lines):
@@ -87,7 +87,7 @@ class Comparison:
         return [_stopped_early(*kind, steps, self.seams) for kind, steps in found.items()]
 
     def add(self, one: Run) -> None:
-        """A run and its errors."""
+        """Adds a run and its errors against every reference."""
         errors = {name: reference.errors(one.lines) for name, reference in self.references.items()}
         self.runs.append(one)
         for name, values in errors.items():
@@ -110,7 +110,7 @@ class Comparison:
 
 
 def _stopped_early(method: str, corrected: bool, steps: list[float], seams: Mapping[str, float]) -> str:
-    """That curves of a method stopped early with some longest steps."""
+    """Sentence that curves of a method stopped early with some longest steps."""
     name = method if corrected else f"{method}, as it is"
     longest = ", ".join(f"{step:g}" for step in dict.fromkeys(steps))
     said = f"{name}: curves stopped early with the longest step {longest}"
@@ -220,7 +220,7 @@ def _jobs(
 
 
 def _references(out: Comparison, show: Progress) -> None:
-    """Both references, each with its own error from a run with longer steps."""
+    """Computes both references, and the error of each from a run with longer steps."""
     made = []
     # name, shares of the longest step, and shares of the whole time at which it begins and ends
     options, finest_step = out.options, out.options.finest_step
@@ -248,7 +248,7 @@ def _part(show: Progress, begins: float, ends: float, name: str) -> Progress:
 
 
 def contributions(out: Comparison) -> dict[str, tuple[str, int | None]]:
-    """What an error consists of: against which reference, and the run that shows it."""
+    """Contributions to the error: the reference each is measured against, and the number of its run."""
     rows: dict[str, tuple[str, int | None]] = {}
     tables = [name for name in dict.fromkeys(one.method for one in out.runs) if "table" in name]
     for name in tables:

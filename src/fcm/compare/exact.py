@@ -36,7 +36,7 @@ def exact_lines(
 
 
 def _limited(options: ExactLineOptions) -> ResponseOptions:
-    """Nothing left out, and so long for a curve."""
+    """Response options with nothing left out, and a time limit for a curve."""
     return leaving_out(None, replace(RESPONSE, exact=replace(RESPONSE.exact, max_seconds=options.limit)))
 
 

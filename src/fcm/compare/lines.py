@@ -1,4 +1,4 @@
-"""What every method yields, in one form: curves as lines through points, their peaks and their folds."""
+"""Results of every method in one form: curves as polylines, with their peaks and folds."""
 
 from __future__ import annotations
 
@@ -56,5 +56,5 @@ def line_of(curve: Curve, scene: Scene) -> Line:
 
 
 def amplitude(curve: Curve, scene: Scene) -> FloatArray:
-    """Of the degrees of freedom that a curve's scene reports: (point, dof)."""
+    """Amplitudes (point, dof) of the degrees of freedom that the scene of a curve reports."""
     return curve.amplitude[:, [scene.reports(dof) for dof in curve.peaks]]

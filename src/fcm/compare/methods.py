@@ -30,7 +30,7 @@ class Method(Frozen):
 
 
 class Run(Frozen):
-    """One method at one resolution."""
+    """Results and cost of one method at one resolution."""
 
     method: str
     corrected: bool
@@ -43,7 +43,7 @@ class Run(Frozen):
 
     @property
     def points(self) -> int:
-        """Of all curves."""
+        """Number of points of all curves."""
         return sum(line.points for line in self.lines)
 
 

@@ -8,16 +8,16 @@ from fcm.frozen import Frozen
 
 
 class ChainOptions(Frozen):
-    """How finely a line is drawn for its distance from another.
+    """Options on how finely a line is drawn for its distance from another.
 
     Attributes
     ----------
     chain_points : int
-        Of the fine chain, about.
+        Number of points of the fine line, about.
     max_fineness, min_fineness : int
-        Points on a piece between two neighbours, at most and at least.
+        Most and fewest of these points between two neighbours of the line.
     distinct_length : float
-        Distance below which two neighbours are one point.
+        Distance up to which two neighbours are one point.
     """
 
     chain_points: int = 4000
@@ -27,14 +27,14 @@ class ChainOptions(Frozen):
 
 
 class ExactLineOptions(Frozen):
-    """Curves of the exact motion.
+    """Options on how curves of the exact motion are calculated for a comparison.
 
     Attributes
     ----------
     limit : float
-        [s] of processor time for a curve.
+        [s] Processor time of a curve, after which it is stopped.
     peak : float
-        Relative, to which the frequency of a peak is located.
+        Relative error of the frequency of a peak.
     jump : float
         Relative change of amplitude from which on a solution near a peak is one of another branch.
     """
@@ -45,14 +45,14 @@ class ExactLineOptions(Frozen):
 
 
 class StartupOptions(Frozen):
-    """How the start of a program is timed.
+    """Options on how the start of a program is timed.
 
     Attributes
     ----------
     repeats : int
-        Of which the faster counts; with 0 none is timed.
+        Number of starts, of which the fastest counts; with 0 none is timed.
     timeout : float
-        [s] after which the time is not known.
+        [s] Time after which a start is given up and its time is unknown.
     """
 
     repeats: int = 2
@@ -60,21 +60,21 @@ class StartupOptions(Frozen):
 
 
 class CompareOptions(Frozen):
-    """How methods are compared.
+    """Options on how methods are compared.
 
     Attributes
     ----------
     chain, exact, startup : ChainOptions, ExactLineOptions, StartupOptions
-        Of the parts.
+        Options of the parts.
     margin : float
-        A shown error is at least this many times the reference's own.
+        Ratio of the least error that is shown to the reference's own error.
     steps, exact_steps : tuple of float
-        Longest steps of the runs, in those of the scene: of harmonic balance, and of the exact motion, whose
-        points are exact with any.
+        Longest steps of the runs, relative to that of the scene: of harmonic balance, and of the exact
+        motion, whose points are exact with any.
     finest_step, finest_exact_step : float
-        The same of the references.
+        Longest steps of the two references, relative to that of the scene.
     floor, exact_floor : float
-        Relative, to which points of a reference are solved and its peaks located.
+        Relative errors to which points of the two references are solved and their peaks located.
     """
 
     chain: ChainOptions = field(default_factory=ChainOptions)

@@ -24,7 +24,7 @@ Json = dict[str, Any]
 
 
 def summary(out: Comparison) -> Json:
-    """What ``fcm respond --compare --json`` prints; a number that does not exist is None.
+    """Output of ``fcm respond --compare --json``; NaN becomes None.
 
     Of each error that is less than ten times the reference's own only a limit is given, under `below`.
     """
@@ -50,7 +50,7 @@ def summary(out: Comparison) -> Json:
 
 
 def peaks(out: Comparison) -> list[Json]:
-    """Of each curve and degree of freedom the exact peak, that of harmonic balance, and its estimate."""
+    """Exact peak, peak by harmonic balance and its estimated error, for each curve and degree of freedom."""
     unit = UNIT[out.scene.frequency_unit]
     exact, harmonic = (out.references[name].lines for name in (EXACT, CLOSED_FORM))
     rows = []
@@ -168,7 +168,7 @@ def write_netcdf(out: Comparison, path: str | Path) -> None:
 
 
 def _of_runs(out: Comparison) -> list[tuple[str, Any, dict[str, str]]]:
-    """One value for each run: name, values, attributes."""
+    """Variables with one value for each run: name, values, attributes."""
     unknown, seconds = Startup(np.nan, np.nan), {"units": "s"}
     starts = [out.startups.get(run.method, unknown) for run in out.runs]
     to_begin = {"long_name": "time to begin and end a program", **seconds}

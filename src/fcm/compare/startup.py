@@ -1,4 +1,4 @@
-"""What a program pays before it solves anything: the interpreter, the imports, the table."""
+"""Measures the time a program takes before it solves anything: interpreter, imports, table."""
 
 from __future__ import annotations
 

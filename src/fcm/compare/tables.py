@@ -18,19 +18,19 @@ DIGITS = 6  # of amplitudes and frequencies
 
 
 def every(summary: Summary) -> list[Rows]:
-    """All tables that have rows, in their order."""
+    """All tables that have rows, in order."""
     makers = errors, contributions, peaks, costs, steps, references
     return [rows for rows in (maker(summary) for maker in makers) if len(rows) > 1]
 
 
 def marked(summary: Summary) -> list[str]:
-    """What the marks beside peaks mean, of those that there are."""
+    """Explanations of the marks beside peaks that occur."""
     marks = {MARKS[one[kind]["stable"]] for one in summary["peaks"] for kind in ("exact", "harmonic")}
     return [text for mark, text in SAID.items() if mark in marks]
 
 
 def references(summary: Summary) -> Rows:
-    """What the others are measured against, and the errors of these themselves."""
+    """Table of the references and of their own errors."""
     rows = [["errors of the references themselves", "max. step", *HEADS]]
     for name, one in summary["references"].items():
         own = [one["own_error"][measure] for measure in MEASURES]
@@ -40,7 +40,7 @@ def references(summary: Summary) -> Rows:
 
 
 def errors(summary: Summary) -> Rows:
-    """Of each method with the scene's own steps."""
+    """Table of the errors of each method with the scene's own steps."""
     against = main_reference(summary)
     rows = [[f"errors against {NAMES[against]}", "left out", *HEADS]]
     for one in _at_own_step(summary):
@@ -49,7 +49,7 @@ def errors(summary: Summary) -> Rows:
 
 
 def costs(summary: Summary) -> Rows:
-    """Of the same."""
+    """Table of the costs of each method with the scene's own steps."""
     header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "table [s]", "evaluations"]
     rows = [["costs", *header]]
     for one in _at_own_step(summary):
@@ -61,7 +61,7 @@ def costs(summary: Summary) -> Rows:
 
 
 def _at_own_step(summary: Summary) -> list[Summary]:
-    """Once where there is nothing to leave out: with and without is the same then."""
+    """Runs with the scene's own step; without duplicates where nothing is left out."""
     own = [one for one in in_order(summary["runs"]) if one["max_step"] == summary["max_step"]]
     return [one for one in own if one["corrected"] and (one["left_out"] or summary["left_out"])]
 
@@ -72,7 +72,7 @@ def _left_out(one: Summary, summary: Summary) -> str:
 
 
 def contributions(summary: Summary) -> Rows:
-    """What the error consists of."""
+    """Table of the contributions to the error."""
     rows = [["what the error consists of", "against", *HEADS]]
     for what, one in summary["contributions"].items():
         rows.append([what, NAMES[one["against"]], *shown(one)])
@@ -104,7 +104,7 @@ def peaks(summary: Summary) -> Rows:
 
 
 def steps(summary: Summary) -> Rows:
-    """Each method over its longest step."""
+    """Table of each method over its longest step."""
     against = list(dict.fromkeys((main_reference(summary), CLOSED_FORM)))
     rows = [["over the steps", "max. step", "points", "CPU [s]", *(f"curve, {name}" for name in against)]]
     for one in in_order(summary["runs"]):

@@ -51,7 +51,7 @@ SLIPPING = cython.declare(cython.int, 5)
 
 @cython.cclass
 class SlipLimits:
-    """`behaviour` takes the arguments of a contact and says what it does.
+    """`behaviour` takes the arguments of a contact and classifies its cycle.
 
     n0 and b are the preload and the amplitude of the load as they are calculated with; ell_1 and ell_2 the
     amplitudes of the limits, lower_P the greatest of the lower one, at theta_P, upper_N the least of the
@@ -59,7 +59,10 @@ class SlipLimits:
     """
 
     def behaviour(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
-        """What a contact does. An infinite n0_bar is as any very large one."""
+        """Code of what a contact does: OPEN, STUCK, SLIPPING or UNKNOWN.
+
+        An infinite n0_bar counts as a very large one.
+        """
         if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
             return UNKNOWN
         # above LARGEST only the ratio matters: the spacing of float64 is far more than 1 there
@@ -109,14 +112,17 @@ PI = cython.declare(cython.double, 3.141592653589793)
 
 
 def arc(y: float) -> tuple[float, float, float]:
-    """sin(y), 1 - cos(y) and y - sin(y), each with a relative error of some roundings, see `beyond_sine`."""
+    """sin(y), 1 - cos(y) and y - sin(y), each to a relative error of a few roundings; see `beyond_sine`."""
     sin_half: float = sin(0.5 * y)
     sine: float = 2.0 * sin_half * cos(0.5 * y)
     return sine, 2.0 * sin_half * sin_half, beyond_sine(y, sine)
 
 
 def beyond_sine(y: float, sine: float) -> float:
-    """y - sin(y) to 2e-14 of itself, where it is small by its series: the term left out is 1e-15 at most."""
+    """y - sin(y) to a relative error of 2e-14.
+
+    Small y use its series, whose first omitted term is 1e-15 at most.
+    """
     square: float = y * y
     if y < 0.25:
         rest: float = 1.0 - square / 72.0 * (1.0 - square / 110.0)
@@ -132,7 +138,7 @@ def angle_from(sin_0: float, cos_0: float, sin_1: float, cos_1: float) -> float:
 
 @cython.cclass
 class HarmonicCycle(SlipLimits):
-    """Goes through the cycle of a contact, span by span; what is made of the spans is for subclasses to say.
+    """Goes through the cycle of a contact span by span; subclasses define what is done with a span in `take`.
 
     Of the cycle: ``theta_1`` is half the contact duration [rad], pi where the contact never opens, and
     ``closing_rate`` is b sin(theta_1), d n / d theta when it closes. It starts in the direction ``first``, at
@@ -146,17 +152,17 @@ class HarmonicCycle(SlipLimits):
     """
 
     def take(self) -> None:
-        """What is made of a span; called at the end of each."""
+        """Hook called at the end of each span; a subclass defines it."""
 
     def find(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
-        """What a contact does; where it is SLIPPING, its cycle has been gone through."""
+        """Classifies a contact as `behaviour` does; if it is SLIPPING, its whole cycle is passed through."""
         behaviour: cython.int = self.behaviour(n0_bar, b_bar, phi)
         if behaviour == SLIPPING:
             self._pass()
         return behaviour
 
     def _pass(self) -> None:
-        """Through the spans, in the order in which theta_P and theta_N come while the contact is closed."""
+        """Passes through all spans, in the order of theta_P and theta_N while the contact is closed."""
         self._start()
         length: float = 2.0 * self.theta_1
         to_P: float = angle_from(self.first_sin, self.first_cos, self.sin_P, self.cos_P)
@@ -187,7 +193,7 @@ class HarmonicCycle(SlipLimits):
             self._until_N(length)
 
     def _start(self) -> None:
-        """Where the cycle starts, (A3), and what follows a separation, (20) to (22)."""
+        """Sets the start of the cycle, (A3), and the state after a separation, (20) to (22)."""
         self.span = 0
         self.opens = self.n0 < self.b
         self.goes_on, self.side = False, 0.0
@@ -212,7 +218,7 @@ class HarmonicCycle(SlipLimits):
         self.end_sin, self.end_cos = self.first_sin, self.first_cos
 
     def _until_P(self, length: float) -> None:
-        """Up to theta_P, where positive slip ends."""
+        """Passes the span up to theta_P, where positive slip ends."""
         self._until(self.lower_P, 2.0 * self.sin_P - self.lower_P, length)
         self.end_sin, self.end_cos = self.sin_P, self.cos_P
         if self.side > 0.0:
@@ -222,7 +228,7 @@ class HarmonicCycle(SlipLimits):
         self._end()
 
     def _until_N(self, length: float) -> None:
-        """Up to theta_N, where negative slip ends."""
+        """Passes the span up to theta_N, where negative slip ends."""
         self._until(2.0 * self.sin_N - self.upper_N, self.upper_N, length)
         self.end_sin, self.end_cos = self.sin_N, self.cos_N
         if self.side < 0.0:
@@ -232,7 +238,7 @@ class HarmonicCycle(SlipLimits):
         self._end()
 
     def _until_open(self, length: float) -> None:
-        """Up to the separation, (A2), where both limits are sin(theta)."""
+        """Passes the span up to the separation, (A2), where both limits equal sin(theta)."""
         cos_1: float = -self.n0 / self.b
         sin_1: float = self.closing_rate / self.b
         sin_end: float = self.cos_phi * cos_1 + self.sin_phi * sin_1
@@ -245,7 +251,7 @@ class HarmonicCycle(SlipLimits):
         self._end()
 
     def _until(self, lower: float, upper: float, length: float) -> None:
-        """The whole of a span in one clip: w between the limits as they are at its end."""
+        """Sets the slider at the end of a span: w clipped between the limits there."""
         self.start_sin, self.start_cos, self.length = self.end_sin, self.end_cos, length
         self.w_start = self.w_end
         self.w_end = max(lower, min(self.w_start, upper))
@@ -258,7 +264,7 @@ class HarmonicCycle(SlipLimits):
         self.goes_on = self.goes_on and self.side == before
 
     def _slip(self, slope: float, curvature: float, turns: bool) -> None:
-        """How long the slip of a span lasts: slope sin(y) + curvature (1 - cos(y)) = change of w.
+        """Sets the duration of a span's slip from slope sin(y) + curvature (1 - cos(y)) = change of w.
 
         This is (A8), (A11) to (A13) measured back from the end of the slip, in the form that keeps its
         relative accuracy for the shortest slips and has no arccos of a number that may exceed 1.
@@ -274,7 +280,7 @@ class HarmonicCycle(SlipLimits):
         self.goes_on = not turns and slope >= 0.0
 
     def _end(self) -> None:
-        """The end of a span."""
+        """Completes a span: sets its slip and start direction, and calls `take`."""
         if self.side == 0.0:
             self.goes_on = False
             self.slip = self.sin = self.versine = self.deficit = 0.0
@@ -298,7 +304,7 @@ MOST = cython.declare(cython.int, 7)  # states of a cycle, and one more
 
 @cython.cclass
 class Sequence(HarmonicCycle):
-    """The regions of a cycle that float64 can tell from none, and those without which the others cannot be.
+    """The regions of a cycle that float64 resolves, and those that the sequence cannot do without.
 
     Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
     slip: the limit that pushed w is past its extreme, and w must leave it to be at the other one at the end.
@@ -312,7 +318,7 @@ class Sequence(HarmonicCycle):
         self.regions = np.empty((MOST, 3))
 
     def of(self, n0_bar: float, b_bar: float, phi: float) -> None:
-        """Fill the regions; none where an argument is no number."""
+        """Fills the regions of a contact; there are none where its behaviour is UNKNOWN."""
         self.count = 0
         behaviour: cython.int = self.find(n0_bar, b_bar, phi)
         if behaviour == STUCK:
@@ -323,7 +329,7 @@ class Sequence(HarmonicCycle):
             self._region(LETTER_N if self.last_slip > 0.0 else LETTER_P, self.since, NAN)
 
     def take(self) -> None:
-        """Adds the regions of a span."""
+        """Adds the regions of the present span."""
         if self.span == 0:
             self.since, self.last_slip = 2.0 * (PI - self.theta_1), 0.0
             self.state = 2.0 if self.opens else -1.0
@@ -342,7 +348,7 @@ class Sequence(HarmonicCycle):
             self.state = self.last_slip = side
 
     def _seen(self) -> float:
-        """Side of the slip in a span, 0 where there is none to be seen."""
+        """Side (+1 or -1) of the slip in a span, 0 where no slip can be resolved."""
         if self.opens:
             return self.side if fabs(self.w_end - self.w_start) > self.min_change else 0.0
         if self.lower_P - self.upper_N <= self.min_change:  # there are both slips, equally large, or none
@@ -360,7 +366,7 @@ class Sequence(HarmonicCycle):
     def loop(
         self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double
     ) -> tuple[float, np.ndarray]:
-        """Angle at which the first region begins [rad], and the regions (region, 3); arguments all finite."""
+        """Angle [rad] at which the first region begins, and the regions (region, 3); arguments finite."""
         self.of(n0_bar, b_bar, phi)
         at: float = 0.0
         if self.count > 1:
@@ -368,7 +374,7 @@ class Sequence(HarmonicCycle):
         return at, np.array(self.regions[: self.count])
 
     def words(self, points: cython.double[:, ::1]) -> np.ndarray:
-        """The words of many contacts, (point,); rows (3, point) of n0_bar, b_bar, phi."""
+        """State sequences (point,) of contacts, as words; points has rows n0_bar, b_bar, phi (3, point)."""
         i: cython.Py_ssize_t
         k: cython.int
         letters = np.zeros((points.shape[1], MOST - 1), dtype=np.uint32)
@@ -383,7 +389,7 @@ class Sequence(HarmonicCycle):
 
 @cython.cclass
 class CoefficientLaw:
-    """Base class; a subclass defines `evaluate`."""
+    """Base class of laws for the Fourier coefficients of a contact; a subclass defines `evaluate`."""
 
     def evaluate(
         self,
@@ -394,19 +400,19 @@ class CoefficientLaw:
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """The numbers of one point to out[at:], the first three or with the gradient all twelve.
+        """Writes the numbers of one point to out[at:]: three coefficients, or all twelve with the gradient.
 
         b_bar is not negative. Where an argument is NaN, or b_bar or phi infinite, they are NaN.
         """
 
     def unknown(self, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
-        """NaN for each of the numbers."""
+        """Writes NaN for each of the numbers of a point."""
         i: cython.Py_ssize_t
         for i in range(12 if gradient else 3):
             out[at + i] = NAN
 
     def many(self, n0_bar: object, b_bar: object, phi: object, gradient: cython.bint) -> np.ndarray:
-        """The numbers of many points, shape (3 or 12, ...); the arguments broadcast to the shape of the rest.
+        """Numbers (3 or 12, ...) of many points, whose arguments are broadcast together.
 
         Raises ValueError if an element of b_bar is negative.
         """
@@ -431,7 +437,7 @@ class CoefficientLaw:
         out: cython.double[::1],
         numbers: cython.Py_ssize_t,
     ) -> bool:
-        """Whether an element of b_bar is negative; if none is, all is done."""
+        """Evaluates all points; True, and stopped, at the first negative element of b_bar."""
         i: cython.Py_ssize_t
         with cython.nogil:
             for i in range(b_bar.shape[0]):
@@ -444,7 +450,9 @@ class CoefficientLaw:
 @cython.final
 @cython.cclass
 class Integrals(HarmonicCycle):
-    """Twelve numbers of one contact; pi times the integrals while they are summed over the spans.
+    """Integrals of one contact's force over its cycle: three coefficients and nine derivatives.
+
+    While they are summed over the spans, they are pi times the coefficients.
 
     ``b_n`` is the derivative of F_b by n0_bar, ``c_phi`` that of F_c by phi. ``kept_n``, ``kept_b``,
     ``kept_phi`` are dw/dx while the contact sticks. A ``light`` load is integrated as a force, with the
@@ -456,7 +464,7 @@ class Integrals(HarmonicCycle):
         self.light_load = options.light_load
 
     def sum(self, n0_bar: float, b_bar: float, phi: float, gradient: bool) -> cython.int:
-        """All of one contact; says what it does."""
+        """Computes all coefficients of one contact and returns its behaviour."""
         self.gradient = gradient
         self.F_b = self.F_s = self.F_c = 0.0
         self.b_n = self.b_b = self.b_phi = self.s_n = self.s_b = self.s_phi = 0.0
@@ -469,7 +477,7 @@ class Integrals(HarmonicCycle):
         return behaviour
 
     def _divide(self) -> None:
-        """From integrals over the cycle to coefficients; u is still to be integrated, the spans had w."""
+        """Turns integrals over the cycle into coefficients, and adds the integral of the motion u."""
         if not self.light and self.opens:
             sines: float = self.first_sin * self.first_cos - self.end_sin * self.end_cos
             self.F_b += self.first_cos - self.end_cos
@@ -485,7 +493,7 @@ class Integrals(HarmonicCycle):
         self.c_n, self.c_b, self.c_phi = self.c_n / PI, self.c_b / PI, self.c_phi / PI
 
     def _stuck(self) -> None:
-        """F_b = clip(0, ell_2 - n0, n0 - ell_1), with ell from (A9)."""
+        """Sets the coefficients of a contact that never slips, F_b = clip(0, ell_2 - n0, n0 - ell_1)."""
         self.F_b, self.F_s = self.stuck_force(), 1.0
         # (b +- cos(phi)) / ell by the directions theta_P and theta_N, which stay bounded
         if self.F_b > 0.0:
@@ -498,7 +506,7 @@ class Integrals(HarmonicCycle):
             self.b_phi = self.cos_P
 
     def take(self) -> None:
-        """Adds the integrals over a span."""
+        """Adds the integrals over the present span."""
         if self.span == 0:
             self.light = max(abs(self.n0), self.b) < self.light_load
             self.force = 0.0 if self.opens else -self._load(self.start_sin, self.start_cos)
@@ -520,17 +528,17 @@ class Integrals(HarmonicCycle):
             self.force = self.end_sin - self.w_end
 
     def _load(self, sin_theta: float, cos_theta: float) -> cython.double:
-        """The normal load n at an angle."""
+        """Normal load n at an angle given by its sine and cosine."""
         return self.n0 + self.b * (sin_theta * self.cos_phi + cos_theta * self.sin_phi)
 
     def _keep(self, pull: float, sin_theta: float, cos_theta: float) -> None:
-        """What a stick keeps of a slip, or a closing, that ended at an angle: dw/dx = -pull dn/dx."""
+        """Derivatives dw/dx = -pull dn/dx of the slider during a stick that begins at a given angle."""
         self.kept_n = -pull
         self.kept_b = -pull * (sin_theta * self.cos_phi + cos_theta * self.sin_phi)
         self.kept_phi = -pull * self.b * (cos_theta * self.cos_phi - sin_theta * self.sin_phi)
 
     def _motion(self) -> None:
-        """Less the integrals of w, w sin(theta), w cos(theta): w at rest, and w_end with what it lacks."""
+        """Integrals of -w, -w sin(theta) and -w cos(theta) over a span."""
         stick_sin: float = self.start_cos - self.begin_cos
         stick_cos: float = self.begin_sin - self.start_sin
         self.span_b = -(self.w_start * (self.length - self.slip) + self.w_end * self.slip)
@@ -547,7 +555,7 @@ class Integrals(HarmonicCycle):
             self.span_c -= self.end_cos * g_cos + self.end_sin * g_sin
 
     def _stick_force(self) -> None:
-        """The integrals of the force in a stick: y after the start, force + cos(start) sin(y) - ... of it."""
+        """Integrals of the force over the stick of a span, for a light load."""
         length: float = self.length - self.slip
         sine, versine, deficit = arc(length)
         start_sin: float = self.start_sin
@@ -566,7 +574,7 @@ class Integrals(HarmonicCycle):
         self.span_c = start_cos * g_cos - start_sin * g_sin
 
     def _stick_gradient(self) -> None:
-        """The integrals of df/dx = -dw/dx in a stick."""
+        """Adds the integrals of df/dx = -dw/dx over the stick of a span."""
         length: float = self.length - self.slip
         sines: float = self.start_cos - self.begin_cos
         cosines: float = self.begin_sin - self.start_sin
@@ -581,7 +589,7 @@ class Integrals(HarmonicCycle):
         self.c_phi -= cosines * self.kept_phi
 
     def _slipped(self) -> None:
-        """The integrals of +-n and of +-dn/dx, with dn/dx = 1, sin(theta + phi), b cos(theta + phi)."""
+        """Adds the integrals of +-n and +-dn/dx, dn/dx = 1, sin(theta + phi), b cos(theta + phi)."""
         sin: float = self.end_sin
         cos: float = self.end_cos
         s: float = self.side * self.sin_phi
@@ -617,7 +625,7 @@ class Integrals(HarmonicCycle):
 @cython.final
 @cython.cclass
 class ClosedForm(CoefficientLaw):
-    """The closed form as a law."""
+    """The coefficient law in closed form."""
 
     def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
         self.integrals = Integrals(options)
@@ -631,7 +639,7 @@ class ClosedForm(CoefficientLaw):
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """See `CoefficientLaw`."""
+        """Writes the coefficients of one point, from their closed form; see `CoefficientLaw.evaluate`."""
         if self.integrals.sum(n0_bar, b_bar, phi, gradient) == UNKNOWN:
             self.unknown(gradient, out, at)
             return
@@ -653,7 +661,7 @@ class ClosedForm(CoefficientLaw):
 
 @cython.cclass
 class Boundaries(CoefficientLaw):
-    """n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, laid out as coefficients and their gradients."""
+    """The regime boundaries n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, in the form of a coefficient law."""
 
     def __init__(self) -> None:
         self.limits = SlipLimits()
@@ -667,7 +675,7 @@ class Boundaries(CoefficientLaw):
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """See `CoefficientLaw`."""
+        """Writes the three boundary functions of one point; see `CoefficientLaw.evaluate`."""
         i: cython.Py_ssize_t
         if self.limits.behaviour(n0_bar, b_bar, phi) == UNKNOWN:
             self.unknown(gradient, out, at)

@@ -1,4 +1,4 @@
-"""A contact law of one's own: its forces over a cycle of a motion, and how they change with the motion."""
+"""Base class for user-defined contact laws: forces over a cycle of a motion and their derivatives."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class ContactLawError(ValueError):
-    """A law whose forces are of no use; the message says why."""
+    """Raised for a contact law whose forces cannot be used; the message says why."""
 
 
 class ContactLaw(ABC):
-    """The forces of a contact on the structure, in Python; of a motion that repeats itself.
+    """A user-defined contact law in Python: the forces of a contact on the structure in periodic motion.
 
     A subclass says what they are at equally spaced instants of one cycle. The harmonic balance takes their
     Fourier coefficients, and solves with their derivatives. Give it to a contact by
@@ -50,7 +50,7 @@ class ContactLaw(ABC):
 
     @abstractmethod
     def forces(self, x: FloatArray, dx: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The forces of a motion, and their change with it.
+        """Forces of a motion over one cycle, and their change with the motion.
 
         Parameters
         ----------
@@ -70,7 +70,8 @@ class ContactLaw(ABC):
         """
 
     def off_by(self, x: FloatArray, step: float = 1e-6) -> float:
-        """How far the changes of the forces are from central differences, relative to the greatest.
+        """Greatest error of the changes of the forces against central differences, relative to the greatest
+        change.
 
         x : (direction, sample), one motion about which each displacement is moved by step times the greatest.
         """

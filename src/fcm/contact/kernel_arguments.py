@@ -1,4 +1,4 @@
-"""Motions and parameters of contacts as kernels take them, and coefficients of forces from theirs."""
+"""Converts motions and parameters of contacts to the arrays of kernels, and their results back."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class KernelArguments(NamedTuple):
-    """A row for each contact."""
+    """Motions and parameters of contacts as arrays, with one row for each contact."""
 
     directions: int
     harmonics: list[int]  # of the motion
@@ -27,7 +27,9 @@ class KernelArguments(NamedTuple):
     def of(
         cls, motions: Mapping[str, npt.ArrayLike], harmonics: int | None, numbers: Mapping[str, npt.ArrayLike]
     ) -> KernelArguments:
-        """Of a motion along each direction, the normal last; forces have as many harmonics if none are given.
+        """Arguments from the motion along each direction, the normal last.
+
+        The forces get as many harmonics as the motion unless `harmonics` is given.
 
         Raises
         ------
@@ -62,17 +64,17 @@ class KernelArguments(NamedTuple):
         )  # fmt: skip
 
     def check_single(self) -> None:
-        """Raise ValueError if there are several contacts."""
+        """Raises ValueError if there are several contacts."""
         if self.shape:
             raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {self.shape}")
 
     def room(self, equations: int, gradient: bool) -> tuple[FloatArray, FloatArray]:
-        """Arrays for forces (point, equation) and derivatives (point, equation, unknown), if wanted."""
+        """Empty arrays: forces (point, equation) and, if wanted, derivatives (point, equation, unknown)."""
         count, unknowns = self.unknowns.shape
         return np.empty((count, equations)), np.empty((count if gradient else 0, equations, unknowns))
 
     def coefficients(self, forces: FloatArray) -> list[ComplexArray]:
-        """Of each force, from the order of a kernel along axis 1."""
+        """Complex Fourier coefficients of each force, from a kernel's real numbers along axis 1."""
         d, count = self.directions, self.unknowns.shape[0]
         rest = forces[:, d:].reshape(count, forces.shape[1] // (2 * d), 2 * d, *forces.shape[2:])
         found = (
@@ -84,7 +86,7 @@ class KernelArguments(NamedTuple):
         return [one.reshape(*self.shape, *one.shape[1:]) for one in found]
 
     def derivatives(self, jacobian: FloatArray) -> list[ComplexArray]:
-        """Of these, by motion, harmonic and part, in three axes instead of the last."""
+        """Derivatives of the force coefficients, with axes motion, harmonic and part instead of the last."""
         points, equations, unknowns = jacobian.shape
         d = self.directions
         means = np.zeros((points, equations, 1, 2 * d))

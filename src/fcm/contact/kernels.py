@@ -1,4 +1,4 @@
-"""Kernels of contacts that are made once: what uses them reads the results before another does."""
+"""Kernels of contacts shared within a thread: read a result before the next user evaluates."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fcm.contact.plane.forces import PlanarContact
 
 
 class _Kernels(threading.local):
-    """Of each thread, by their harmonics."""
+    """Kernels that each thread keeps, by their harmonics."""
 
     def __init__(self) -> None:
         self.on_a_line = lru_cache(KERNELS.max_kernels)(_periodic)
@@ -19,12 +19,12 @@ class _Kernels(threading.local):
 
 
 def periodic_contact(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PeriodicContact:
-    """The kernel of this thread for these harmonics of motions and of forces, on a line."""
+    """This thread's kernel of contacts on a line, for given harmonics of motions and of forces."""
     return _KERNELS.on_a_line(harmonics, outputs)
 
 
 def planar_contact(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PlanarContact:
-    """The same in a plane."""
+    """This thread's kernel of contacts in a plane, for given harmonics of motions and of forces."""
     return _KERNELS.in_a_plane(harmonics, outputs)
 
 

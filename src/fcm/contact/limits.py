@@ -1,4 +1,4 @@
-"""The regimes of a contact over arrays: which side of their boundaries points are on."""
+"""Boundaries between the regimes of a contact (open, opening, slipping, sticking), over arrays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def regime_boundaries(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
-    """n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, shape (3, ...): the arguments broadcast to the rest.
+    """The boundary functions n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, shape (3, ...); arguments
+    broadcast.
 
     >>> regime_boundaries(0.5, 0.25, 0.0).tolist()  # closed throughout, and slips
     [0.75, 0.25, -0.5]
@@ -22,6 +23,6 @@ def regime_boundaries(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.Arra
 
 
 def slip_limit(b_bar: FloatArray, phi: npt.ArrayLike) -> FloatArray:
-    """The least n0_bar that never slips nor opens, (ell_1 + ell_2) / 2 of (25)."""
+    """Least n0_bar of a contact that never slips nor opens: (ell_1 + ell_2) / 2 of (25)."""
     limit: FloatArray = b_bar + np.maximum(-regime_boundaries(b_bar, b_bar, phi)[2], 0.0)
     return limit

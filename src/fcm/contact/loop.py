@@ -1,4 +1,4 @@
-"""The hysteresis loop: the states of a cycle, when each begins, the force at any angle (section 3.4)."""
+"""The hysteresis loop: states of a cycle, their first angles, and the friction force (section 3.4)."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ class Loop(Frozen, Pieces):
     _since: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)  # angles from the first on
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
-        """u / a [-] at each angle theta [rad]."""
+        """Displacement u / a [-] at each angle theta [rad]."""
         return np.sin(np.asarray(theta, dtype=np.float64))
 
     def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
-        """The same as `normal_load`: the friction force is at most that."""
+        """Slip limit of the friction force, equal to `normal_load` [-], at each angle theta [rad]."""
         return self.normal_load(theta)
 
     def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
-        """mu n / (k_u a) [-] at each angle theta [rad], equation (1)."""
+        """Normal load mu n / (k_u a) [-] at each angle theta [rad], equation (1)."""
         angle = np.asarray(theta, dtype=np.float64)
         return np.maximum(self.n0_bar + self.b_bar * np.sin(angle + self.phi), 0.0)
 
@@ -106,7 +106,7 @@ def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:
 
 
 def sequences(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -> npt.NDArray[np.str_]:
-    """The sequence of each of many contacts; the arguments broadcast, NaN gives ''.
+    """State sequences of many contacts as words; arguments broadcast, NaN gives ''.
 
     >>> sequences([2.0, 0.5, -1.0], 0.0, 0.0).tolist()
     ['E', 'EPEN', 'S']

@@ -1,4 +1,4 @@
-"""How exactly the cycle of one contact is followed, on a line; `fcm.contact.plane.options` has the plane."""
+"""Options for the cycle of one contact on a line; `fcm.contact.plane.options` has the plane."""
 
 from __future__ import annotations
 
@@ -6,11 +6,15 @@ from fcm.frozen import Frozen
 
 
 class ClosedFormOptions(Frozen):
-    """The coefficients in closed form; angles in radians, motion and load over the amplitude a and k_u a.
+    """The coefficients in closed form; motion and load are relative to the amplitude a and to k_u a.
 
-    min_change: of w in a slip, and length of a stick; what is less, float64 cannot tell from none.
-    light_load: of max(|n0_bar|, b_bar); a load below is integrated as a force, which keeps the relative error
-    of the arguments however small it is. Else u - w is, which is faster.
+    Attributes
+    ----------
+    min_change : float
+        Change of w in a slip, and [rad] length of a stick, up to which there is none: float64 cannot tell.
+    light_load : float
+        Value of max(|n0_bar|, b_bar) below which the force is integrated: this keeps the relative error of
+        the arguments, however small it is. Above it u - w is integrated, which is faster.
     """
 
     min_change: float = 1e-15
@@ -18,12 +22,20 @@ class ClosedFormOptions(Frozen):
 
 
 class PeriodicOptions(Frozen):
-    """The events of a contact on a line under any periodic motion; angles in radians.
+    """The events of a contact on a line under any periodic motion.
 
-    nodes_per_harmonic: times the highest harmonic, intervals of a cycle at first; those that prove nothing
-    are halved. max_halvings: of one of them; at half of these, rounding has long been reached. min_interval:
-    length of an interval that is not halved further. min_state_length: of a state in a loop, and of the way
-    of a slip over its greatest extent; what is shorter is rounding.
+    Attributes
+    ----------
+    nodes_per_harmonic : int
+        Number of intervals of a cycle at first, relative to the highest harmonic. Those in which a zero is
+        not ruled out are halved.
+    max_halvings : int
+        Most halvings of one interval; at half of these rounding has long been reached.
+    min_interval : float
+        [rad] Length of an interval below which it is not halved further.
+    min_state_length : float
+        [rad] Length of a state in a loop, and way of a slip relative to its greatest extent, up to which it
+        is rounding.
     """
 
     nodes_per_harmonic: int = 4
@@ -33,10 +45,13 @@ class PeriodicOptions(Frozen):
 
 
 class KernelOptions(Frozen):
-    """Kernels that are kept.
+    """Options on the number of kernels that are kept.
 
-    max_kernels: of a thread, on a line and in a plane each; the curves of a sweep ask for some eighty sets of
-    harmonics.
+    Attributes
+    ----------
+    max_kernels : int
+        Most kernels of each thread, on a line and in a plane each. The curves of a sweep ask for some eighty
+        sets of harmonics.
     """
 
     max_kernels: int = 128

@@ -1,4 +1,4 @@
-"""The pieces of a loop, one for each state of its sequence: which an angle is in, and the friction there."""
+"""The pieces of a loop, one for each state: which piece contains an angle, and the friction force there."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 
 
 class Pieces:
-    """A cycle of states, with the angles at which each begins, and these from the first on."""
+    """A cycle of states and the angles at which each begins, in order from the first."""
 
     sequence: str
     angles: FloatArray
@@ -20,7 +20,7 @@ class Pieces:
         return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
 
     def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
-        """Which piece each angle theta [rad] is in."""
+        """Number of the piece that contains each angle theta [rad]."""
         if self._since.size == 0:
             return np.zeros(theta.shape, dtype=np.intp)
         since = np.mod(theta - self.angles[0], 2.0 * np.pi)
@@ -28,7 +28,7 @@ class Pieces:
 
 
 class LoadedPieces(Pieces):
-    """The same of a contact under the normal motion v."""
+    """A cycle of states of a contact under the normal motion v."""
 
     v: ComplexArray
     mu: float
@@ -36,22 +36,22 @@ class LoadedPieces(Pieces):
     n_0: float
 
     def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
-        """n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
+        """Normal load n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
         return np.maximum(self.n_0 + self.k_v * waves_at(self.v, theta), 0.0)
 
     def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
-        """mu n [force] at each angle theta [rad]."""
+        """Slip limit mu n [force] at each angle theta [rad]."""
         return self.mu * self.normal_load(theta)
 
 
 def waves_at(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
-    """Re sum_h X_h exp(i h theta)."""
+    """Value of the series Re sum_h X_h exp(i h theta)."""
     angle = np.asarray(theta, dtype=np.float64)
     values: FloatArray = (np.exp(1j * np.multiply.outer(angle, np.arange(X.size))) @ X).real
     return values
 
 
 def friction(state: npt.NDArray[np.str_], stick: FloatArray, limit: FloatArray) -> FloatArray:
-    """The friction force by the state: `stick` while it sticks, plus or minus the limit while it slips."""
+    """Friction force of the states: `stick` while sticking, plus or minus the limit while slipping."""
     held = np.clip(stick, -limit, limit)  # at an event, a rounding error may put it past the limit
     return np.select([state == "E", state == "P", state == "N"], [held, limit, -limit], 0.0)

@@ -67,7 +67,7 @@ def shown_degrees(theta: float, from_greatest: bool = False) -> float:
 
 
 def transitions(loop: Loop | PeriodicLoop) -> list[Transition]:
-    """Every transition of a cycle, in the order of the sequence; none where there is one state only."""
+    """Every transition of a cycle, in the order of the sequence; empty if there is one state only."""
     displacement, force = loop.displacement(loop.angles), loop.force(loop.angles)
     return [
         Transition(

@@ -28,20 +28,20 @@ class Plane(Frozen):
     b_range: tuple[float, float] = B_RANGE
 
     def nodes(self, steps: tuple[int, int] = STEPS) -> tuple[FloatArray, FloatArray]:
-        """n0_bar (i,) and b_bar (j,), the ends included."""
+        """The nodes n0_bar (i,) and b_bar (j,), with the ends included."""
         n0, b = (
             np.linspace(*ends, n + 1) for ends, n in zip((self.n0_range, self.b_range), steps, strict=True)
         )
         return n0, b
 
     def centres(self, steps: tuple[int, int] = CELLS) -> tuple[FloatArray, FloatArray]:
-        """The middles between the nodes, off the special values 0 and 1."""
+        """The midpoints between the nodes, which avoid the special values 0 and 1."""
         n0, b = (0.5 * (nodes[1:] + nodes[:-1]) for nodes in self.nodes(steps))
         return n0, b
 
 
 class Surface(Frozen):
-    """One coefficient over a plane."""
+    """Values of one coefficient over a plane."""
 
     coefficient: str
     plane: Plane
@@ -53,7 +53,7 @@ class Surface(Frozen):
 def surface(
     coefficient: str, plane: Plane, steps: tuple[int, int] = STEPS, law: Law = fourier_coefficients
 ) -> Surface:
-    """One of COEFFICIENTS over a plane, from the closed form or from another law such as a table.
+    """Surface of one of COEFFICIENTS over a plane, from the closed form or from another law such as a table.
 
     >>> flat = surface("F_c", Plane(phi=0.0, b_range=(1.0, 2.0)), steps=(10, 10))
     >>> float(abs(flat.values).max())  # in phase, and the load varies enough: no damping
@@ -65,7 +65,7 @@ def surface(
 
 
 def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
-    """n0_bar on the lines between the regimes, for each b_bar.
+    """Boundary values n0_bar between the regimes, for each b_bar.
 
     Below ``open`` the contact never closes, below ``separation`` it opens within the cycle, above ``slip``,
     equation (25), it never slips.
@@ -77,20 +77,20 @@ def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
 
 
 class Edges(Frozen):
-    """The lines of `Boundaries` across a plane."""
+    """The boundary lines between the regimes, across a plane."""
 
     b_bar: FloatArray  # (j,) [-]
     n0_bar: dict[str, FloatArray]  # for each line (j,) [-]
 
 
 def edges(plane: Plane) -> Edges:
-    """The lines between the regimes, at all b_bar of a plane."""
+    """The boundary lines between the regimes, at all b_bar of a plane."""
     b = np.linspace(*plane.b_range, STEPS[0] + 1)
     return Edges(b, boundaries(b, plane.phi))
 
 
 class Regions(Frozen):
-    """Where in a plane each sequence of states occurs."""
+    """Masks of where in a plane each sequence of states occurs."""
 
     n0_bar: FloatArray  # (i,) [-]
     b_bar: FloatArray  # (j,) [-]
@@ -100,7 +100,7 @@ class Regions(Frozen):
 
 
 def regions(plane: Plane, steps: tuple[int, int] = FINE_CELLS) -> Regions:
-    """The sequences of `hysteresis_loop` over a plane, in the middle of each cell."""
+    """Regions of the sequences of `hysteresis_loop` over a plane, evaluated in the middle of each cell."""
     n0, b = plane.centres(steps)
     found = sequences(n0[None, :], b[:, None], plane.phi)
     where = {str(name): (found == name).astype(np.float64) for name in np.unique(found)}

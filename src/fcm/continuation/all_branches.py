@@ -18,12 +18,12 @@ Follow = Callable[..., Path]  # as `follow`
 
 
 class Following(Frozen):
-    """How each path is followed.
+    """Options, progress and function with which each branch is followed.
 
     Attributes
     ----------
     options : FollowOptions
-        As of `follow`.
+        Options of following a curve, see `follow`.
     follow : callable
         Follows a path, as `follow` does.
     """

@@ -1,4 +1,4 @@
-"""How far the following of a curve has come: enough to go on from there, to the same points."""
+"""Checkpoints: the state of a curve that is followed, enough to go on from there to the same points."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fcm.continuation.step_control import Stepper
 
 
 class Checkpoint(NamedTuple):
-    """The points that are there, and the stepper of the curve."""
+    """The points kept so far, and the state of the stepper."""
 
     kept: Stored
     z: FloatArray  # (n + 1,) of the stepper
@@ -34,7 +34,7 @@ class Checkpoint(NamedTuple):
     evaluations: int
 
     def path(self, status: Status) -> Path:
-        """The points as a path."""
+        """The points of the checkpoint as a `Path` with a status."""
         store = PointStore(self.z.size)
         store.restore(self.kept)
         return store.path(status, self.evaluations)
@@ -44,7 +44,7 @@ _POINT_FIELDS = ("z", "tangent", "margin", "output", "growth")
 
 
 def stepper_state(stepper: Stepper) -> dict[str, Any]:
-    """What of a checkpoint the stepper knows."""
+    """The part of a checkpoint that comes from the stepper: its point, predictor and scale."""
     copies = {name: np.array(getattr(stepper.here, name)) for name in _POINT_FIELDS}
     way = stepper.predictor
     more = {
@@ -63,7 +63,7 @@ def stepper_state(stepper: Stepper) -> dict[str, Any]:
 
 
 def restore_stepper(stepper: Stepper, checkpoint: Checkpoint) -> None:
-    """Bring the stepper to where it was."""
+    """Bring the stepper to the state of a checkpoint."""
     for name in _POINT_FIELDS:
         np.asarray(getattr(stepper.here, name))[:] = getattr(checkpoint, name)
     stepper.here.orientation = checkpoint.orientation

@@ -48,7 +48,8 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def factor(self) -> cython.bint:
-        """The system closed by the row, at z."""
+        """Evaluate the problem at z and factor its equations, closed by the row; false if they are
+        singular."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
@@ -88,7 +89,7 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def step(self) -> cython.double:
-        """Length of the Newton step, which is left in delta."""
+        """Compute the Newton step, which is left in delta, and return its scaled length."""
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
         total: cython.double = 0.0
@@ -106,7 +107,7 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def compute_tangent(self) -> cython.bint:
-        """Tangent and orientation from the system as it is factored, and how far z is from the guess."""
+        """Compute tangent and orientation from the system as it is factored, and how far z was moved."""
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.problem.unknowns + 1
         total: cython.double = 0.0
@@ -180,7 +181,7 @@ class Newton(BorderedSystem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def single_step(self) -> cython.bint:
-        """Take one step from z; whether there is one."""
+        """Take one Newton step from z; false if there is none."""
         self.guess[:] = self.z
         if not self.factor() or not self.step() < self.options.max_step:
             return False
@@ -190,7 +191,7 @@ class Newton(BorderedSystem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def correct_by_half_steps(self, reach: cython.double) -> cython.bint:
-        """`correct`, from the guess once more, by half steps first; false also where these grow.
+        """Correct z from the guess once more, by half steps first; false also where these grow.
 
         Where the equations begin as the root of a distance d > 0, as where a circle begins to slip, a whole
         step leads from d to 2 sqrt(d d0) - d. That is beyond the corner if d > 4 d0. Half a step leads to
@@ -216,7 +217,7 @@ class Newton(BorderedSystem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def converges(self, reach: cython.double, most: cython.double) -> cython.bint:
-        """`correct`, from z, with whole steps."""
+        """Correct z by whole Newton steps; whether they converge. See `correct`."""
         count: cython.int
         step: cython.double
         ratio: cython.double
@@ -305,13 +306,13 @@ class Newton(BorderedSystem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def chord_steps(self, before: cython.double) -> cython.bint:
-        """Whether z, to which a step has led, is on the curve; else it is moved on with the same Jacobian."""
+        """Take Newton steps with the same Jacobian from the end of a step; whether they come to the curve."""
         return _chord_steps(self, before, self.options.max_chord_steps, 0.1)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def take_tangent(self) -> cython.bint:
-        """Tangent and orientation at z as it stands; false if they are not determined there."""
+        """Compute tangent and orientation at z as it stands; false if they are not determined there."""
         self.guess[:] = self.z
         return self.factor() and self.compute_tangent()
 
@@ -319,8 +320,11 @@ class Newton(BorderedSystem):
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def _last_chord_step(newton: Newton, before: cython.double) -> cython.bint:
-    """Whether a step with the Jacobian from before the last, of a length, leads to the curve; else it is not
-    taken. What it leaves is less by as much again."""
+    """Take a last Newton step with the same Jacobian, if it leads to the curve; whether it does.
+
+    before: the length of the step before. What the last one leaves is less by as much again; one that does
+    not lead to the curve is not taken.
+    """
     newton.problem.probe(newton.z)
     step: cython.double = newton.step()
     if not step * step < newton.tolerance * before:
@@ -330,8 +334,10 @@ def _last_chord_step(newton: Newton, before: cython.double) -> cython.bint:
 
 
 def correct_with_kept_jacobian(newton: Newton, most: float) -> bool:
-    """As `correct` from a length of 1, where the direction does not matter: a Jacobian is kept as long as
-    steps with it shrink."""
+    """Correct newton's z where the direction does not matter: whether it came to the curve.
+
+    As `Newton.correct` from a length of 1; a Jacobian is kept as long as steps with it shrink.
+    """
     count: cython.int
     step: cython.double
     before: cython.double = 1.0
@@ -376,15 +382,17 @@ def _chord_steps(
 @cython.cfunc
 @cython.exceptval(check=False)
 def _move(newton: Newton) -> cython.void:
-    """Take the step that is in delta."""
+    """Add the Newton step that is in delta to newton's z."""
     i: cython.Py_ssize_t
     for i in range(newton.problem.unknowns + 1):
         newton.z[i] += newton.scale[i] * newton.delta[i]
 
 
 def distances(newton: Newton, z: FloatArray, direction: FloatArray) -> FloatArray:
-    """Lengths (point,) of the steps from points z across directions there, both (point, n + 1), to the curve
-    of newton's problem, in its scale; NaN where there is none."""
+    """Scaled lengths (point,) of the Newton steps from points z (point, n + 1) to the curve, else NaN.
+
+    Each step is taken across a direction at its point, (point, n + 1).
+    """
     found = np.full(len(z), np.nan)
     _fill(newton, z, direction, found)
     return found

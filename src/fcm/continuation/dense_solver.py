@@ -24,7 +24,9 @@ BLOCKED_ROWS = cython.declare(cython.int, SOLVER.blocked_rows)
 
 @cython.cclass
 class Solver:
-    """matrix x = right: fill `matrix`, `factor`, fill `right`, `solve`: right is then x.
+    """Solver of a dense system, matrix x = right.
+
+    Fill `matrix`, `factor`, fill `right`, `solve`: right is then x.
 
     orientation is the sign of the determinant. Neither array may be replaced.
     """
@@ -59,7 +61,7 @@ class Solver:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def solve(self) -> cython.int:
-        """Replace right by the solution."""
+        """Replace the right side by the solution x."""
         if self.size < self.lapack_size:
             substitute(self.matrix, self.swapped, self.right)
             return 0
@@ -73,7 +75,9 @@ class Solver:
 @cython.cfunc
 @cython.exceptval(check=False)
 def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.double:
-    """The sign of the determinant, 0 if the matrix is singular or not finite; swapped (n,): the columns.
+    """Factor the matrix a in place; the sign of its determinant, 0 if it is singular or not finite.
+
+    swapped (n,): the columns that were exchanged.
 
     Of a with further rows and columns only the first n have pivots.
     """
@@ -168,7 +172,7 @@ def condense(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.bint:
 def _less_below(
     a: cython.double[:, ::1], i: cython.Py_ssize_t, first: cython.Py_ssize_t, n: cython.Py_ssize_t
 ) -> cython.void:
-    """The right sides of row i less those of the rows from the first to the n-th, by the triangle."""
+    """Subtract from the right sides of row i those of rows first to n, each times its entry of a."""
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for k in range(first, n):
@@ -181,7 +185,7 @@ def _less_below(
 @cython.inline
 @cython.exceptval(check=False)
 def _four_less_below(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.void:
-    """The same of row i and the next three."""
+    """Subtract from the right sides of rows i to i + 3 those of the rows below, as `_less_below`."""
     k: cython.Py_ssize_t = i + 4
     r: cython.Py_ssize_t
     width: cython.Py_ssize_t = a.shape[1]
@@ -219,7 +223,7 @@ def substitute(a: cython.double[:, ::1], swapped: cython.int[::1], x: cython.dou
 def _triangle(
     a: cython.double[:, ::1], x: cython.double[::1], first: cython.Py_ssize_t, way: cython.Py_ssize_t
 ) -> cython.void:
-    """Solve from a row on, down (way 1) by the lower triangle or up (-1) by the upper."""
+    """Solve by the lower triangle (way 1), or by the upper one (-1), from a row on."""
     count: cython.Py_ssize_t = a.shape[0] - first if way > 0 else first + 1
     m: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -247,8 +251,10 @@ def _four(
     way: cython.Py_ssize_t,
     known: cython.Py_ssize_t,
 ) -> cython.void:
-    """Take what is known of x, so many numbers from the first on, from the next four, whose sums then do not
-    wait for one another."""
+    """Subtract the known numbers of x from the next four right sides, whose sums do not wait for one another.
+
+    known: how many there are, from the first on.
+    """
     i: cython.Py_ssize_t = first + way * known
     j: cython.Py_ssize_t = first
     p: cython.double = x[i]
@@ -269,7 +275,7 @@ def _four(
 @cython.inline
 @cython.exceptval(check=False)
 def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t, count: cython.Py_ssize_t) -> cython.void:
-    """Row i and the next three less the first so many, which are a multiple of four; where it is compiled."""
+    """Subtract the first rows, a multiple of four, from row i and the next three; where it is compiled."""
     columns: cython.Py_ssize_t = a.shape[1]
     k: cython.Py_ssize_t
     for k in range(0, count, 4):
@@ -306,7 +312,7 @@ def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.Py_ssize
 @cython.inline
 @cython.exceptval(check=False)
 def _swap(a: cython.double[:, ::1], i: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
-    """Swap two columns."""
+    """Swap columns i and j of the matrix a."""
     k: cython.Py_ssize_t
     held: cython.double
     for k in range(a.shape[0]):

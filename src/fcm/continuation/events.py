@@ -1,4 +1,4 @@
-"""What happens within a step: roots of functions along it, each found on the curve itself.
+"""Events within a step: roots of functions along it, each found on the curve itself.
 
 Between two points that enclose a sign change it is found by the secant through the last two points
 (`SignChange`); halfway between the sides where that leads out of them, or three looks have not halved their
@@ -31,7 +31,9 @@ else:
 
 @cython.cclass
 class SignChange:
-    """The two sides of a change of sign, low and high, which looks at `at` bring nearer to one another.
+    """A bracket of a change of sign, low to high, which evaluations at `at` make narrower.
+
+    width: the distance of its sides; secant: where the secant leads.
 
     width: their distance; secant: where the secant leads.
     """
@@ -58,7 +60,7 @@ class SignChange:
     @cython.cfunc
     @cython.exceptval(check=False)
     def choose_next(self) -> cython.void:
-        """The point to be looked at next."""
+        """Choose the point `at` of the next evaluation, by the secant or by halves."""
         self.width, self.secant = self.high - self.low, self.low
         if self.now_value != self.last_value:
             rise: cython.double = self.now_value - self.last_value
@@ -73,7 +75,7 @@ class SignChange:
     @cython.cfunc
     @cython.exceptval(check=False)
     def seems_discontinuous(self) -> cython.bint:
-        """Whether the function seems to."""
+        """Whether the function seems to jump within the bracket, if it may."""
         difference: cython.double = fabs(self.after - self.before)
         near: cython.bint = self.width < self.jump_width * self.first_width
         return self.may_jump and near and difference > self.jump_difference * self.first_difference
@@ -81,7 +83,7 @@ class SignChange:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def converged(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
-        """Whether another look would move by no more than this; or the one after next.
+        """Whether another evaluation would move the secant by no more than `fine`; or the one after next.
 
         That is shorter than the next by at least as much as the next is than the last.
         """
@@ -93,7 +95,7 @@ class SignChange:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def update(self, at: cython.double, value: cython.double) -> cython.int:
-        """Take the value there for that of one side."""
+        """Take the function's value at `at` for one side of the bracket."""
         if self.evaluations % self.halving_interval == self.halving_interval - 1:
             self.width_in_turn = self.width
         self.evaluations += 1
@@ -108,7 +110,10 @@ class SignChange:
 
 @cython.cclass
 class Landing:
-    """`value` (k, 2), of the parameter with a width; `shortened`: whether the step was cut to end at one."""
+    """Values of the parameter, with widths, at which steps are to end.
+
+    `value` (k, 2): each value and its width; `shortened`: whether the step was cut to end at one.
+    """
 
     def __init__(self, values: Sequence[tuple[float, float]]) -> None:
         self.value, self.shortened = np.array(values, dtype=np.float64).reshape(-1, 2), False
@@ -116,7 +121,7 @@ class Landing:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def limit_step(self, stepper: Stepper, step: cython.double) -> cython.double:
-        """The step, or the length at which it comes to the first value."""
+        """The step, or the length at which the curve's tangent comes to the first value."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = stepper.problem.unknowns
         way: cython.double
@@ -154,15 +159,17 @@ class Landing:
 
 
 class End(NamedTuple):
-    """The curve ends where a function of z (n + 1,), which may jump, becomes negative; or before that by no
-    more than a length."""
+    """A function of z (n + 1,) that ends the curve where it becomes negative.
+
+    It may jump. The curve ends there, or before that by no more than the length `within`.
+    """
 
     value: Callable[[FloatArray], float]
     within: float = 0.0
 
 
 class Events(Frozen):
-    """What a curve is to have points at, besides its folds, corners, peaks, branch points and ends.
+    """Points that a curve is to have besides its folds, corners, peaks, branch points and ends.
 
     Attributes
     ----------
@@ -197,8 +204,10 @@ USER_POINT = cython.declare(cython.int, 3)
 
 @cython.cclass
 class TestFunction:
-    """Its change of sign is an event: a margin k, the growth of the parameter or of an output k, or the
-    parameter less a value."""
+    """A function along a step whose change of sign is an event.
+
+    It is a margin k, the growth of the parameter or of an output k, or the parameter less a value.
+    """
 
     def __init__(self, kind: int, k: int = 0, value: float = 0.0) -> None:
         self.kind, self.k, self.value = kind, k, value
@@ -206,7 +215,10 @@ class TestFunction:
 
 @cython.cfunc
 def value(stepper: Stepper, point: Point, function: TestFunction) -> cython.double:
-    """A function along the step; a margin that there is not has not changed its sign."""
+    """Value of a test function at a point of the step.
+
+    A margin that the point does not have counts as unchanged.
+    """
     k: cython.Py_ssize_t = function.k
     if function.kind == MARGIN:
         margin: cython.double = (
@@ -272,13 +284,13 @@ class Event(NamedTuple):
 
 
 def event_at_point(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
-    """A point to keep."""
+    """The event at a point of the stepper, a length from here, with a mark."""
     direction = np.asarray(stepper.newton.scale) * np.asarray(point.tangent)
     return Event(length, mark, np.array(point.z), direction, point.orientation)
 
 
 def event_at_sample(stepper: Stepper, poll: Sample, mark: int) -> Event:
-    """A look to keep."""
+    """The event at a sample of an extremum search, with a mark."""
     scale = np.asarray(stepper.newton.scale)
     return Event(poll.at, mark, scale * poll.z, scale * poll.tangent, poll.orientation)
 
@@ -311,7 +323,7 @@ def _changing(stepper: Stepper) -> list[int]:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def without_events(stepper: Stepper, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
-    """Whether there is nothing within the step."""
+    """Whether the step has no fold, no peak that matters, and no passing of a value of the parameter."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
     here: Point = stepper.here
@@ -484,7 +496,10 @@ def user_point_crossings(stepper: Stepper, value: float, fold: Event | None) -> 
 def user_point_crossing(
     stepper: Stepper, value: float, low: float, high: float, before: float, after: float
 ) -> list[Event]:
-    """Where the parameter passes a value between two lengths, at which it is greater by before and after."""
+    """The event where the parameter passes a value between two lengths; none if it does not.
+
+    before, after: by how much the parameter exceeds the value at the lengths low and high.
+    """
     if not before * after < 0.0:
         return []
     at = root(stepper, TestFunction(USER_POINT, 0, value), low, high, before, after)
@@ -495,9 +510,9 @@ def user_point_crossing(
 
 
 def first_end(stepper: Stepper, ends: Sequence[End]) -> tuple[int, float] | None:
-    """Which of some functions becomes negative first within the step, and at which length; None if none does.
+    """The end function that becomes negative first within the step, and at which length; None if none does.
 
-    There the least of them is not negative yet; one that is no number is.
+    There the least of them is not negative yet; one that is NaN counts as negative.
     """
 
     def least(point: Point) -> float:

@@ -19,22 +19,25 @@ from fcm.frozen import Frozen
 
 
 class ExtremumOptions(Frozen):
-    """To what an extreme is known, and when a polynomial leads to it.
+    """Options on how exactly an extremum is known, and when a polynomial leads to it.
 
     Attributes
     ----------
     fold_tolerance, corner_tolerance : float
-        Of the parameter, to which a fold is known; and to which one in a corner is.
+        Relative error of the parameter at a fold, and at a fold in a corner.
     min_reduction : float
-        Part of a slope, to which the next look has to reduce it: otherwise there is no cubic.
+        Slope at a new point, relative to the one that it replaces, from which on no cubic is used for the
+        next.
     corner_curvature : float
-        Times the bend of the step: from there on there is a corner.
+        Bend of the interval relative to that of the step, above which there is a corner in it.
     corner_offset : float
-        Part of the square of an interval over the step: how far from a corner, which they are to enclose.
+        Distance of the next points from a corner which they are to enclose, relative to the squared interval
+        over the step.
     min_length : float
-        Length below which values are too nearly the same to tell more than their slopes.
+        Length of an interval up to which only the slopes at its ends are used: values are too nearly the
+        same.
     min_cosine : float
-        Cosine of a turn, below which a length is no measure of the way.
+        Cosine of a turn below which a length is no measure of the way.
     """
 
     fold_tolerance: float = 1e-15
@@ -80,8 +83,7 @@ class ExtremumSearch:
         self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 
     def extreme(self, output: int | None) -> Sample:
-        """The sample where an output is greatest, or without one the parameter, as near as the curve is
-        found."""
+        """The sample at the extremum of an output, or of the parameter without one, as near as found."""
         low, high = self._between(output)
         if high.at == low.at:  # two points at one place, as on either side of a corner
             return high
@@ -170,8 +172,10 @@ class ExtremumSearch:
 
 
 def _cubic(low: Sample, high: Sample, output: int | None, coarse: float) -> tuple[float, FloatArray]:
-    """Where the cubic of the value with the slopes at both ends turns, and the cubic of z there; of ends no
-    further apart than coarse the slopes alone tell."""
+    """Place of the extremum of the interpolating cubic between two samples, and z on the cubic there.
+
+    Ends no further apart than coarse are interpolated by their slopes alone.
+    """
     width = high.at - low.at
     if output is None:
         rise, begin, end = float(high.z[-1] - low.z[-1]), float(low.slope[-1]), float(high.slope[-1])
@@ -193,7 +197,7 @@ def _middle(low: Sample, high: Sample) -> tuple[float, FloatArray]:
 
 
 def _turn(begin: float, end: float, mean: float, otherwise: float) -> float:
-    """Where in (0, 1) the cubic with the slopes at 0 and 1, and a mean slope, has none.
+    """Extremum in (0, 1) of a cubic with given slopes at 0 and 1 and a given mean slope.
 
     >>> round(_turn(1.0, -1.0, 0.0, 0.0), 3), round(_turn(1.0, -2.0, -0.25, 0.0), 3)
     (0.5, 0.457)

@@ -126,7 +126,7 @@ class Follower:
         return True
 
     def resume(self, checkpoint: Checkpoint) -> None:
-        """Go where the curve had come to."""
+        """Go on from a checkpoint of the curve."""
         restore_stepper(self.stepper, checkpoint)
         self.recorder.restore(checkpoint)
         self.step, self.size = checkpoint.step, checkpoint.size
@@ -138,7 +138,7 @@ class Follower:
         )
 
     def run(self, watch: Watch | None) -> Path:
-        """Step by step to where the curve ends."""
+        """Follow the curve step by step to its end, and return its path."""
         count: cython.int
         for count in range(self.options.step.max_steps):
             if watch is not None and self.labelled is not None and self.labelled.departures == 0:
@@ -152,7 +152,7 @@ class Follower:
         return self.path(Status.TOO_LONG)
 
     def path(self, status: Status) -> Path:
-        """The points kept so far."""
+        """The points kept so far, as a path with a status."""
         return self.recorder.path(status)
 
     def retreat(self) -> bool:
@@ -165,7 +165,7 @@ class Follower:
 
     @cython.cfunc
     def advance(self) -> object:
-        """One step; a status where the curve ends."""
+        """Take one step along the curve; returns a status where the curve ends, else None."""
         stepper: Stepper = self.stepper
         control: StepOptions = self.options.step
         switching: SwitchingOptions = self.options.switching
@@ -237,8 +237,11 @@ class Follower:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def steps_over_corners(self, step: cython.double) -> cython.bint:
-        """Whether a step goes on past all margins as if there were none: where they are many, most corners
-        are slight. Only if none can hide a pair of folds, which a hasty curve may miss."""
+        """Whether a step goes on past all margins as if there were none, and is a good one.
+
+        Where margins are many, most corners are slight. It is refused if a corner may hide a pair of folds,
+        which a hasty curve may miss.
+        """
         stepper: Stepper = self.stepper
         if (
             not stepper.try_step(step)
@@ -292,7 +295,7 @@ class Follower:
 
     @cython.ccall
     def accept_step(self) -> object:
-        """Go on to the point there."""
+        """Go on to the end of the step and choose the next step; a status where the curve ends."""
         stepper: Stepper = self.stepper
         count: cython.int = self.recorder.store.count
         if self.ends:
@@ -347,7 +350,7 @@ class Follower:
         return None
 
     def limit_step(self, step: float, longer: bool) -> None:
-        """Make the next step at most that long, or at least."""
+        """Make the next step no longer, or no shorter, than a length."""
         self.step = min(max(self.step, step), self.options.max_step) if longer else min(self.step, step)
 
 

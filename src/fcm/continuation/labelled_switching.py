@@ -23,7 +23,7 @@ from fcm.continuation.step_control import Stepper, next_corner
 
 
 class Follower(Protocol):
-    """What a step needs of the one that follows the curve."""
+    """The part of a curve's follower that `LabelledSwitching` needs."""
 
     def acceptable(self) -> bool:
         """Whether the curve was where it was predicted, and went on as it did."""
@@ -32,17 +32,17 @@ class Follower(Protocol):
         """Length at which the step passes by two folds; 0 if it does not."""
 
     def accept_step(self) -> object:
-        """Go on to the point there; a status where the curve ends."""
+        """Go on to the end of the step; a status where the curve ends."""
 
     def leave_corner(self, point: Point, at: float, past: float) -> object:
         """Keep the corner, a point at a length from here, and take the direction beyond it."""
 
     def limit_step(self, step: float, longer: bool) -> None:
-        """Make the next step at most that long, or at least."""
+        """Make the next step no longer, or no shorter, than a length."""
 
 
 def step_factor(aim: float, error: float, cubic: bool = False) -> float:
-    """Factor of the next step, after one that missed the curve by an error, for the miss that is aimed at.
+    """Ratio of the next step to one whose prediction missed the curve by an error, for the miss aimed at.
 
     The prediction is a parabola, and what it misses grows as the third power; or a cubic: as the fourth.
     """
@@ -50,12 +50,15 @@ def step_factor(aim: float, error: float, cubic: bool = False) -> float:
 
 
 def clipped(value: float, low: float, high: float) -> float:
-    """The value, or the limit that is nearest to it."""
+    """The value, or the nearest limit if it lies outside of both."""
     return min(max(value, low), high)
 
 
 class LabelledSwitching:
-    """The steps, and how often a corner has been tried that is not left yet."""
+    """Steps of a curve with labels: how they are chosen, and how corners are left.
+
+    It counts how often a corner has been tried that is not left yet.
+    """
 
     def __init__(self, stepper: Stepper, store: PointStore) -> None:
         self.stepper, self.store, self.options = stepper, store, stepper.options.labels
@@ -66,7 +69,10 @@ class LabelledSwitching:
         self.incoming_label: FloatArray = np.zeros(0)  # and its labels before
 
     def advance(self, follower: Follower, step: float) -> object:
-        """One step; a status where the curve ends. Close to a change there may be no curve to be found."""
+        """Take one step along the curve; a status where the curve ends, else None.
+
+        Close to a change of label there may be no curve to be found.
+        """
         stepper = self.stepper
         # what led to a corner may have been shorter
         step = asked = max(
@@ -108,7 +114,7 @@ class LabelledSwitching:
         )
 
     def acceptable(self, follower: Follower) -> bool:
-        """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
+        """Whether the step is good, and does not go back: no margin tells a reversal from a corner."""
         stepper = self.stepper
         same = stepper.there.orientation == stepper.here.orientation
         near = stepper.miss * stepper.step < self.options.max_error_ratio * self.options.target_error
@@ -135,7 +141,7 @@ class LabelledSwitching:
         )
 
     def turned_at_corner(self) -> bool:
-        """Whether it went as the curve does there: it turned at a corner ahead, which is not a fold."""
+        """Whether the step turned at a corner ahead, which is no fold, and went in the new direction."""
         way, here, there = self.step_vector(), self.stepper.here, np.asarray(self.stepper.there.tangent)
         straight = way @ there > self.options.straight_cosine * np.linalg.norm(way)
         return bool(here.tangent[-1] * there[-1] > 0.0 and straight)
@@ -248,7 +254,7 @@ class LabelledSwitching:
 
 
 class DirectionBeyond(NamedTuple):
-    """To a point of the curve that is about a reach from the corner."""
+    """A way from a corner to a point of the curve at about a length from it."""
 
     length: float
     direction: FloatArray  # (unknown + 1,) scaled, that of the piece in which it is
@@ -258,7 +264,7 @@ class DirectionBeyond(NamedTuple):
 def direction_beyond(
     stepper: Stepper, incoming: FloatArray, is_new_direction: Callable[[float], bool]
 ) -> DirectionBeyond | None:
-    """The first that is found from the corner that is here; None without any.
+    """The first way on that is found from the corner at `here`; None without any.
 
     Parameters
     ----------
@@ -280,7 +286,7 @@ def direction_beyond(
 def _guesses(
     options: LabelOptions, length: float, incoming: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Where a direction is looked for, and from where it is taken, both from the corner."""
+    """Places near a corner, relative to it: where a tangent is taken, and where that leads from."""
     for probe, offset in product(options.departure_fractions, options.departure_fractions):
         yield probe * length * incoming, offset * length * incoming
     around = np.random.default_rng(0).normal(size=(options.random_directions, incoming.size))
@@ -289,7 +295,7 @@ def _guesses(
 
 
 def _direction(stepper: Stepper, probe: FloatArray) -> FloatArray | None:
-    """The tangent of the equations there, with the orientation of here."""
+    """The tangent of the equations at a place near the corner, with the orientation of here."""
     newton = stepper.newton
     np.asarray(newton.row)[:] = probe / np.linalg.norm(probe)
     np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * probe

@@ -21,7 +21,7 @@ else:
 
 @cython.cclass
 class Options:
-    """What the options have in common, written once: they are compared, shown and sent by their fields."""
+    """Base class of options: comparison, hash, display and pickling by their fields."""
 
     def _values(self) -> tuple[Any, ...]:
         return tuple(getattr(self, one.name) for one in dataclasses.fields(self))  # type: ignore[arg-type]
@@ -42,14 +42,17 @@ class Options:
 
 
 class SolverOptions(Frozen):  # taken by a kernel when it is made
-    """How a dense system is solved; see `dense_solver`. They decide how fast, not what comes out.
+    """Options on how a dense system is solved; see `dense_solver`.
+
+    They decide how fast, not what comes out.
 
     Attributes
     ----------
     lapack_size : int
-        Unknowns from which on LAPACK is called.
+        Number of unknowns from which on the factors are computed by LAPACK, and below it by the kernel
+        itself.
     blocked_rows : int
-        Rows from which on four of them are taken together.
+        Number of rows from which on the kernel eliminates four of them together.
     """
 
     lapack_size: int = 400 if cython.compiled else 40
@@ -57,18 +60,20 @@ class SolverOptions(Frozen):  # taken by a kernel when it is made
 
 
 class ProblemOptions(Frozen):  # taken by a kernel when it is made
-    """What holds for any problem that is followed; see `Problem`.
+    """Options of any problem that is followed; see `Problem`.
 
     Attributes
     ----------
     costly_size : int
-        Unknowns from which on most of the work is to solve for them.
+        Number of unknowns from which on a problem counts as costly: most of the work is then to solve for
+        them.
     unbounded : float
-        Growth of the solution, over its size at the start, where a problem says nothing else.
+        Growth of the solution, relative to its size at the start, beyond which the curve ends as unbounded; a
+        problem may set another.
     difference_length : float
-        Length over which margins have their slopes.
+        Scaled length of the difference quotients from which margins get their slopes.
     max_angle : float
-        [rad] Margins this far from one another are not the same.
+        [rad] Largest difference of angle between two margins that are taken for the same one.
     """
 
     costly_size: int = 100
@@ -80,44 +85,50 @@ class ProblemOptions(Frozen):  # taken by a kernel when it is made
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class NewtonOptions(Options):
-    """When Newton's method has come to the curve, and when it is given up; see `corrector`.
+    """Options on when Newton's method has come to the curve, and when it is given up; see `corrector`.
 
     Attributes
     ----------
     max_iterations : int
-        Steps before a guess is judged too far away.
+        Number of whole Newton steps after which a guess is given up as too far away.
     max_step : float
-        A longer one counts as divergence.
+        Scaled length of a Newton step from which on the iteration counts as divergent.
     tolerance : float
-        Error that a point may have, estimated from the convergence.
+        Scaled error of a point, estimated from the convergence, below which it counts as on the curve.
     preliminary_tolerance : float
-        The same of a point from which the next is looked for and nothing else.
+        The tolerance of the points at which steps end, where only values of the parameter are asked for.
     final_step : float
-        A step after which there is no further one.
+        Scaled length of a Newton step below which it is the last: the point has converged.
     negligible_step : float
-        A step that is not worth another evaluation.
+        Scaled length of a Newton step below which it is not worth another evaluation.
     half_steps : int
-        Half steps where the equations begin as a root, before whole ones are tried again.
+        Number of halved Newton steps where the equations begin as a root, before whole steps are tried again.
     stalled_rounding : float
-        A step that does not shrink, and is taken for rounding though the way was long.
+        Scaled length below which a Newton step that stalls is taken for rounding: the point is then accepted.
     growing_rounding : float
-        A step that grows, and is taken for rounding; longer ones have met a corner.
+        Scaled length below which a Newton step longer than the one before is taken for rounding, where the
+        problem has labels. A longer one that grows has met a corner.
     chord_step : float
-        A step after which the Jacobian from before it will do.
+        Scaled length, of a Newton step times its contraction, below which the next steps take the same
+        Jacobian, where the problem has labels.
     max_chord_steps, max_cheap_chord_steps : int
-        Steps with one Jacobian; and where to solve takes far less than to factor.
+        Most Newton steps in a row with the same Jacobian. The second number holds where solving takes far
+        less work than factoring.
     chord_contraction : float
-        Part of the step before, that each of those may be.
+        Length of such a step, relative to the one before, from which on the Jacobian is computed anew.
     last_chord_step : float
-        A step after which a last one takes the Jacobian from before it.
+        Scaled length of a Newton step below which a last one with the same Jacobian is tried.
     divergence_ratio : float
-        Part of the step before, above which the fourth and later steps of a costly problem diverge.
+        Length of the fourth or a later Newton step, relative to the one before, beyond which the iteration
+        diverges; where a problem is costly or has labels.
     small_second_step : float
-        Part of the greatest first step: a second step this short is no sign of failure.
+        Length of the second Newton step, relative to the greatest first one, below which it is no sign of
+        failure even if it does not shrink.
     max_rounding : float
-        A longer step is none that rounding makes.
+        Scaled length of a Newton step beyond which it is never taken for rounding.
     rounding_multiple : float
-        Equations off by no more than so many relative errors of rounding are solved to rounding.
+        Backward error of an equation, in units of the relative rounding error, up to which it counts as
+        solved to rounding.
     """
 
     max_iterations: cython.int = 8
@@ -143,44 +154,50 @@ class NewtonOptions(Options):
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class StepOptions(Options):
-    """Which step is accepted, and how long the next one is; see `step_control`.
+    """Options on which step is accepted, and how long the next one is; see `step_control`.
 
     Attributes
     ----------
     initial_step, min_step : float
-        The first and the shortest step; the curve ends where the shortest is still too long.
+        Scaled lengths of the first and of the shortest step. The curve ends as stalled where the shortest is
+        still too long.
     max_steps : int
-        Steps of a curve.
+        Most steps of a curve, after which it ends as too long.
     min_cosine : float
-        Of the angle by which the curve may turn in a step: 20 degrees.
+        Cosine of the turn of the curve in a step, below which the step is rejected; 0.94 is 20 degrees.
     min_cubic_cosine : float
-        Of the angle by which it turned in a step, beyond which that is no cubic any more.
+        Cosine of the turn in a step, below which no cubic predictor is made from the points of that step.
     any_turn_step : float
-        A shorter step may turn by any angle below a right angle: there is a corner that nothing shows.
+        Scaled length up to which a step may turn by any angle below a right angle: a corner that no margin
+        shows.
     max_branch_distance : float
-        Branches as near as this meet: there a step may change the orientation of the curve. From 6e-8 to
-        4e-7 the tests tell no difference; with less rounding beside a branch point hides it.
+        Scaled distance up to which two branches are taken to meet: there a step may change the orientation of
+        the curve. From 6e-8 to 4e-7 the tests tell no difference; with less, rounding beside a branch point
+        hides it.
     max_miss : float
-        Part of its length, by which a step may miss the curve.
+        Distance of a point from its prediction, relative to the step, beyond which the step is rejected.
     target_turn : float
         [rad] The turn that a step aims at.
     target_miss : float
-        Part of its length, by which a step aims to miss the curve.
+        Distance of a point from its prediction, relative to the step, at which a step aims.
     target_output_error : float
-        Change of an output over its size, that a step aims not to have foreseen;
+        Change of an output that its slope did not predict, relative to the output, at which a step aims.
     max_output_error_ratio : float
-        so many times as much it may have.
+        Change of an output that its slope did not predict, relative to `target_output_error`, beyond which a
+        step is rejected.
     min_factor, max_factor, max_factor_hasty : float
-        Part of a step that the next is at least, and at most; and at most where nothing but values of the
-        parameter is asked for.
+        Least and greatest length of the next step, relative to the step before it; the third is the greatest
+        where only values of the parameter are asked for.
     safety : float
-        Part of the next step that all aims allow.
+        Factor on the length of the next step that all targets allow.
     step_after_corner, resumed_fraction : float
-        The first step beyond a corner; or this part of that before it, where each point is costly.
+        Scaled length of the first step beyond a corner, and for a costly problem its length relative to the
+        step before the corner; the longer of the two is taken.
     retry_fraction : float
-        Part of a step that is tried next where it does not lead over all corners.
+        Length of the second attempt to step over all corners, relative to the first, where a problem is
+        costly.
     retreats : tuple of int
-        Points by which a curve is taken back where no step leads on: one attempt each.
+        Number of points by which the curve is taken back where no step leads on; one entry for each attempt.
     """
 
     initial_step: cython.double = 1e-3
@@ -208,44 +225,52 @@ class StepOptions(Options):
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class EventOptions(Options):
-    """How events are found within a step; see `events` and `extremum_search`.
+    """Options on how events are found within a step; see `events` and `extremum_search`.
 
     Attributes
     ----------
     max_evaluations : int
-        Points of the curve that are computed to find one.
+        Most points of the curve that are computed to find one event.
     tolerance : float
-        Part of a step, to which an event is known.
+        Length, relative to the step, to which the place of an event is found.
     fold_bracket : float
-        Distance of two points about a fold that is no regular point of the curve.
+        Scaled distance of two points about a fold that is no regular point of the curve: its bracket shrinks
+        to no less.
     min_growth : float
-        Growth of an output over its size, along a unit of length, that is not rounding.
+        Slope of an output by scaled length, relative to the output, below which it counts as rounding.
     peak_threshold : float
-        Part of the greatest output so far, below which no peak is looked for.
+        Size of an output, relative to the greatest so far, below which no peak of it is looked for.
     max_slope_change : float
-        Part of the lesser slope at the ends: a parameter whose slope changes by less goes on evenly.
+        Change of the parameter's slope over a step, relative to the lesser slope at its ends, below which the
+        parameter goes on evenly, without a hidden pair of folds.
     doubtful_slope : float
-        Part of the lesser slope at the ends: a cubic less steep between them may hide a way back.
+        Slope of the cubic within a step, relative to the lesser slope at its ends, below which the step may
+        hide a reversal and is shortened.
     min_reversal : float
-        Part of the greatest of all outputs so far, by which one goes back within a step: the corrector leaves
-        a tenth of that.
+        Reversal of an output within a step, relative to the greatest of all outputs so far, below which it is
+        ignored; the corrector leaves a tenth of that.
     rounding_step : float
-        A step this short shows more of rounding than of a way back.
+        Scaled length of a step up to which no reversal is looked for in it: its ends would show rounding.
     peak_tolerance, peak_tolerance_of_many : float
-        Part of an output, to which a peak is known where points are costly; and where each of many outputs
-        has its own, at a point each. A smaller part of the greatest output is rounding, and has no peak.
+        Error of a peak, relative to the output: where there are few outputs, and where there are
+        `many_outputs`. An output smaller than the first times the greatest output is rounding and has no
+        peak.
     many_outputs : int
-        So many are many.
+        Number of outputs from which on `peak_tolerance_of_many` holds.
     point_tolerance : float
-        Part of the greatest unknown: points closer than this are one.
+        Distance of two points, relative to the greatest unknown, below which they are the same.
     far_tolerance : float
-        The same, beyond which the curve has been elsewhere before it came to a corner again.
+        Distance from a corner, relative to the greatest unknown, beyond which the curve has left it; a later
+        return to it is a second visit.
     around_cosine : float
-        Cosine of the directions at a corner, beyond which the curve comes to it as it did before.
+        Cosine between the directions of two visits to a corner, beyond which the curve came to it in the same
+        way: it is closed.
     closing_cosine : float
-        Cosine beyond which a curve closes, and does not cross itself.
+        Cosine between the directions at the first point, beyond which a curve closes there; below it the
+        curve crosses itself.
     landing_tolerance : float
-        Part of the width of a value of the parameter that is to be landed on, within which a step ends there.
+        Distance from a value of the parameter to be landed on, relative to its width, up to which a step may
+        end beside it.
     """
 
     max_evaluations: cython.int = 40
@@ -270,49 +295,59 @@ class EventOptions(Options):
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class SwitchingOptions(Options):
-    """How corners are come to and left where a switching function changes its sign; see `NonsmoothPoints`.
+    """Options on how corners, where a switching function changes sign, are reached; see `NonsmoothPoints`.
 
     Attributes
     ----------
     max_predictions : int
-        Predictions that are looked at to find how far ahead a corner is.
+        Most predictions that are evaluated to find the distance of the next corner.
     distance_tolerance, label_tolerance : float
-        Part of the length to there, to which that is found; and where a label changes.
+        Relative error of the distance to the next corner; the second where a label changes, and no sign.
     overshoot : float
-        Part of a step that ends at a corner, by which it goes past.
+        Length beyond a corner, relative to the distance to it, of a step that is to end just past it.
     crossing_factor : float
-        Times as long as the way to where a margin vanishes that goes on as it does, is a step across that.
+        Length of a step across the zero of a margin extrapolated linearly, relative to the distance to that
+        zero.
     root_fraction : float
-        Part of that way, within which the prediction comes to a margin that is a root: half of it.
+        Distance at which the prediction meets a corner, relative to the distance of the extrapolated zero,
+        above which the margin is no root; a root gives one half.
     smooth_fraction : float
-        Part of the way to a corner: up to here the curve is smooth.
+        Distance before a corner, relative to the length of the way to it, at which the last smooth point
+        lies.
     reached_distance : float
-        A corner this near is met: less than `departure_length`.
+        Scaled distance up to which a corner counts as reached: it is less than `departure_length`.
     turning_distance : float
-        A corner this near is gone to along the prediction, if no step leads up to it, nor across.
+        Scaled distance up to which a corner is gone to along the prediction, if no step leads up to it, nor
+        across: the curve turns there by more than a right angle.
     reached_distance_root : float
-        The same where a margin is the root of the distance, which rounding hides.
+        Scaled distance up to which a corner counts as reached where the margin is the root of the distance,
+        which rounding hides.
     root_distance : float
-        A corner where the equations begin as a root is met within this length of its surface, and is left as
-        far on the other side; see `root_corner`.
+        Scaled distance from its surface within which a corner where the equations begin as a root is met; the
+        curve is then sought as far on the other side; see `root_corner`.
     root_difference : float
-        Length over which the square of such a root has its slopes.
+        Length of the difference quotients, relative to the scale, for the slopes of the square of such a
+        root.
     root_separation : float
-        Of several such corners the nearest is left first if its distance is less than this part of the next.
+        Distance of the nearest of several such corners, relative to the second, below which the nearest is
+        left first.
     max_root_margin : float
-        A root that is larger is not at its corner.
+        Size of a margin above which its point does not lie at the corner of a root.
     approach_distance, approach_fraction : float
-        A corner further away is gone to by steps, each this part of the way.
+        Scaled distance of a corner beyond which it is approached by steps, and the length of each of them
+        relative to the distance that is left.
     departure_length : float
-        Length past a corner at which the curve's new direction is looked for first,
+        Scaled length past a corner at which the curve's new direction is looked for first.
     departure_tries : int
-        at so many lengths, each ten times the last: what takes less of the curve is one corner,
+        Most lengths past a corner at which that is done, each ten times the last; corners within the length
+        are passed as one.
     max_pieces : int
-        in so many of the smooth pieces that meet in the corner.
+        Most smooth pieces meeting in a corner whose directions are tried at each of these lengths.
     max_deviation : float
-        Part of that length: a point this far from its prediction is another.
+        Distance of a point beyond a corner from its prediction, relative to that length, from which on it is
+        not accepted.
     many_unknowns : int
-        Unknowns from which on slight corners are stepped over where the parameter goes on evenly.
+        Number of unknowns from which on slight corners are stepped over where the parameter goes on evenly.
     """
 
     max_predictions: cython.int = 50
@@ -339,16 +374,17 @@ class SwitchingOptions(Options):
 
 
 class SignChangeOptions(Frozen):  # taken by a kernel when it begins
-    """How a change of sign of an event is bracketed; see `events`.
+    """Options on how a change of sign of an event is bracketed; see `events`.
 
     Attributes
     ----------
     jump_width : float
-        Part of the first distance of its sides, at which a function that does not jump
+        Width of the bracket, relative to its first one, below which a jump of the function is recognised.
     jump_difference : float
-        differs by less than this part of what it did.
+        Difference of the function between the sides of such a narrow bracket, relative to the first
+        difference, above which it jumps.
     halving_interval : int
-        Looks that are to halve the distance.
+        Number of evaluations within which the bracket is to be halved: otherwise the next one bisects it.
     """
 
     jump_width: float = 0.25
@@ -365,41 +401,46 @@ class LabelOptions(Frozen):  # of no kernel
     Attributes
     ----------
     target_error, max_error_ratio : float
-        Distance of the curve from where it is predicted that a step aims at, and times as much it may have.
+        Scaled distance of a point from its prediction at which a step aims, and the largest accepted distance
+        relative to it.
     max_parameter_miss : float
-        Part of the parameter's change, by which a step may miss it: more may be the way past two folds.
+        Error of the predicted parameter, relative to its change along the step, beyond which the step is
+        rejected: it may be the way past two folds.
     min_cosine : float
-        Cosine of the turn of a step.
+        Cosine of the turn of the curve in a step, below which the step is rejected.
     max_miss, max_newton_step : float
-        Parts of its length, by which a step may miss the curve; and by which the first step of Newton's
-        method may.
+        Distance of a point from its prediction, and length of the first Newton step, both relative to the
+        step, beyond which the step is rejected.
     min_factor, rejection_factors, max_factor, max_factor_after_rejection : float, the second two of them
-        Parts of a step that the next is at least; that one in its point is between; that the next is at
-        most; and after a shortened one.
+        Lengths relative to the step before: the least after an accepted step; the least and the greatest
+        after a rejected one; the greatest after an accepted step; the same after one that had been shortened.
     straight_cosine : float
-        Cosine beyond which a change of orientation is a branch point and no way back.
+        Cosine of the turn beyond which a change of orientation is a branch point, and no way back.
     max_length_ratio : float
-        Times as long as its turn alone makes it, a short step may be.
+        Distance between the ends of a short step times the cosine of its turn, relative to the step, beyond
+        which it has led to another branch.
     margin_fraction : float
-        Part of the way to where a label changes, by which a step ends before it.
+        Distance before the change of a label, relative to the way to it, at which a step ends.
     reached_distance : float
-        A change of label this near is met where no curve is found up to there.
+        Scaled distance up to which a change of label counts as reached where no curve is found up to it.
     max_departures : int
-        Points looked for beyond one corner, each ten times as far.
+        Most points that are looked for beyond one corner, each ten times as far.
     departure_factor : float
-        Times as far from the corner is the next point, at least.
+        Least length of the first step beyond a corner, relative to that at which the direction was found.
     reversal_cosine, spike_cosine : float
-        Cosines below which a curve goes back on the way that it came; the second where its label is new.
+        Cosine of the turn at a corner, below which the curve would go back on its own way; the second where
+        the label beyond is new.
     fold_tolerance : float
-        Distance of two folds that are one;
+        Greatest scaled difference of an unknown between two folds that are taken for the same one.
     min_loop_points : int
-        points that a closed curve has at least.
+        Least number of points between two such folds, from which on the curve is closed.
     departure_lengths : tuple of float
-        Lengths beyond a corner at which the curve is looked for,
+        Scaled lengths beyond a corner at which the curve is looked for in all directions, in turn.
     departure_fractions : tuple of float
-        of these, by which a direction is looked for beyond, and a guess is aside.
+        Distances relative to these lengths at which the tangent is taken, and by which the guess is moved
+        along the incoming direction.
     random_directions : int
-        Directions into other pieces.
+        Number of random directions in which other smooth pieces are looked for.
     """
 
     target_error: float = 5e-4
@@ -430,18 +471,18 @@ class LabelOptions(Frozen):  # of no kernel
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class FollowOptions(Options):
-    """How a curve is followed.
+    """Options on how a curve is followed.
 
     Attributes
     ----------
     max_step : float
-        Longest step.
+        Scaled length of the longest step.
     user_points_only : bool
-        Whether only the passings of values of the parameter matter. Corners are then gone to, and left, by
-        longer steps.
+        Whether only the points at given values of the parameter matter. Corners are then reached, and left,
+        by longer steps.
     newton, step, events, switching, labels : NewtonOptions, StepOptions, EventOptions, SwitchingOptions,\
  LabelOptions
-        Of the parts.
+        Options of the corrector, of the step control, of events, of corners, and of problems with labels.
 
     Examples
     --------
@@ -460,18 +501,20 @@ class FollowOptions(Options):
 
 
 class PathOptions(Frozen):  # of no kernel
-    """When a solution lies on a path that was followed; see `all_branches` and `segment`.
+    """Options on when a solution lies on a path that was already followed; see `all_branches` and `segment`.
 
     Attributes
     ----------
     solution_tolerance : float
-        In the problem's scale: solutions closer than this are one.
+        Distance in the problem's scale below which two solutions are the same.
     max_distance_ratio : float
-        Part of a chord: what is further from it is not on its part of a path.
+        Distance of a solution from a chord of a path, relative to the chord, beyond which it does not lie on
+        that part.
     nearest_chords : int
-        Nearest ones that are looked at.
+        Number of chords, the nearest ones, on which a solution is looked for.
     min_cosine : float
-        Cosine of a turn, below which a length across the chord is no measure of the way.
+        Cosine between the path and the normal of a plane, below which a length across that plane is no
+        measure of the way along the path.
     """
 
     solution_tolerance: float = 1e-5

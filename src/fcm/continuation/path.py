@@ -1,4 +1,4 @@
-"""What following a curve yields: its points in order, what each is, and how it ended."""
+"""The result of following a curve: its points in order, their marks, and how it ended."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Status(Enum):
-    """How a curve ended."""
+    """The reason why a curve ended."""
 
     COMPLETE = "the curve reached the other end of its range"
     RETURNED = "the curve came back to the end of the range where it began"
@@ -37,7 +37,7 @@ class PathInterrupted(KeyboardInterrupt):
 
 
 class Mark:
-    """What a point of a curve is besides a point; plain bits, which arrays take far faster than an `enum`."""
+    """Bits that tell what is special at a point of a curve; plain, as arrays take them fastest."""
 
     NONE = 0
     END = 1  # of the range
@@ -64,7 +64,7 @@ class Path(Frozen):
     ended_by: int = -1  # which of the functions that were to end it did
 
     def __repr__(self) -> str:
-        """Sizes and ends, without the arrays.
+        """Number of points, range of the parameter, number of folds and status, without the arrays.
 
         >>> z, mark = np.array([[0.0, 0.5], [1.0, 2.0]]), np.array([Mark.END, Mark.END])
         >>> Path(z, z, mark, np.ones(2), Status.COMPLETE, 7)
@@ -92,7 +92,7 @@ class Path(Frozen):
         return np.flatnonzero(self.mark & mark)
 
     def representative(self, most: int) -> npt.NDArray[np.intp]:
-        """About so many of the points, in equal numbers apart, and those that are special."""
+        """Indices of about `most` points evenly spread by number, and of all special points."""
         count = len(self.z)
         even = np.linspace(0, count - 1, min(max(most, 2), count)).round().astype(np.intp)
         return np.union1d(even, self.where(SPECIAL))
@@ -103,7 +103,7 @@ class Path(Frozen):
         return replace(self, **arrays)
 
     def backwards(self) -> Path:
-        """The same points in the other order."""
+        """The path with its points in the opposite order."""
         return replace(
             self,
             z=self.z[::-1].copy(),
@@ -113,7 +113,7 @@ class Path(Frozen):
         )
 
     def then(self, other: Path) -> Path:
-        """This path continued by another that begins where it ends."""
+        """This path joined with another that begins where it ends."""
         return Path(
             z=np.concatenate((self.z, other.z[1:])),
             direction=np.concatenate((self.direction, other.direction[1:])),

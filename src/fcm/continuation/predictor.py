@@ -1,4 +1,4 @@
-"""Where the next point of a curve is looked for: along its tangent, with what the way here tells of its bend.
+"""Predictor of the next point of a curve: along its tangent, with the bend seen on the way so far.
 
 The predictor is a parabola, with the tangent here and the curvature over the last step. Where a problem is
 labelled, and so every point expensive, there is another one: the cubic through the last point and here with
@@ -91,7 +91,7 @@ class Predictor:
         new: cython.double[::1],
         length: cython.double,
     ) -> cython.void:
-        """Which prediction was the better one of a point at a length from here; and the next cubic."""
+        """Note which prediction of a point at a length was the better one, and fit the next cubic."""
         i: cython.Py_ssize_t
         off: cython.double
         parabola: cython.double = 0.0
@@ -112,7 +112,7 @@ class Predictor:
     def fit_cubic(
         self, here: Point, point: Point, scale: cython.double[::1], new: cython.double[::1]
     ) -> cython.void:
-        """The derivatives of the cubic back from a point through here, by its tangent, in a new scale."""
+        """Fit the derivatives of the cubic back from a point through here, by its tangent, in a new scale."""
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.curvature.shape[0]
         back: cython.double = 0.0
@@ -136,7 +136,7 @@ class Predictor:
 @cython.cfunc
 @cython.exceptval(check=False)
 def dot(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
-    """The product of two vectors."""
+    """Scalar product of two vectors."""
     i: cython.Py_ssize_t
     total: cython.double = 0.0
     for i in range(a.shape[0]):

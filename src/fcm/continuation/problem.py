@@ -1,4 +1,4 @@
-"""What is followed: n equations residual(z) = 0 for n unknowns and a parameter, the last of z.
+"""Problems that are followed: n equations residual(z) = 0 for n unknowns and a parameter, the last of z.
 
 A problem knows nothing of the curve, and the follower nothing of what the unknowns mean. A problem writes
 what it is asked for into arrays of its own, so that a step of the follower makes no new ones. It is smooth
@@ -70,25 +70,25 @@ class Problem:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, z: cython.double[::1]) -> cython.int:
-        """Residual and its derivatives at z (n + 1,)."""
+        """Fill residual and Jacobian at z (n + 1,)."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def probe(self, z: cython.double[::1]) -> cython.int:
-        """The residual alone at z, where that costs less."""
+        """Fill the residual alone at z, where that costs less."""
         return self.evaluate(z)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def measure(self, z: cython.double[::1]) -> cython.int:
-        """Units in which lengths along the curve are measured at z: of each unknown, and of the parameter."""
+        """Fill the units of length along the curve at z: of each unknown, and of the parameter."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, z: cython.double[::1]) -> cython.int:
-        """Margins: functions of z of which each changes sign where the problem is not smooth.
+        """Fill the margins: functions of z of which each changes sign where the problem is not smooth.
 
         Which function each is its kind says, and of those of one kind the angle [rad], which varies with z;
         NONE where there is none. Margins may come and go, and stand in any order.
@@ -105,7 +105,7 @@ class Problem:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
-        """What is reported of z, positive numbers, and their growth along a direction (n + 1,)."""
+        """Fill the outputs at z, positive numbers, and their growth along a direction (n + 1,)."""
         return 0
 
     @cython.ccall
@@ -172,7 +172,7 @@ class Point:
     def matching_margin(
         self, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
     ) -> cython.Py_ssize_t:
-        """Which of other margins is the one with number k here; -1 if none is.
+        """Index of the margin at another point that matches margin k of this one; -1 if none does.
 
         It is that of its group and kind nearest to it, if it is also nearest to that.
         """
@@ -213,14 +213,14 @@ class Point:
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
     def margin_at(self, k: cython.Py_ssize_t, other: Point) -> cython.double:
-        """The margin at another point that is the one with number k here; 0 if none is."""
+        """The margin at another point that matches margin k of this one; 0 if none does."""
         i: cython.Py_ssize_t = self.matching_margin(k, other.kind, other.angle)
         return other.margin[i] if i >= 0 else 0.0
 
     @cython.cfunc
     @cython.exceptval(-1e300, check=False)
     def margin_of_problem(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
-        """The margin that a problem was last asked for and is the one with number k here; 0 if none is."""
+        """The margin, of those a problem was last asked for, that matches margin k here; 0 if none does."""
         i: cython.Py_ssize_t = self.matching_margin(k, problem.kind, problem.angle)
         return problem.margin[i] if i >= 0 else 0.0
 
@@ -229,7 +229,7 @@ class Point:
     def differentiate_margins(
         self, problem: Problem, scale: cython.double[::1], probe: cython.double[::1]
     ) -> cython.int:
-        """The slopes of the margins along the tangent, from differences to a point that is put beside."""
+        """Compute the slopes of the margins along the tangent, from differences to a point beside."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         self.has_margin_slopes = True
@@ -248,7 +248,7 @@ class Point:
 
 
 class Points(NamedTuple):
-    """Points of a store."""
+    """Arrays of the points of a store."""
 
     z: FloatArray  # (point, unknown + 1)
     direction: FloatArray
@@ -264,7 +264,7 @@ class Stored(NamedTuple):
 
     @property
     def number(self) -> int:
-        """How many there are."""
+        """Number of the points."""
         return len(self.before.mark) + 1
 
 
@@ -300,7 +300,7 @@ class PointStore:
         mark: cython.long,
         orientation: cython.double,
     ) -> cython.int:
-        """Keep a point."""
+        """Keep a point with its direction, mark and orientation."""
         self.widen()
         self.z[self.count, :], self.direction[self.count, :] = z, direction
         self.mark[self.count] = mark
@@ -319,7 +319,7 @@ class PointStore:
         return 0
 
     def last(self) -> FloatArray:
-        """The last point."""
+        """The unknowns and parameter of the last point."""
         return np.array(self.z[self.count - 1])
 
     def tail(self) -> tuple[FloatArray, FloatArray, int, float]:
@@ -330,7 +330,7 @@ class PointStore:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def ends_at(self, point: Point) -> cython.bint:
-        """Whether the last point is a point."""
+        """Whether the last point of the store is this point, number by number."""
         i: cython.Py_ssize_t
         for i in range(self.size):  # noqa: SIM110 - a loop in C
             if self.z[self.count - 1, i] != point.z[i]:
@@ -352,7 +352,7 @@ class PointStore:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def mark_last(self, mark: cython.long) -> cython.int:
-        """Mark the last point by that, too."""
+        """Add a mark to the last point."""
         self.mark[self.count - 1] |= mark
         return 0
 
@@ -366,12 +366,12 @@ class PointStore:
         return int(self.mark[self.count])
 
     def close(self) -> None:
-        """End at the first point."""
+        """Close the curve: put its first point again, as the last."""
         first = np.array(self.z[0]), np.array(self.direction[0])
         self.put(*first, self.mark[0], self.orientation[0])
 
     def points(self) -> Points:
-        """The points as they are now."""
+        """Views of the points that are kept now."""
         return self._first(self.count)
 
     def _first(self, count: int) -> Points:
@@ -383,14 +383,14 @@ class PointStore:
         return Stored(self._first(self.count - 1), self.tail())
 
     def restore(self, kept: Stored) -> None:
-        """Have these points and no others."""
+        """Replaces all points by kept ones."""
         self.count = 0
         for z, direction, mark, orientation in zip(*kept.before, strict=True):
             self.put(np.array(z), np.array(direction), mark, orientation)
         self.put(*kept.last)
 
     def path(self, status: Status, evaluations: int) -> Path:
-        """The points as they are."""
+        """A path with copies of the points that are kept now."""
         z, direction, mark, orientation = self.points()
         return Path(
             z=np.array(z),
@@ -403,6 +403,6 @@ class PointStore:
 
 
 def _twice(kept: object) -> Any:
-    """With as much room again."""
+    """An array with as much room again."""
     array = np.asarray(kept)
     return np.concatenate((array, np.empty_like(array)))

@@ -1,4 +1,4 @@
-"""What is kept of a curve on its way through the range of its parameter, and where it ends.
+"""Records the points of a curve on its way through the range of its parameter, and where it ends.
 
 Corners are where a switching function changes its sign: found in a step, kept, left in the direction beyond.
 
@@ -85,7 +85,7 @@ class Recorder:
         self.first, self.initial_direction = checkpoint.start.copy(), checkpoint.heading.copy()
 
     def state(self) -> dict[str, Any]:
-        """What of a checkpoint the recorder knows."""
+        """The part of a checkpoint that comes from the recorder."""
         return {
             "kept": self.store.state(),
             "greatest": self.greatest.copy(),
@@ -179,7 +179,7 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def add(self, mark: cython.long) -> cython.int:
-        """Keep the point there."""
+        """Keep the end of the step, the point `there`, with a mark."""
         return self.store.add(self.stepper.there, self.stepper.newton.scale, mark)
 
     @cython.cfunc
@@ -194,7 +194,7 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(check=False)
     def update_greatest(self) -> cython.void:
-        """The greatest outputs so far, each at least what is rounding of the greatest of all.
+        """Update the greatest outputs so far, each at least what is rounding of the greatest of all.
 
         On a plane of symmetry an output is 0 but for rounding, which turns back all the time.
         """
@@ -241,7 +241,7 @@ class Recorder:
         return Status.RETURNED if back else Status.COMPLETE
 
     def path(self, status: Status) -> Path:
-        """The points kept so far."""
+        """The points kept so far, as a path with a status."""
         path = self.store.path(status, self.stepper.newton.evaluations)
         return replace(path, ended_by=self.ended_by) if self.ended_by >= 0 else path
 
@@ -284,8 +284,7 @@ def before_corner(stepper: Stepper) -> cython.double:
 
 @cython.cclass
 class NonsmoothPoints:
-    """Points at corners of the curve of a `recorder`; `labelled` where a change of label is what tells of
-    them."""
+    """Passes corners of the curve of a `recorder`; `labelled` where a change of label tells of them."""
 
     def __init__(self, recorder: Recorder, labelled: bool) -> None:
         self.recorder, self.labelled = recorder, labelled

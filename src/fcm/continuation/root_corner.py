@@ -38,7 +38,7 @@ class RootCorner(NamedTuple):
 
 
 def is_met(stepper: Stepper) -> bool:
-    """Whether the curve has come to such a corner."""
+    """Whether the curve has come to a corner where the equations begin as a root."""
     return any(_corners_ahead(stepper, stepper.options.switching.root_distance))
 
 
@@ -78,7 +78,7 @@ def find_beyond(stepper: Stepper, before: Point) -> float:
 
 
 def _crossings(corners: Sequence[RootCorner], options: SwitchingOptions) -> Iterator[tuple[list[int], float]]:
-    """The surfaces of corners, by their numbers, beyond which the curve is looked for in turn, and how far.
+    """Sets of corner surfaces, by their numbers, beyond which the curve is looked for in turn, and how far.
 
     That which is clearly the nearest; then each alone, those of lower kinds first, as if they were a little
     apart; then all.
@@ -95,7 +95,7 @@ def _crossings(corners: Sequence[RootCorner], options: SwitchingOptions) -> Iter
 
 
 def _side(stepper: Stepper, corner: RootCorner, z: FloatArray) -> float:
-    """On which side of the surface of a corner a point lies."""
+    """The side of the surface of a corner on which a point lies: -1 or 1."""
     return float(np.sign(stepper.problem.square(corner.kind, z)))
 
 

@@ -71,7 +71,7 @@ class Segment:
         return float((z - self._ends[0]) @ self._chord) / self.length
 
     def _place(self, z: FloatArray, tangent: FloatArray) -> _Known:
-        """A point with its tangent, a unit vector to either side."""
+        """A point of the curve with its slope by the length along the chord."""
         cosine = float(tangent @ self._chord) / self.length
         return _Known(self._along(z), z, tangent / np.copysign(max(abs(cosine), self._flat), cosine))
 
@@ -82,18 +82,18 @@ class Segment:
 
     @property
     def direction(self) -> FloatArray:
-        """Direction of the curve there, in the units of z."""
+        """Direction of the curve at the point found last, in the units of z."""
         direction: FloatArray = np.asarray(self.newton.tangent) * self._scale
         return direction
 
     @property
     def orientation(self) -> float:
-        """Sign of the determinant there."""
+        """Sign of the determinant at the point found last."""
         return float(self.newton.orientation)
 
 
 def _cubic(part: float, ends: FloatArray, slopes: FloatArray) -> FloatArray:
-    """At a part of the way between two ends (2, d), the slopes (2, d) by that part."""
+    """The cubic (d,) with the ends (2, d) and the slopes (2, d) by the part of the way, at that part."""
     rest = 1.0 - part
     z: FloatArray = ends[0] * (rest * rest * (1.0 + 2.0 * part))
     z += ends[1] * (part * part * (3.0 - 2.0 * part))

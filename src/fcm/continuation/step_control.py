@@ -30,8 +30,10 @@ else:
 
 @cython.cclass
 class Stepper:
-    """`try_step` finds the point there, at a step from here; `find_between` and others points between;
-    `accept` goes on.
+    """A step along a curve: where it begins (`here`), where it ends (`there`), and points between the two.
+
+    `try_step` finds the point there, at a step from here; `find_between` and others points between; `accept`
+    goes on.
 
     cosine: that of the angle by which the direction there differs from that here; step: the length.
     """
@@ -138,7 +140,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_step(self, step: cython.double) -> cython.bint:
-        """Correct the point there."""
+        """Correct the prediction of the point `there`; whether that converges."""
         if self.problem.labelled and step > self.options.step.any_turn_step:
             return self.newton.correct(step, self.max_newton_step * step)
         return self.correct_to(step, self.tolerance)
@@ -146,7 +148,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_to(self, step: cython.double, close: cython.double) -> cython.bint:
-        """Correct the point there, so that it is as close to the curve as that."""
+        """Correct the prediction of the point `there` to a tolerance; whether that converges."""
         self.newton.tolerance = close
         found: cython.bint = self.newton.correct(step)
         self.newton.tolerance = self.options.newton.tolerance
@@ -256,7 +258,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def record(self, point: Point, margins: cython.bint, outputs: cython.bint) -> cython.int:
-        """The corrector's result as a point, with its margins, its outputs."""
+        """Copy the corrector's result to a point, with its margins and its outputs if these are asked for."""
         i: cython.Py_ssize_t
         point.orientation, point.has_margin_slopes = self.newton.orientation, False
         for i in range(point.z.shape[0]):
@@ -275,13 +277,13 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(check=False)
     def clipped_cosine(self) -> cython.double:
-        """Length in the plane of here that a length along the tangent there has: the cosine."""
+        """Cosine of the turn of the step, at least that below which a length is no measure of the way."""
         return max(self.cosine, self.predictor.min_cosine)
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def interpolate(self, at: cython.double) -> cython.void:
-        """The cubic through here and there with their tangents."""
+        """Fill the guess with the cubic through here and there with their tangents, at a length."""
         i: cython.Py_ssize_t
         x: cython.double = at / self.step
         slope: cython.double = self.step / self.clipped_cosine()
@@ -358,7 +360,7 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def parameter_reversal(stepper: Stepper) -> cython.double:
-    """The part of the step where the parameter may go the other way than here and there; 0 if nowhere."""
+    """Part of the step at which the parameter may go the other way than here and there; 0 if nowhere."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     unit: cython.double = stepper.step * stepper.newton.scale[n]
     return cubic_reversal(
@@ -399,8 +401,10 @@ def cubic_reversal(
     least: cython.double,
     doubtful: cython.double,
 ) -> cython.double:
-    """Where in (0, 1) the cubic that rises so much, with slopes of one sign at 0 and 1, goes the other way
-    most, or hardly onwards; 0 if it goes on, or the other way by less than the least slope.
+    """Where in (0, 1) a cubic with slopes of one sign at 0 and 1 goes back most; 0 if nowhere.
+
+    rise: its change from 0 to 1; begin, end: its slopes there. Also where it hardly goes on, by the doubtful
+    part of the lesser slope; not where it goes back by less than the least slope.
     """
     if not begin * end > 0.0:
         return 0.0
@@ -431,8 +435,10 @@ def changes_sign(stepper: Stepper) -> cython.bint:
 def cubic_beyond_zero(
     before: cython.double, begin: cython.double, after: cython.double, end: cython.double
 ) -> cython.double:
-    """Where in (0, 1) the cubic with values of one sign and slopes at 0 and 1 is furthest beyond 0; 0 if it
-    is not."""
+    """Where in (0, 1) a cubic with values of one sign at 0 and 1 is furthest beyond 0; 0 if it is not.
+
+    before, after: these values; begin, end: the slopes there.
+    """
     sign: cython.double = 1.0 if before > 0.0 else -1.0
     a: cython.double = sign * begin
     b: cython.double = sign * (3.0 * (after - before) - 2.0 * begin - end)
@@ -447,7 +453,10 @@ def cubic_beyond_zero(
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def next_corner(stepper: Stepper, step: cython.double) -> cython.double:
-    """The step, or where on it the prediction comes to the first change of sign of a margin: of which."""
+    """Length at which the prediction comes to the first change of sign of a margin; else the step.
+
+    `next_margin` is then the number of that margin.
+    """
     count: cython.int
     at: cython.double
     before: cython.double
@@ -513,7 +522,7 @@ def next_extrapolated_root(stepper: Stepper) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def next_label_change(stepper: Stepper, step: cython.double) -> cython.double:
-    """The step, or where on it a label of the prediction changes: a label has no root, but halves."""
+    """Length at which a label of the prediction changes, else the step: a label has no root, but halves."""
     count: cython.int
     low: cython.double = 0.0
     high: cython.double = step
@@ -532,8 +541,10 @@ def next_label_change(stepper: Stepper, step: cython.double) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def prediction_changes_sign(stepper: Stepper, step: cython.double) -> cython.bint:
-    """Whether the prediction a step ahead has a margin of the other sign than here, or a label of
-    another value; which is then one of those."""
+    """Whether the prediction a step ahead has a margin of the other sign than here, or another label.
+
+    `next_margin` is then the number of one of those.
+    """
     k: cython.Py_ssize_t
     stepper.predictor.predict(stepper.here, stepper.newton.scale, step, stepper.guess)
     stepper.problem.bound(stepper.guess)
@@ -551,7 +562,7 @@ def prediction_changes_sign(stepper: Stepper, step: cython.double) -> cython.bin
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def acceptable(stepper: Stepper) -> cython.bint:
-    """Whether the curve was where it was predicted, and went on as it did."""
+    """Whether a step is good: the curve was where it was predicted, and went on as it did."""
     options: StepOptions = stepper.options.step
     if stepper.step <= options.any_turn_step:
         changed: cython.bint = not keeps_orientation(stepper)
@@ -601,7 +612,7 @@ def within_turn(stepper: Stepper) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def keeps_orientation(stepper: Stepper) -> cython.bint:
-    """Whether the orientation is the same here and there: otherwise there may be the far side of a corner."""
+    """Whether the orientation is the same here and there: else the step may have passed a corner."""
     return stepper.there.orientation == stepper.here.orientation
 
 
@@ -634,8 +645,10 @@ def next_step(stepper: Stepper) -> cython.double:
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def output_error(stepper: Stepper) -> cython.double:
-    """Greatest change of the growth of an output over the step, as a change of the output over its
-    size; of outputs that are no rounding of the greatest."""
+    """Greatest change of an output's slope over the step, as a change of the output over its size.
+
+    Outputs that are rounding of the greatest are left out.
+    """
     k: cython.Py_ssize_t
     worst: cython.double = 0.0
     least: cython.double = 0.0

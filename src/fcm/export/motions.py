@@ -172,7 +172,7 @@ class _Solver(Frozen):
 
 
 def with_contacts(motion: Motion, system: System, z: FloatArray) -> Motion:
-    """With what the contacts do over a cycle, and bear, at the point z (unknown + 1,)."""
+    """The motion with the states and loads of its contacts over a cycle, at the point z (unknown + 1,)."""
     if not system.scene.contacts:
         return motion
     record = ContactRecord.at(system, z[None])

@@ -1,4 +1,4 @@
-"""What is fixed about exported motions, each number with its reason."""
+"""Options of exported motions, each with its reason."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from fcm.rotational_dofs import MOST_DOFS
 
 
 class ExportOptions(Frozen):
-    """Of the motions that are exported.
+    """Options on which motions are exported, and how accurately.
 
     Attributes
     ----------
     max_peaks
-        Degrees of freedom of each curve whose peaks are exported: those that its line of the printed table
-        has, the greatest displacements before rotations.
+        Most degrees of freedom of each curve whose peaks are exported: those that its line of the printed
+        table has, the greatest displacements before rotations.
     max_drift
-        How far the frequency of a peak may move, relative, where its point is corrected with all digits; what
-        the balance has left is far below.
+        Relative change of a peak's frequency, where its point is corrected with all digits, above which the
+        point is another; what the balance has left is far below.
     same_amplitude
-        Relative: modal amplitudes nearer than this are one.
+        Relative difference of modal amplitudes below which they are the same.
     """
 
     max_peaks: int = MOST_DOFS

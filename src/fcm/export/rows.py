@@ -37,7 +37,7 @@ class Rows(Frozen):
 
     @staticmethod
     def of(scene: Scene) -> Rows:
-        """Those of a scene that was loaded with every row.
+        """The rows of a scene that was loaded with every row.
 
         >>> import fcm
         >>> rows = Rows.of(fcm.load_scene("blade", every_row=True))
@@ -100,7 +100,7 @@ def check_nodes(rows: Rows) -> None:
 
 
 def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
-    """What is to be said of rows on a mesh.
+    """Notes on how the rows of a structure match a mesh.
 
     Raises
     ------

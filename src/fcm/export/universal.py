@@ -65,7 +65,7 @@ def _nodes(mesh: Mesh) -> Iterator[str]:
 
 
 def _shape(rows: Rows, values: ComplexArray, name: str, hertz: float, step: int) -> Iterator[str]:
-    """One shape of all nodes (node, 6)."""
+    """Lines of a universal file for one complex shape of all nodes (node, 6)."""
     count = 6 if rows.turn else 3
     yield from (name[:80], "displacement, Im(X exp(i h omega t))", "NONE", "NONE", "NONE")
     kind = 3 if rows.turn else 2

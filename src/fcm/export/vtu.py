@@ -55,8 +55,10 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
 
 
 def _shares(scene: Scene, rows: Rows, nodes: IntArray) -> FloatArray:
-    """With which part of the motion of its side each node takes part in that across each contact, (contact,
-    node): those of the nodes of a side are 1 together, whatever the weights of rows are."""
+    """Weights (contact, node) by which each node's motion enters that of its side of a contact.
+
+    Those of the nodes of a side add up to 1, whatever the weights of rows are.
+    """
     found = np.zeros((len(scene.contacts), nodes.size))
     for of_contact, contact in zip(found, scene.contacts, strict=True):
         along = contact.normal if contact.normal.any() else contact.tangential

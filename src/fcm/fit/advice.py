@@ -1,4 +1,7 @@
-"""Which measurement would determine what the data do not: that which leaves the least standard errors."""
+"""Advises the measurement that would best determine the numbers which the data leave undetermined.
+
+It is the one that leaves the least standard errors.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,7 @@ def advice(
     harmonics: tuple[int, ...],
     options: FitOptions = FIT,
 ) -> list[Advice]:
-    """For each undetermined number the response that would determine it best; none where none would."""
+    """Response that would best determine each undetermined number; empty where none would."""
     responses = [one for one in fitted.data if one.damping is None]
     if not responses or not doubtful:
         return []
@@ -68,7 +71,7 @@ def advice(
 
 
 def _information(J: FloatArray) -> FloatArray:
-    """Of independent residuals whose errors are as stated: J^T J."""
+    """Information matrix J^T J of independent residuals in units of their errors."""
     flat = J.reshape(-1, J.shape[-1])
     found: FloatArray = flat.T @ flat
     return found

@@ -58,7 +58,7 @@ def backbone_rows(
 
 
 def backbone_errors(data: Measured, options: FitOptions) -> FloatArray:
-    """Of frequencies and damping ratios, (point, 2): estimated ones, or those stated."""
+    """Errors (point, 2) of frequencies and damping ratios: estimated ones, or those stated."""
     if data.estimated is not None:
         return data.estimated
     assert data.damping is not None
@@ -163,7 +163,7 @@ class _Followed:
         return np.array(newton.z) if newton.correct(1.0) else None
 
     def rates(self, z: FloatArray, moved: Sequence[ResidualDerivative]) -> FloatArray:
-        """Of frequency and damping by numbers, the measured amplitude held, (2, number)."""
+        """Derivatives (2, number) of frequency and damping by numbers, at fixed measured amplitude."""
         self.problem.evaluate(z)
         J = np.array(self.problem.jacobian)
         right = np.column_stack([-J[:, -1], *(-one.rate(z) for one in moved)])
@@ -178,7 +178,7 @@ class _Followed:
         return found
 
     def _growth(self, z: FloatArray, direction: FloatArray, of_log: float) -> float:
-        """Of the logarithm of the measured amplitude along a direction."""
+        """Derivative of the logarithm of the measured amplitude along a direction."""
         step = BACKBONE.difference * np.append(direction, of_log)
         ends = [np.log(self._size(z + sign * step)) for sign in (1.0, -1.0)]
         return float(ends[0] - ends[1]) / (2.0 * BACKBONE.difference)
@@ -190,7 +190,7 @@ class ResidualDerivative(Frozen):
     terms: list[tuple[float, AutonomousProblem]]
 
     def rate(self, z: FloatArray) -> FloatArray:
-        """Of the residual by the number, at the same unknowns."""
+        """Derivative of the residual by the number, at fixed unknowns."""
         total = np.zeros(z.size - 1)
         for weight, problem in self.terms:
             problem.evaluate(z)
@@ -201,7 +201,7 @@ class ResidualDerivative(Frozen):
 def _moved(
     scene: Scene, number: Number, harmonics: tuple[int, ...], problem: AutonomousProblem
 ) -> ResidualDerivative:
-    """With the values of a number on both sides; the structure's modes are the same in their order."""
+    """Difference stencil of the residual, with the number's values on both sides."""
     value = number.value(scene)
     step = BACKBONE.difference * (abs(value) or 1.0)
     terms = []

@@ -1,4 +1,4 @@
-r"""What a fit finds: numbers, their standard errors and intervals, correlations, and what is undetermined.
+r"""Result of a fit: numbers, standard errors, intervals, correlations, and what is undetermined.
 
 With the residuals r of N components in units of their errors, and their rates J by the k unknowns, the
 covariance of the unknowns is
@@ -41,7 +41,7 @@ class Estimate(Frozen):
 
 
 def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: FitOptions = FIT) -> Estimate:
-    """Of the rows at the numbers with which they are least."""
+    """Estimates from the rows of residuals at the best-fit numbers."""
     rates = parameters.rates(values)
     J = rows.rates * rates
     count = J.shape[-1]

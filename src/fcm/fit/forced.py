@@ -39,18 +39,18 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class NoMotionError(ArithmeticError):
-    """No response of the model is found in the range of the data."""
+    """Raised when the model has no response in the range of the data."""
 
 
 class Errors(Frozen):
-    """Of measured points, (point,): of frequencies and of amplitudes."""
+    """Errors (point,) of the frequencies and amplitudes of measured points."""
 
     frequency: FloatArray
     amplitude: FloatArray
 
 
 def errors_of(data: Measured, blurred: bool, options: FitOptions) -> Errors:
-    """Those that are stated, or estimated; or, while a start is sought, parts of the extent of the data."""
+    """Errors of measured points: stated or estimated; parts of the data's extent while a start is sought."""
     top = float(data.amplitude.max())
     if blurred:
         width = max(float(np.ptp(data.frequency)), 1e-3 * float(data.frequency.max()))
@@ -66,7 +66,7 @@ def errors_of(data: Measured, blurred: bool, options: FitOptions) -> Errors:
 
 
 class Observed:
-    """What was measured, of a solution of the balance: (omega, A) or (omega, Re A, Im A), and its rates."""
+    """Observable of a solution, as measured, and its rates: (omega, A) or (omega, Re A, Im A)."""
 
     def __init__(self, data: Measured, system: System) -> None:
         self.balance = system.new_balance()
@@ -77,7 +77,7 @@ class Observed:
         self.fundamental = self.phased or self.power > 0
 
     def along(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Of the solution that was evaluated last, and its rates along a direction (unknown + 1,)."""
+        """Observable of the last evaluated solution, and its rates along a direction (unknown + 1,)."""
         self.balance.report(z, np.ascontiguousarray(direction))
         displacements, d, j = self.balance.displacements, self.dof, self.first
         X, dX = (
@@ -110,7 +110,7 @@ class Observed:
         return np.array([omega, size]), np.array([d_omega, (value.conjugate() * rate).real / (size or 1.0)])
 
     def of_path(self, omega: FloatArray, X: ComplexArray, amplitude: FloatArray) -> FloatArray:
-        """The same of the points of a curve, (point, component)."""
+        """Observables (point, component) at the points of a curve."""
         if not self.fundamental:
             return np.column_stack((omega, amplitude[:, self.dof]))
         value = 1j * (1j * omega) ** self.power * X[:, self.first, self.dof]
@@ -119,7 +119,7 @@ class Observed:
 
 
 def measured_points(data: Measured) -> FloatArray:
-    """y (point, component)."""
+    """Measured points as observables (point, component)."""
     if data.phase is None:
         return np.column_stack((data.frequency, data.amplitude))
     value = data.amplitude * np.exp(1j * data.phase)
@@ -171,7 +171,7 @@ def range_of(data: Measured, options: FitOptions) -> tuple[float, float]:
 
 
 def _units(data: Measured, errors: Errors) -> FloatArray:
-    """Of the components of each point, (point, component)."""
+    """Errors (point, component) of the components of each measured point."""
     parts = [errors.frequency] + [errors.amplitude] * (1 if data.phase is None else 2)
     return np.column_stack(parts)
 
@@ -288,7 +288,7 @@ class Nearest:
         return np.array(newton.z) if newton.correct(1.0) else None
 
     def at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What is measured there and its rates along the curve, both in units of the errors."""
+        """Observable at z and its rates along the curve, both in units of the errors."""
         self.observed.balance.evaluate(z)
         direction = np.asarray(self.newton.tangent) * np.asarray(self.newton.scale)
         value, along = self.observed.along(z, direction)

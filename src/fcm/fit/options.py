@@ -1,4 +1,4 @@
-"""What decides how numbers are fitted: errors taken for granted, starts, when one is undetermined."""
+"""Options of a fit: errors of data that state none, starts, and when a number is undetermined."""
 
 from __future__ import annotations
 
@@ -6,39 +6,43 @@ from fcm.frozen import Frozen
 
 
 class FitOptions(Frozen):
-    """How numbers are fitted.
+    """Options on how numbers of a scene are fitted to measured data.
 
-    amplitude_error : of a measured amplitude, relative to the greatest of its data, where nothing is said.
-    frequency_error : of a measured frequency of a response, relative; as good as none.
-    backbone_error : of a measured frequency of a backbone, relative.
-    damping_error : of a measured damping ratio, relative to the greatest of its data.
-    search_error : errors of both while a start is sought, relative to the extent of the data.
-    starts : how many are tried, the numbers of the scene first.
-    search_share : share of the work that is done when the starts are.
-    weighing_shares : of that of a finalist, what is done after its search, and after each of two with errors
-        estimated.
-    agreeing_starts : starts that lead to the same numbers, after which no further one is tried.
-    number_tolerance : relative difference of numbers that are the same.
-    cost_tolerance : relative difference of costs that are the same.
-    finalists : starts whose numbers are then fitted to all points.
-    few_points : of each data while a start is sought.
-    start_evaluations, finalist_evaluations : evaluations of a start, and of a finalist.
-    margin : of the range that is traced, on both sides of the data, relative to their width.
-    unbounded_factor : from which part of a number to which multiple it may go without bounds.
-    max_levels, level_step : of the forces that are traced where every point has its own: at most so many,
-        and no nearer to one another than by this ratio.
-    min_effect : rate in units of the errors, by a factor e of a number, below which it has none.
-    max_standard_error : standard error of a number, relative, from which it is undetermined.
-    max_correlation : from which two numbers may not be distinguishable.
-    sure_standard_error : standard error of a number, relative, up to which it is determined whatever it is
+    amplitude_error : error of a measured amplitude, relative to the greatest of its data, where none is
+        stated.
+    frequency_error : relative error of a measured frequency of a response: as good as none.
+    backbone_error : relative error of a measured frequency of a backbone.
+    damping_error : error of a measured damping ratio, relative to the greatest of its data.
+    search_error : errors of all measured values while a start is looked for, relative to the extent of the
+        data.
+    starts : number of starts that are tried, the numbers of the scene first.
+    search_share : share of the progress bar for trying the starts.
+    weighing_shares : shares of the progress of a finalist that are over after its search, and after each of
+        two fits with estimated errors.
+    agreeing_starts : number of starts that lead to the same numbers, after which no further one is tried.
+    number_tolerance : relative difference of two numbers up to which they are the same.
+    cost_tolerance : relative difference of two costs up to which they are the same.
+    finalists : number of starts whose results are then fitted to all points.
+    few_points : number of points of each data set that are used while a start is looked for.
+    start_evaluations, finalist_evaluations : most evaluations of the model for a start, and for a finalist.
+    margin : width of the traced range beyond the data on either side, relative to the width of the data.
+    unbounded_factor : factor by which a number without bounds may grow or shrink from that of the scene.
+    max_levels, level_step : most levels of the forces that are traced where every point has its own, and
+        least ratio of two of them.
+    min_effect : change of the data by a factor e of a number, in units of their errors, below which the
+        number has no effect.
+    max_standard_error : relative standard error of a number from which on it is undetermined.
+    max_correlation : correlation of two numbers from which on they may not be distinguishable.
+    sure_standard_error : relative standard error of a number up to which it is determined whatever it is
         correlated with.
-    poor_misfit : misfit of data, relative, from which the model does not meet them.
-    confidence : of the intervals.
-    reweightings : times at most that errors which are not stated are estimated, and the fit is made again.
-    settled_move : of the numbers by this, in standard errors, below which they rest.
-    min_error : of a measured value, relative to the greatest: what is below is rounding.
-    rank_tolerance : of the greatest singular value, below which a combination of numbers is not seen at all.
-    lost_residual : where the model has no response, in units of the errors.
+    poor_misfit : relative misfit of data from which on the model does not describe them.
+    confidence : probability of the intervals of the numbers.
+    reweightings : most times that errors which are not stated are estimated, and the fit is repeated.
+    settled_move : change of the numbers in such a repetition, in standard errors, below which it is the last.
+    min_error : least error of a measured value, relative to the greatest: below is rounding.
+    rank_tolerance : singular value, relative to the greatest, below which a combination of numbers has no
+        effect at all.
+    lost_residual : residual, in units of the errors, that stands for a point where the model has no response.
     """
 
     amplitude_error: float = 0.01
@@ -74,12 +78,12 @@ class FitOptions(Frozen):
 
 
 class NearestOptions(Frozen):
-    """How the nearest point of a curve is found.
+    """Options on how the point of a curve nearest to a measured one is found.
 
-    max_steps : at most, along the curve.
-    step_tolerance : of the last of them, in units of the errors.
-    max_step : step along the curve, in its own scaled units.
-    max_halvings : of a step that leads further away.
+    max_steps : most steps along the curve.
+    step_tolerance : length of a step, in units of the errors, below which it is the last.
+    max_step : longest step along the curve, in its scaled units.
+    max_halvings : most halvings of a step that leads further away.
     """
 
     max_steps: int = 30
@@ -89,14 +93,15 @@ class NearestOptions(Frozen):
 
 
 class BackboneOptions(Frozen):
-    """How a mode of the model is met at the amplitudes of a backbone.
+    """Options on how a mode of the model is met at the amplitudes of a backbone.
 
-    amplitude_factor, modal_amplitude_factor : by which it is followed past the amplitudes measured; past
-        modal ones.
-    shown_factor : by which the fitted mode is shown past the amplitudes measured.
-    difference : of the residual by a number, and of an amplitude along a direction, relative.
-    max_steps, step_tolerance : at most, to where a displacement has its amplitude, and the last of them in
-        ln a.
+    amplitude_factor, modal_amplitude_factor : factors by which a mode is followed beyond the amplitudes
+        measured, and beyond modal ones.
+    shown_factor : factor by which the fitted mode is shown beyond the amplitudes measured.
+    difference : relative step of the difference quotients of the residual by a number, and of an amplitude
+        along a direction.
+    max_steps, step_tolerance : most Newton steps to where a displacement has its amplitude, and length of a
+        step in ln a below which it is the last.
     """
 
     amplitude_factor: float = 3.0
@@ -108,13 +113,15 @@ class BackboneOptions(Frozen):
 
 
 class AdviceOptions(Frozen):
-    """Which measurements are imagined.
+    """Options on the further measurements that are tried, to advise the best one.
 
-    level_factors : of the least and the greatest level that were measured.
-    max_dofs : at most, those measured first.
-    points : of each.
-    max_ratio : part of the standard error that it has to leave at most, to be worth a sentence.
-    min_eigenvalue : eigenvalue of the scaled information, below which it is rounding.
+    level_factors : levels of the imagined forces, relative to the least and the greatest level that was
+        measured.
+    max_dofs : most degrees of freedom at which measurements are imagined, those measured first.
+    points : number of points of each imagined measurement.
+    max_ratio : standard error with the measurement, relative to that without, up to which it is worth a
+        sentence.
+    min_eigenvalue : eigenvalue of the scaled information below which it is rounding.
     """
 
     level_factors: tuple[float, ...] = (0.1, 0.3, 3.0, 10.0)

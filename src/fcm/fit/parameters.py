@@ -15,11 +15,11 @@ from fcm.scene.draft import Number, number_of
 
 
 class FitError(ValueError):
-    """There is nothing to fit; the message says why."""
+    """Raised when there is nothing to fit; the message says why."""
 
 
 class Parameters(Frozen):
-    """Numbers of a scene.
+    """The fitted numbers of a scene, as scaled or logarithmic unknowns.
 
     start, low, high: (number,); log: (number,) whether the unknown is the number's logarithm; unit (number,):
     of the unknowns of the others.
@@ -38,7 +38,7 @@ class Parameters(Frozen):
         return tuple(number.key for number in self.numbers)
 
     def unknowns(self, values: FloatArray) -> FloatArray:
-        """x of numbers."""
+        """Unknowns x of given values of the numbers."""
         with np.errstate(divide="ignore"):  # a bound of 0
             logs = np.log(np.where(self.log > 0.0, values, 1.0))
         return np.where(self.log > 0.0, logs, values / self.unit)
@@ -95,7 +95,7 @@ def parameters_of(
 
 
 def _wide(start: float, number: Number, options: FitOptions) -> tuple[float, float]:
-    """How far a number may go that has no bounds."""
+    """Default bounds of a number that has none: its start divided and multiplied by a factor."""
     if start > 0.0:
         return start / options.unbounded_factor, start * options.unbounded_factor
     if start == 0.0:

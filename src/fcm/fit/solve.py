@@ -43,16 +43,16 @@ class SearchResult(Frozen):
 
 
 class SavedSearches(Protocol):
-    """Searches of an earlier run by their number: the finished ones, and how far others were; and of this."""
+    """Protocol of saved searches by their number: finished ones, and states of interrupted ones."""
 
     finished: dict[int, list[Any]]
     states: dict[int, list[Any]]
 
     def add(self, number: int, results: list[Any]) -> None:
-        """A search is finished."""
+        """Saves the results of a finished search."""
 
     def save(self, number: int, state: Any) -> None:
-        """A search has come so far."""
+        """Saves the state of an unfinished search."""
 
 
 @dataclass
@@ -163,7 +163,7 @@ class Problem:
         return SearchResult(found.x, float(found.cost), bool(found.status > 0))
 
     def apart(self, x: FloatArray, other: FloatArray) -> float:
-        """How far unknowns are from others, in standard errors of the combination in which they differ.
+        """Distance of two sets of unknowns, in standard errors of the combination in which they differ.
 
         With the rates J at x, |J (other - x)| over the spread of the residuals.
         """
@@ -187,7 +187,10 @@ class Searches:
     def least(
         self, problem: Problem, x: FloatArray, evaluations: int, share: tuple[float, float], what: str
     ) -> SearchResult:
-        """What a search from these unknowns comes to, or has come to already; share: of the bar."""
+        """Result of a search from given unknowns, taken from the saved ones if there.
+
+        `share` is its part of the progress bar.
+        """
         number, evaluated, least = self.number, 0, np.inf
         self.number += 1
         if self.kept is not None and number in self.kept.finished:
@@ -296,7 +299,7 @@ def _so_far(fine: Problem, rough: Problem, starts: list[Start]) -> Solved:
 
 @dataclass
 class _End:
-    """Where a finalist has come to: the residuals with the errors there, and how unlikely they are.
+    """Final state of a finalist: residuals with the errors there, and how unlikely they are.
 
     before : unknowns of the least cost with the errors that all finalists begin with.
     """
@@ -390,7 +393,7 @@ def _tried(
 
 
 def _by_cost(starts: Sequence[Start], options: FitOptions) -> list[Start]:
-    """Those of the least cost first; of equal ones the earlier, which are nearer to the scene."""
+    """Starts ordered by cost; of equal costs the earlier one, nearer to the scene, is first."""
     least = min(one.cost for one in starts)
     return sorted(
         starts, key=lambda one: one.cost if one.cost > least * (1.0 + options.cost_tolerance) else least
@@ -405,7 +408,7 @@ def _with_rows(problem: Problem, x: FloatArray, starts: list[Start], interrupted
 
 
 def _thinned(data: Measured, most: int) -> Measured:
-    """Some of the points, spread evenly over them."""
+    """Some of the points, spread evenly."""
     if data.points <= most:
         return data
     chosen = np.unique(np.linspace(0, data.points - 1, most).astype(np.intp))

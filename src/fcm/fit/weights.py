@@ -27,7 +27,7 @@ from fcm.model.scene import FloatArray, Measured
 def reweighted(
     data: Sequence[Measured], parts: Sequence[Rows], options: FitOptions, share: bool = False
 ) -> tuple[list[Measured], float]:
-    """The same points with errors estimated, unless they are stated, and how unlikely the distances are then.
+    """The measured points with estimated errors unless they are stated, and how unlikely their distances are.
 
     Responses of a quantity have them in common; share: whether they are taken as a share of the amplitudes,
     though others be likelier. Unlikely: the sum of ln sigma^2 + r^2 / sigma^2 over all
@@ -56,7 +56,7 @@ def reweighted(
 
 
 def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> tuple[Measured, float]:
-    """With one error of the frequencies and one of the damping ratios, and how unlikely its distances are."""
+    """A backbone with one error for all frequencies and one for all damping ratios, and its unlikeliness."""
     assert data.damping is not None
     distance = rows.residual[:, :2] * backbone_errors(data, options)
     square = (data.weight[:, None] * distance**2).mean(axis=0)
@@ -68,7 +68,7 @@ def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> tuple[Measu
 
 
 def _squares(data: Measured, rows: Rows, options: FitOptions) -> FloatArray:
-    """Of the distances of a response's points, for each of their independent components, by their weights."""
+    """Weighted squares of the distances of a response's points, for each independent component."""
     unit, components = errors_of(data, False, options).amplitude, data.components - 1
     distance: FloatArray = (rows.residual[:, : components + 1] ** 2).sum(axis=1) * unit**2
     return distance * data.weight / components
@@ -77,7 +77,7 @@ def _squares(data: Measured, rows: Rows, options: FitOptions) -> FloatArray:
 def _errors(
     amplitude: FloatArray, square: FloatArray, components: FloatArray, least: float, share: bool
 ) -> tuple[float, FloatArray]:
-    """How unlikely the distances are, and sigma (point,) with which they have these squares.
+    """How unlikely the distances are, and the errors sigma (point,) that fit their squares best.
 
     components : (point,) of each, that are independent; share: whether a share alone is looked at. A floor
     alone, a share alone, or both; a further number must earn its place (Schwarz's criterion).

@@ -1,4 +1,4 @@
-"""What a contact is to the balance: forces, their tangent, and margins, from its block of the unknowns.
+"""Contact laws of the balance: forces, their tangent, and margins, from a contact's block of the unknowns.
 
 The unknowns of a contact are the mean and amplitudes of its displacement along each of its directions, laid
 out as in `fcm.structure.layout`. The last direction is its normal. Its forces on the structure are laid out
@@ -92,29 +92,29 @@ class Law:
         self.pieces, self.state = 0, np.zeros(0, dtype=np.intc)
 
     def set_parameters(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
-        """Take other numbers."""
+        """Set the parameters mu, k_u, k_v and n_0 of the contact."""
         self.mu, self.k_u, self.k_v, self.n_0 = mu, k_u, k_v, n_0
 
     def without_margins(self) -> None:
-        """Say of none of the margins that it is one."""
+        """Mark all margins as absent."""
         self.kind[:] = NONE
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Forces and their derivatives at the unknowns of the contact, which begin at x[first]."""
+        """Compute forces and tangent at the unknowns of the contact, which begin at x[first]."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """The forces alone, where that costs less."""
+        """Compute the forces alone, where that costs less."""
         return self.evaluate(x, first)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Functions of the unknowns that change sign where the forces are not smooth."""
+        """Fill the margins: functions of the unknowns that change sign where the forces are not smooth."""
         return 0
 
     @cython.ccall
@@ -126,13 +126,13 @@ class Law:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def compute_resistance(self) -> cython.int:
-        """Fill `resistance`, of the motion that was evaluated last."""
+        """Fill `resistance` for the motion that was evaluated last."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Go through the cycle of a motion, for its states and what it bears."""
+        """Compute the states of the cycle of a motion, and the contact loads."""
         return 0
 
 
@@ -183,7 +183,7 @@ class KernelLaw(Law):
     def take_margins(
         self, count: cython.int, kind: cython.int[::1], value: cython.double[::1], angle: cython.double[::1]
     ) -> cython.int:
-        """Take as many margins as were found; the others are none."""
+        """Take the margins that a kernel has found; the others are absent."""
         i: cython.Py_ssize_t
         for i in range(self.margins):
             self.kind[i] = kind[i] if i < count else NONE
@@ -392,8 +392,10 @@ class SingleHarmonicLaw(Law):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Forces by which a contact is closed at some time, and at all times; by which it is beyond the slip
-        limit (25); and, where it never slips, by which its mean friction is within its limits.
+        """Fill the margins of a contact.
+
+        They are the forces by which it is closed at some time, and at all times; by which it is beyond the
+        slip limit (25); and, where it never slips, by which its mean friction is within its limits.
         """
         self.limits(x, first, hypot(x[first + 4], x[first + 5]))
         return 0
@@ -401,7 +403,7 @@ class SingleHarmonicLaw(Law):
     @cython.cfunc
     @cython.exceptval(check=False)
     def limits(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
-        """The same where |V| is b; and between which limits a contact's mean friction is where it sticks."""
+        """Fill the margins where |V| is b, and the limits of the mean friction of a contact that sticks."""
         load: cython.double = self.n_0 + self.k_v * x[first + 1]
         variation: cython.double = self.k_v * b
         self.margin[CLOSES] = load + variation if variation > 0.0 else load
@@ -429,7 +431,10 @@ class SingleHarmonicLaw(Law):
     @cython.cfunc
     @cython.exceptval(check=False)
     def stuck(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.void:
-        """A spring; it resists the mean displacement too, as far as the `limits` of its friction allow."""
+        """Fill force and tangent of a contact that sticks: a spring.
+
+        It resists the mean displacement, too, as far as the `limits` of its friction allow.
+        """
         k: cython.double = self.k_u
         sign: cython.double = 0.0
         i: cython.Py_ssize_t
@@ -455,7 +460,7 @@ class SingleHarmonicLaw(Law):
     @cython.cfunc
     @cython.exceptval(check=False)
     def normal(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
-        """(28) to (31): k_v b (N_b + N_s cos), less the preload that the structure at rest balances."""
+        """Fill the normal force, (28) to (31): k_v b (N_b + N_s cos), less the preload that rest balances."""
         k: cython.double = self.k_v
         load: cython.double = self.n_0 + k * x[first + 1]
         preload: cython.double = max(self.n_0, 0.0)
@@ -494,7 +499,10 @@ class SingleHarmonicLaw(Law):
     @cython.cfunc
     @cython.exceptval(check=False)
     def slipping(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
-        """(27) with the phase of u restored: k_u U (F_s + i F_c), and the mean k_u a F_b."""
+        """Fill force and tangent of a contact that slips: (27) with the phase of u restored.
+
+        k_u U (F_s + i F_c), and the mean k_u a F_b.
+        """
         k: cython.double = self.k_u
         U_r: cython.double = x[first + 2]
         U_i: cython.double = x[first + 3]
@@ -538,8 +546,10 @@ class SingleHarmonicLaw(Law):
         a: cython.double,
         b: cython.double,
     ) -> cython.void:
-        """slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, from those by n0_bar, b_bar,
-        phi."""
+        """Fill slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, by the chain rule.
+
+        They follow from those by n0_bar, b_bar, phi.
+        """
         k: cython.double = self.mu / self.k_u * self.k_v
         relative: cython.double = a / b
         i: cython.Py_ssize_t

@@ -1,4 +1,4 @@
-"""What a balance of more harmonics would take, so that what takes too long is said and not begun.
+"""Cost model: what a balance of more harmonics would take, so that too much is said and not begun.
 
 It is in seconds of a core on which numpy's sine takes 10 ns a number. It follows from the size of the
 balance, not from a clock, so that the same scene has the same answer on every machine.
@@ -22,7 +22,7 @@ from fcm.structure.layout import Layout, layout_of
 
 
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
-    """About what evaluations of the balance with so many harmonics take, each solved for a step.
+    """Estimated seconds of evaluations of the balance with a number of harmonics, each solved for a step.
 
     A condensed matrix (see `modal_condensation`) is formed first, by 2 multiplications a mode and entry.
     """
@@ -32,7 +32,7 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
 
 
 def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
-    """Seconds of one, solved by a condensed system of a rank, or as it is where that is 0."""
+    """Seconds of one evaluation, solved by a condensed system of a rank, or as it is where that is 0."""
     contacts, width, unknowns, harmonics = layout.contacts, layout.width, layout.unknowns, layout.harmonics
     solved = rank or unknowns
     cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
@@ -41,12 +41,13 @@ def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
 
 
 class CurveCost(Frozen):
-    """What the curves of a scene take that were measured, of 50 to 200 contacts with one harmonic.
+    """Cost of the curves of a scene, measured with 50 to 200 contacts and one harmonic.
 
-    evaluations: of a curve; the cost of one is `each`. evaluations_per_point: of each point that the longest
-    step leads to, where these are more. overhead: seconds for each of them, contact and coefficient of its
-    motion, of all that comes beside the solution: levels, stability, errors. high_frequency: times the
-    highest frequency of the harmonics; few modes can do for all those above it.
+    evaluations: least number of evaluations of a curve; the cost of one is `each`. evaluations_per_point:
+    evaluations of each point that the longest step leads to, which replace these if they are more. overhead:
+    seconds for each evaluation, contact and coefficient of its motion, for levels, stability and errors.
+    high_frequency: frequency relative to the highest of the harmonics, above which few modes can stand for
+    all.
     """
 
     evaluations: float = 1500.0
@@ -60,7 +61,7 @@ CURVE_COST = CurveCost()
 
 
 def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost = CURVE_COST) -> float:
-    """About what a curve of a scene takes, told from its sizes alone, before anything is made of it.
+    """Estimated seconds for a curve of a scene, from its sizes alone.
 
     Many contacts are taken as condensed to all modes where these are fewer than half their directions; modes
     far above the harmonics are not counted.
@@ -79,7 +80,7 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost = CURVE_COST)
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
-    """About what following curves of a system with so many harmonics takes.
+    """Estimated seconds for following curves of a system with a number of harmonics.
 
     evaluations are those that its own took: they grow as the harmonics do, with the corners and folds.
     """
@@ -103,7 +104,10 @@ def with_twice_as_many(system: System, evaluations: int) -> System | None:
 def charged_to_work(
     system: System, stepper: Stepper, progress: Progress | None, follow: Callable[[Progress], Path]
 ) -> Path:
-    """What follow returns with a progress that adds what it takes to the work of a system, as it goes on."""
+    """The path that follow returns; the work it takes is added to that of the system as it goes on.
+
+    follow is called with the progress to report to.
+    """
     known, each = 0, seconds_of(system, 1, len(system.harmonics))
 
     def add(evaluations: int) -> None:

@@ -19,8 +19,10 @@ from fcm.structure.receptance import Receptance, TravellingReceptance
 
 @cython.cclass
 class Extremes:
-    """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates: parts
-    (4 * harmonic, dof) one after the other.
+    """Amplitudes of displacements x = mean + Re sum X exp(i h theta), and their rates along a curve.
+
+    re, im (harmonic, dof): amplitudes X, d_re, d_im their rates: parts (4 * harmonic, dof) one after the
+    other.
 
     amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate; angles
     (2, dof): of the greatest and the least displacement, if there are several.
@@ -48,7 +50,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def fill(self) -> cython.int:
-        """Amplitude, growth and angles from the parts."""
+        """Fill amplitude, growth and angles from the parts."""
         d: cython.Py_ssize_t
         if self.count == 1:
             for d in range(self.dofs):
@@ -63,7 +65,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def single(self, d: cython.Py_ssize_t) -> cython.void:
-        """One harmonic: its size."""
+        """Fill amplitude and growth of a degree of freedom with one harmonic: the size of that."""
         size: cython.double = hypot(self.re[0, d], self.im[0, d])
         self.amplitude[d] = size
         self.growth[d] = 0.0
@@ -73,7 +75,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def several(self, d: cython.Py_ssize_t) -> cython.void:
-        """Several: half the distance of the greatest and the least displacement."""
+        """Fill amplitude and growth with several harmonics: half the distance of the extremes."""
         k: cython.Py_ssize_t
         j: cython.int
         for k in range(self.samples):
@@ -88,7 +90,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def many(self) -> cython.int:
-        """The same of all degrees of freedom."""
+        """Fill amplitude and growth of all degrees of freedom at once, with several harmonics."""
         d: cython.Py_ssize_t
         first: cython.Py_ssize_t
         amplitudes = np.asarray(self.parts)[: 2 * self.count].T
@@ -102,7 +104,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def both(self, d: cython.Py_ssize_t) -> cython.void:
-        """The greatest and the least of a sampled displacement."""
+        """Add half of the greatest and of the least of a sampled displacement to its amplitude."""
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
         between: cython.double = 0.0
@@ -116,7 +118,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def greatest(self, d: cython.Py_ssize_t, side: cython.int, between: cython.double) -> cython.void:
-        """The half of the amplitude on a side, of the displacement (0) or of minus it (1).
+        """Add half of a displacement's maximum (side 0), or of that of minus it (1), to its amplitude.
 
         Between samples an extreme is greater than these by `between` at most, the curvature times the square
         of half their distance over 2. So the greatest may be one next to lower samples than another.
@@ -145,7 +147,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def extreme(self, d: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """`value` at the extreme next to a sample, the `rate` of that, and its `angle`."""
+        """Find the extreme next to a sample: its `value`, the `rate` of that, and its `angle`."""
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
         theta: cython.double = k * step
@@ -174,7 +176,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def waves_at(self, theta: cython.double) -> cython.void:
-        """c, s (harmonic,): cosine and sine of each harmonic at an angle."""
+        """Fill c, s (harmonic,), cosine and sine of each harmonic at an angle."""
         c_1: cython.double = cos(theta)
         s_1: cython.double = sin(theta)
         c: cython.double = 1.0
@@ -190,9 +192,11 @@ class Extremes:
 
 @cython.cclass
 class Displacements(Extremes):
-    """`Extremes` whose parts `at` fills: sums of the shapes (mode, dof) times the parts of each mode,
-    of_modes (4 * harmonic, mode); of combinations of ports sums of shares (share,) of the ports share_ports
-    (share,), up to share_end (dof,) of each. mean (dof,); rest (dof,): the answer to static loads alone.
+    """Displacements of the reported degrees of freedom, whose amplitudes are `Extremes`.
+
+    `at` fills their parts: sums of the shapes (mode, dof) times the parts of each mode, of_modes (4 *
+    harmonic, mode); of combinations of ports sums of shares (share,) of the ports share_ports (share,), up to
+    share_end (dof,) of each. mean (dof,); rest (dof,): the answer to static loads alone.
     """
 
     def __init__(
@@ -256,7 +260,7 @@ class Displacements(Extremes):
         d_force: cython.double[::1],
         d_omega: cython.double,
     ) -> cython.int:
-        """Amplitudes of the modes in one harmonic."""
+        """Fill the amplitudes of the modes in one harmonic."""
         n: cython.Py_ssize_t = self.receptance.count
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -311,7 +315,10 @@ class Displacements(Extremes):
         g_im: cython.double,
         d_omega: cython.double,
     ) -> cython.void:
-        """q, the amplitude of mode i under its force f in harmonic j, and its rate r; g is that of f."""
+        """Compute q, the amplitude of mode i under its force f in harmonic j, and its rate r.
+
+        g is the rate of f.
+        """
         c_re: cython.double = receptance.c_re[j, i]
         c_im: cython.double = receptance.c_im[j, i]
         s_re: cython.double = receptance.s_re[j, i] * d_omega
@@ -326,7 +333,7 @@ class Displacements(Extremes):
     def from_ports(
         self, d: cython.Py_ssize_t, z: cython.double[::1], direction: cython.double[::1]
     ) -> cython.void:
-        """A combination of the contacts' displacements."""
+        """Fill a degree of freedom that is a combination of the contacts' displacements."""
         i: cython.Py_ssize_t
         j: cython.int
         p: cython.Py_ssize_t
@@ -348,7 +355,7 @@ class Displacements(Extremes):
 
 @cython.cclass
 class TravellingDisplacements(Displacements):
-    """As `Displacements`, each harmonic by the shapes (mode, dof) of the modes that it meets."""
+    """Displacements of a ring, each harmonic by the shapes (mode, dof) of the modes that it meets."""
 
     def __init__(
         self,
@@ -375,7 +382,7 @@ class TravellingDisplacements(Displacements):
         d_force: cython.double[::1],
         d_omega: cython.double,
     ) -> cython.int:
-        """Amplitudes of one harmonic, mode by mode."""
+        """Fill the amplitudes of one harmonic, mode by mode."""
         wave: Receptance = self.waves[j]
         n: cython.Py_ssize_t = self.receptance.ports
         i: cython.Py_ssize_t
@@ -410,7 +417,7 @@ class TravellingDisplacements(Displacements):
     @cython.cfunc
     @cython.exceptval(check=False)
     def clear(self, j: cython.int) -> cython.void:
-        """No amplitudes of a harmonic."""
+        """Set the amplitudes of a harmonic to zero."""
         d: cython.Py_ssize_t
         for d in range(self.dofs):
             self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
@@ -418,5 +425,5 @@ class TravellingDisplacements(Displacements):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def sum_modes(self) -> cython.int:
-        """Done for each harmonic."""
+        """Does nothing: `harmonic` has summed the modes."""
         return 0

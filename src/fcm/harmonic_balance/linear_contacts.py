@@ -29,20 +29,20 @@ from fcm.structure.receptance import Receptance
 
 
 class LinearContactOptions(Frozen):
-    """Which contacts are linear.
+    """Options on which contacts of a balance are taken as linear: stuck or open all the time.
 
     Attributes
     ----------
     tangent_tolerance : float
-        Part of a contact's springs, by which its tangent may differ from them.
+        Difference of a contact's tangent from its springs, relative to them, up to which it is linear.
     max_changed : int
-        So many contacts that are stuck or open and were taken for the other before the modes on the
-        springs are found again.
+        Number of contacts that are stuck or open and were taken for the other, above which the modes on the
+        springs are computed again.
     min_damping : float
-        Least damping ratio, of a mode that has none exactly at its own frequency.
+        Damping ratio that stands for that of a mode which has none, exactly at its own frequency.
     max_rounding : float
-        Part of a displacement that rounding of the modes on the springs may be; springs so stiff that it
-        is more are not taken for such.
+        Rounding error of the modes on the springs, relative to a displacement, from which on springs are too
+        stiff for them.
     """
 
     tangent_tolerance: float = 1e-3
@@ -89,8 +89,10 @@ class LinearContacts:
         self.solver = Solver(0)
 
     def choose(self, tangent: FloatArray, most: int) -> bool:
-        """Whether the condensed system is no larger than the most at tangents; it is ready to be factored
-        then."""
+        """Choose the linear contacts by the tangents; whether the rest makes a system of less than `most`.
+
+        If it does, the system is ready to be factored.
+        """
         stuck, apart = self.is_stuck.view(np.bool_), self.is_open.view(np.bool_)
         for linear, states in ((self.stuck, self.is_stuck), (self.open, self.is_open)):
             linear_contacts(tangent, self.order, linear, self.tangent_tolerance, states)
@@ -190,14 +192,14 @@ class LinearContacts:
         return found
 
     def _with_springs(self, x: FloatArray) -> FloatArray:
-        """What displacements (part, port) become where the springs act against them."""
+        """Displacements (part, port) with the springs acting against them."""
         force = x * self.K
         force[0] = x[0] * self.K_mean
         held: FloatArray = x - self._displaced(force, self.shapes, self.shapes)
         return held
 
     def _other_forces(self, x: FloatArray) -> FloatArray:
-        """The forces (part force,) that displacements (part, port) cause beside those of the springs."""
+        """Forces (part force,) that displacements (part, port) cause beside those of the springs."""
         around = x[:, self.other_stiffness].transpose(1, 0, 2)[self.number]  # (force, part, port)
         y = np.matmul(
             self.D.reshape(self.ports.size, self.parts, self.parts * self.each),

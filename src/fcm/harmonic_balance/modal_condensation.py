@@ -38,32 +38,33 @@ from fcm.model.scene import FloatArray
 
 
 class CondensationOptions(Frozen):
-    """What of a balance is condensed, and how well it is solved.
+    """Options on when a balance of many contacts is condensed to modes, and how it is solved.
 
     Attributes
     ----------
     min_unknowns : int
-        Unknowns from which on that is faster; those of the condensed system, from which on it is to be
-        condensed to the forces of some contacts.
+        Number of unknowns from which on condensing is faster; and number of those of the condensed system,
+        from which on it is condensed further, to the forces of some contacts.
     max_fraction : float
-        Of the unknowns, how large the condensed system may be.
+        Largest size of the condensed system, relative to the number of unknowns.
     compliance_limits : tuple of float
-        How much a mode that is left out may yield beside the contacts: the cheapest of these is taken.
+        Compliances beside the contacts up to which a mode is left out: the cheapest of these limits is taken.
     solutions : int
-        With one factorisation, for that choice.
+        Number of solutions with one factorisation that is assumed for that choice.
     product_speed : float
-        How many times as fast matrices are multiplied by matrices as by a vector, for that choice.
+        Speed of a product of matrices, relative to that of a matrix and a vector, that is assumed for that
+        choice.
     tolerance : float
-        Of the last correction of a solution, relative to it.
+        Length of the last correction of a solution, relative to the solution.
     newton_tolerance : float
-        The same of a step of Newton's method, over its length in units of scale: what the step itself
-        leaves is a part of its square.
+        Length of the last correction of a Newton step, relative to the square of the step in units of scale:
+        the step itself leaves as much.
     min_step : float
-        A step, to a shorter one of which what is left is not relative.
+        Length of a step, in units of scale, below which `tolerance` is relative to this length.
     max_corrections : int
-        So many at once. After such that do not come to that
+        Most corrections in a row.
     max_contraction : float
-        and leave more than this part of what those before left, twice as many modes are taken.
+        What these leave, relative to what was left before, above which twice as many modes are taken.
     """
 
     min_unknowns: int = 200
@@ -171,7 +172,7 @@ class CondensedSystem:
         return self.equations.held is not None
 
     def choose_modes(self, modes: int) -> None:
-        """Condense to so many modes."""
+        """Condense to a number of modes, those that matter most."""
         self.modes = min(max(modes, 1), self.ranking.size)
         self.equations.choose_modes(np.sort(self.ranking[: self.modes]))
 
@@ -207,7 +208,7 @@ class CondensedSystem:
         receptance.at(now)
 
     def _solve_there(self, right: FloatArray, step: bool) -> None:
-        """`solve`, the structure at the frequency of what was factored."""
+        """Replace a right side by the solution, with the structure at the frequency of what was factored."""
         whole, found = right * self.scale, np.empty_like(right)
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
@@ -245,8 +246,10 @@ class CondensedSystem:
         return True, turned or self.equations.turned
 
     def _tolerance(self, found: FloatArray, step: bool) -> float:
-        """What a correction of a solution may leave, in units of scale; of a direction, which is no step,
-        little."""
+        """Length that the last correction of a solution may have, in units of scale.
+
+        It is larger for a Newton step than for a direction.
+        """
         size, options = float(np.linalg.norm(found / self.scale)), self.options
         of_step = options.newton_tolerance * min(size, 1.0) ** 2 if step else 0.0
         return max(options.tolerance * max(size, options.min_step), of_step)

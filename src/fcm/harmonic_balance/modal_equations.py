@@ -47,7 +47,10 @@ def sum_of_rows(
 def sums_of_rows(
     by: cython.double[:, ::1], matrix: cython.double[:, ::1], out: cython.double[:, ::1]
 ) -> cython.void:
-    """The same for each row of by (part, row), into that of out (part, column)."""
+    """Fill each row of out (part, column) with the rows of a matrix, times the numbers by (part, row).
+
+    As `sum_of_rows` for each part; matrix (row, column).
+    """
     if not cython.compiled:
         with np.errstate(invalid="ignore", over="ignore"):
             np.matmul(by, matrix, out=out)
@@ -81,7 +84,7 @@ class ModalCompliance:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def displace(self, force: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """Fill out (unknown,) with the displacements that forces (unknown,) take away."""
+        """Fill out (unknown,) with minus the displacements under forces (unknown,): what these take away."""
         self.collect(force)
         self.means()
         self.apply_compliance(self.receptance.c_re, self.receptance.c_im)
@@ -91,7 +94,10 @@ class ModalCompliance:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def rate(self, force: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """The same with their derivatives by the frequency; the means have none."""
+        """Fill out (unknown,) with the derivatives by the frequency of what `displace` fills.
+
+        The means have none.
+        """
         self.collect(force)
         self.on_modes[0, :] = 0.0
         self.apply_compliance(self.receptance.s_re, self.receptance.s_im)
@@ -101,7 +107,7 @@ class ModalCompliance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def collect(self, force: cython.double[::1]) -> cython.void:
-        """Forces on the modes (part, mode)."""
+        """Project forces (unknown,) on the modes: (part, mode)."""
         j: cython.Py_ssize_t
         p: cython.Py_ssize_t
         for j in range(self.parts):
@@ -112,7 +118,7 @@ class ModalCompliance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def means(self) -> cython.void:
-        """Mean displacements of the modes in the place of the mean forces on them."""
+        """Replace the mean forces on the modes by their mean displacements."""
         i: cython.Py_ssize_t
         if not self.diagonal:
             sum_of_rows(self.on_modes[0], self.flexibility, self.mean)
@@ -123,7 +129,7 @@ class ModalCompliance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def apply_compliance(self, re: cython.double[:, ::1], im: cython.double[:, ::1]) -> cython.void:
-        """What modes of compliances (harmonic, mode) answer, in the place of the forces on them."""
+        """Replace the forces on the modes by their answers, by compliances (harmonic, mode)."""
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
         for j in range(re.shape[0]):
@@ -257,7 +263,7 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def by_modes(self) -> cython.int:
-        """Forces on the modes (mode, part, part mode) by the displacements of these."""
+        """Fill the forces on the modes (mode, part, part mode) that their displacements cause."""
         c: cython.Py_ssize_t
         d: cython.Py_ssize_t
         e: cython.Py_ssize_t
@@ -290,8 +296,10 @@ class ModalEquations:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def condensed(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """Fill out (unknown + 1,) with the solution for a right side with the modes condensed to alone, or
-        beside contacts that are held."""
+        """Fill out (unknown + 1,) with the solution for a right side by the condensed system alone.
+
+        It is condensed to the modes, or to contacts beside those that are held.
+        """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.by.shape[0]
@@ -401,8 +409,11 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(-1.0, check=False)
     def krylov(self, k: cython.int) -> cython.double:
-        """The next direction of the basis, orthogonal to those before; its length before it has that of 1,
-        and in R, turned as the columns before, its parts along these."""
+        """Make the next direction of the basis, orthogonal to those before.
+
+        Returned is its length before it has that of 1; its parts along the others are in R, turned as the
+        columns before.
+        """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.scale.shape[0]
@@ -451,7 +462,7 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(check=False)
     def forces_on_modes(self) -> cython.void:
-        """The forces on the modes (part, mode)."""
+        """Project the forces on the modes: (part, mode)."""
         j: cython.Py_ssize_t
         p: cython.Py_ssize_t
         for j in range(self.parts):
@@ -462,7 +473,7 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(check=False)
     def respond(self, out: cython.double[::1]) -> cython.void:
-        """Fill the first of out with what the modes answer to these (part mode,)."""
+        """Fill the first of out with the answers of the modes to the forces on them (part mode,)."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.modes
@@ -491,8 +502,11 @@ def linear_contacts(
     slight: cython.double[::1],
     found: cython.uchar[::1],
 ) -> cython.int:
-    """Fill found (contact,) with whether the diagonal of a tangent, in an order, is a linear one
-    (contact, part, port), but for what is slight (contact,)."""
+    """Fill found (contact,) with whether a contact's tangent is that of a linear contact.
+
+    The diagonal of the tangent, in an order, is compared with a linear one (contact, part, port), but for
+    what is slight (contact,).
+    """
     c: cython.Py_ssize_t
     i: cython.Py_ssize_t
     d: cython.Py_ssize_t
@@ -510,7 +524,7 @@ def linear_contacts(
 @cython.cfunc
 @cython.exceptval(check=False)
 def _dot(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
-    """The scalar product of vectors, in four sums that do not wait for one another."""
+    """Scalar product of two vectors, in four sums that do not wait for one another."""
     n: cython.Py_ssize_t = a.shape[0]
     i: cython.Py_ssize_t = 0
     p: cython.double = 0.0

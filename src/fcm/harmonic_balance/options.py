@@ -13,23 +13,26 @@ from fcm.frozen import Frozen
 
 
 class ExtremeOptions(Frozen):
-    """How the greatest and the least value of a motion over the cycle are found.
+    """Options on how the greatest and the least value of a motion over the cycle are found.
 
     Attributes
     ----------
     samples : int
-        Angles for each period of the highest harmonic, among which extremes are sought.
+        Number of samples for each period of the highest harmonic, from which the search for an extreme
+        starts.
     max_steps : int
-        Of Newton's method from a sample to the extreme.
+        Most Newton steps from a sample to the extreme next to it.
     max_iterations, angle_tolerance : int, float
-        The same from where an extreme was for a motion nearby, at most; and the angle [rad] of the last, at
-        which the value errs by its square.
+        Most Newton steps from the extreme of a motion nearby, and the length [rad] of a step that ends them:
+        the value then errs by its square.
     step_tolerance : float
-        [rad] of the last of the `max_steps`, after which the angle errs by its square.
+        [rad] Length of a Newton step from a sample after which the angle is accepted: it then errs by the
+        square of that step.
     block : int
-        Degrees of freedom whose samples lie in the processor's cache.
+        Number of degrees of freedom that are sampled together, so that their samples stay in the processor's
+        cache.
     many_dofs : int
-        Degrees of freedom from which on sums over modes and waves are BLAS's.
+        Number of degrees of freedom above which sums over modes and waves are left to BLAS.
     """
 
     samples: int = 12
@@ -42,24 +45,29 @@ class ExtremeOptions(Frozen):
 
 
 class SpectrumOptions(Frozen):
-    """Which harmonics of the exact forces are looked at, and at which points.
+    """Options on which harmonics of the exact forces are looked at, and at which points.
 
     Attributes
     ----------
     highest_factor : float
-        Times the highest of a balance that is looked at in any case: to have all is not to be exact.
+        Highest harmonic of the exact forces that is looked at, relative to the highest of the balance, at
+        least.
     few_products : int
-        Modes times ports, up to which a sum over them is faster without BLAS.
+        Number of modes times ports up to which a sum over them is faster without BLAS.
     leading_share : float
-        Part of the greatest share, from which on one that meets a mode leads.
+        Share of a harmonic that meets a mode, relative to the greatest share at that point, above which it
+        leads there.
     point_interval : int
-        Points of a curve from one to the next whose forces are those of all, where there are many.
+        Number of points of a curve from one to the next at which the exact forces are computed, where there
+        are many points.
     least_amplitude : float
-        Part of the greatest amplitude of all degrees of freedom, to which a share is referred at least.
+        Least amplitude that a share is referred to, relative to the greatest amplitude of all degrees of
+        freedom.
     min_further, max_further : int
-        Harmonics of an enriched motion beyond the highest that was balanced: as many again, within these.
+        Least and greatest number of harmonics of an enriched motion beyond the highest balanced one; between
+        them there are as many as that harmonic.
     compiled_ports : int
-        Up to which the equations of one of them are solved without leaving compiled code.
+        Number of ports up to which the equations of one harmonic are solved without leaving compiled code.
     """
 
     highest_factor: float = 1.5
@@ -73,26 +81,26 @@ class SpectrumOptions(Frozen):
 
 
 class DigitOptions(Frozen):
-    """Where digits are counted, and how many are lost.
+    """Options on where digits are counted, and how many are lost.
 
     Attributes
     ----------
     stiff_ratio : float
-        k |G| of a contact from which digits are counted.
+        Ratio k |G| of a contact's stiffness to that of the structure, above which lost digits are counted.
     last_digit : float
-        Relative rounding of a number: that of float64.
+        Relative rounding error of a number: that of float64.
     summed_roundings : float
-        Roundings that come together in a sum.
+        Number of rounding errors that are taken to add up in a sum.
     max_points : int
-        Of a curve of many contacts that are looked at.
+        Most points of a curve at which lost digits are counted, where contacts are many.
     min_unknowns : int
-        From which on contacts are many, of which no inverse is made.
+        Number of unknowns from which on no inverse is made: errors are then estimated from random signs.
     max_signs : int
-        Of errors that are looked at together then.
+        Number of vectors of errors with random signs in that estimate.
     deviation_factor : float
-        Times the root of their mean square, that an error is then taken to be at most.
+        Greatest error in that estimate, relative to the root of the mean square of the errors.
     max_condition : float
-        Condition number of G from which its inverse is no good.
+        Condition number of the receptance matrix G from which on its inverse is not used.
     """
 
     stiff_ratio: float = 1e4
@@ -106,16 +114,20 @@ class DigitOptions(Frozen):
 
 
 class StiffContactOptions(Frozen):
-    """Contacts so stiff that another stiffness is advised, by k |G| of the structure there.
+    """Contacts for which a lower stiffness is advised, by k |G|.
+
+    That is their stiffness relative to the structure's there.
 
     Attributes
     ----------
     max_stiffness : float
-        From here on curves were seen to stop.
+        k |G| above which a lower stiffness is advised: from here on curves were seen to stop.
     rigid_stiffness : float
-        Here a contact is nearly rigid: the root of its inverse is a thousandth.
+        k |G| of the advised stiffness, with which a contact is nearly rigid: the root of its inverse is a
+        thousandth.
     max_stiffness_in_time, rigid_stiffness_in_time : float
-        Both of the motion in time, of which a curve then takes long, and seconds.
+        The two numbers above for motions followed in time, whose curves take far longer with stiffer
+        contacts.
     """
 
     max_stiffness: float = 1e7
@@ -125,18 +137,19 @@ class StiffContactOptions(Frozen):
 
 
 class StaticLoadOptions(Frozen):
-    """How the equilibrium under static loads is found, as their share grows from nearly nothing to 1.
+    """Options on how the equilibrium under static loads is found, as their share grows to 1.
 
     Attributes
     ----------
     initial_share : float
-        Share to begin with.
+        Share of the static loads at which the curve starts.
     min_share_unit : float
-        Shares are measured by themselves, and below this by this.
+        Least unit of the share along the curve: above it the share is measured by itself.
     max_step : float
-        Along the curve of the share.
+        Longest step along the curve of the share, in scaled unknowns.
     balance_tolerance : float
-        Sum of the forces along a rigid-body mode, relative to their sizes: less is none.
+        Sum of the forces along a rigid-body mode, relative to their sizes, below which they are in
+        equilibrium.
     """
 
     initial_share: float = 1e-3
@@ -146,14 +159,16 @@ class StaticLoadOptions(Frozen):
 
 
 class RigidMotionOptions(Frozen):
-    """When a motion is no steady state, or not determined, because of a rigid-body mode.
+    """Options on when a motion is no steady state, or not determined, because of a rigid-body mode.
 
     Attributes
     ----------
     friction_tolerance : float
-        Mean friction on a mode, relative to the amplitude of the contact forces on it: less is none.
+        Mean friction on a mode, relative to the amplitude of the contact forces on it, below which it counts
+        as none.
     load_tolerance : float
-        Mean normal force of a contact, relative to what it would be if the contact were glued: less is none.
+        Mean normal force of a contact, relative to that of the same contact if it were glued, below which it
+        counts as none.
     """
 
     friction_tolerance: float = 1e-9
@@ -161,16 +176,17 @@ class RigidMotionOptions(Frozen):
 
 
 class EvaluationCost(Frozen):
-    """Seconds of an evaluation of the balance, of a core on which numpy's sine takes 10 ns a number.
+    """Seconds that an evaluation of the balance takes, on a core on which numpy's sine takes 10 ns a number.
 
     Attributes
     ----------
     cycle : float
-        For the mean and each harmonic of a contact, which slips.
+        [s] for each contact, times one plus the number of harmonics; the contact slips.
     entry : float
-        For each number of the contacts' tangents and of the matrix: filled, copied, solved with.
+        [s] for each entry of the contacts' tangents and of the matrix, which is filled, copied and solved
+        with.
     system : float
-        For each third power of the unknowns that are solved for: 1/3 multiplication.
+        [s] for each third power of the number of unknowns that are solved for: a third of a multiplication.
     """
 
     cycle: float = 1.4e-6
@@ -179,14 +195,16 @@ class EvaluationCost(Frozen):
 
 
 class WorkOptions(Frozen):
-    """What may be taken for more harmonics, in seconds of the core that `EvaluationCost` is of.
+    """Options on how long more harmonics may take, in seconds of the core of `EvaluationCost`.
 
     Attributes
     ----------
     max_seconds : float
-        [s] of all rounds of more and more harmonics: levels, branches, errors.
+        [s] Most work of all rounds of more and more harmonics: levels, branches and errors. With more, no
+        further round begins.
     max_seconds_repeated : float
-        [s] where they are followed a dozen times, as in a search, or with one harmonic more each time.
+        [s] The same limit where curves are followed a dozen times, as in a search, or with one harmonic more
+        each time.
     """
 
     max_seconds: float = 30.0
@@ -194,14 +212,14 @@ class WorkOptions(Frozen):
 
 
 class WorkspaceOptions(Frozen):
-    """Which workspaces are kept for the next system, as in a sweep.
+    """Options on which workspaces are kept for the next system, as in a sweep.
 
     Attributes
     ----------
     max_size : int
-        Contacts times harmonics, up to which they are.
+        Number of contacts times harmonics up to which a workspace is kept.
     max_count : int
-        Workspaces of a thread.
+        Most workspaces that are kept in each thread; the oldest is dropped.
     """
 
     max_size: int = 20
@@ -209,22 +227,22 @@ class WorkspaceOptions(Frozen):
 
 
 class UnitOptions(Frozen):
-    """In which units displacements are measured along a curve.
+    """Options on the units in which displacements are measured along a curve.
 
     Attributes
     ----------
     own_fraction : float
-        Part of its greatest value so far that the unit of a displacement is at least,
+        Least unit of a displacement, relative to its own greatest value so far.
     greatest_fraction : float
-        and of the greatest of all.
+        Least unit of a displacement, relative to the greatest value of all displacements.
     preload_fraction : float
-        Part of n_0 / k_v, that of a normal displacement is at least. What rounding of the preload makes of it
+        Least unit of a normal displacement, relative to n_0 / k_v. What rounding of the preload makes of it
         is then less than `NewtonOptions.max_rounding`, by a factor of 50.
     min_contacts : int
-        Of so many and more all displacements have one unit. What a single contact does then matters as far as
-        it moves beside the others, and its corners turn the curve by no more than that.
+        Number of contacts from which on all displacements have one unit. What a single contact does then
+        matters as far as it moves beside the others, and its corners turn the curve by no more than that.
     min_level_unit : float
-        A level of the forces is measured by itself, and below this by this.
+        Least unit of the level of the forces: above it the level is measured by itself.
     """
 
     own_fraction: float = 0.1
@@ -235,20 +253,21 @@ class UnitOptions(Frozen):
 
 
 class DampedOptions(Frozen):
-    """Of the damped Newton method of many contacts; steps are relative to the motion.
+    """The damped Newton method for many contacts; lengths of steps are relative to the motion.
 
     Attributes
     ----------
     min_contacts : int
-        From so many on.
+        Number of contacts from which on Newton's method is damped.
     max_steps : int
-        After so many a guess is judged too far away.
+        Number of steps after which a guess is given up as too far away.
     min_damping : float
-        A step that is shortened to this part counts as divergence.
+        Damping factor of a step, down to which it is shortened; below it the method diverges.
     min_factor, max_factor : float
-        By this a step is shortened at most at once, and longer than the one before.
+        Least ratio by which a step is shortened at once, and greatest ratio of one step's damping factor to
+        that before.
     final_step : float
-        After one that is no longer there is none.
+        Length of a step below which it is the last.
     """
 
     min_contacts: int = 12
@@ -260,34 +279,39 @@ class DampedOptions(Frozen):
 
 
 class ProlongationOptions(Frozen):
-    """How a point is moved to the balance of more harmonics; steps are relative to the solution's size.
+    """Options on how a point is moved to the balance of more harmonics.
+
+    Steps are relative to the size of the solution.
 
     Attributes
     ----------
     max_iterations : int
-        Newton steps before a guess is judged too far away.
+        Number of Newton steps after which a guess is given up as too far away.
     final_step : float
-        A step after which there is no further one.
+        Length of a Newton step below which it is the last.
     max_change : float
-        Part of the solution's size, by which a displacement may change.
+        Change of the displacements, relative to the solution's size, beyond which the solution found is
+        another one.
     min_cosine : float
-        Of the angle by which the curve may turn.
+        Cosine between the directions of the two curves, below which the solution lies on another part.
     homotopy_parts : tuple of float
-        Parts of the equations' change, where at once is too much.
+        Parts of the equations' change, in turn, where the change at once is too much.
     costly_size : int
-        Unknowns from which on what is not found at once is given up. Hundreds of ways by parts led nowhere.
+        Number of unknowns from which on no homotopy is tried. Hundreds of them led nowhere.
     chord_size : int
-        Unknowns from which on a Jacobian takes far longer than the residual: those of several contacts.
+        Number of unknowns from which on a Jacobian takes far longer than a residual, and chord steps are
+        always tried.
     chord_step : float
-        A step so short that the Jacobian hardly changes along it.
+        Length of a Newton step below which the same Jacobian is used for the next ones.
     max_chord_steps : int
-        Steps with one Jacobian then.
+        Most Newton steps in a row with the same Jacobian.
     chord_contraction : float
-        Part of the step before, that each of these may be.
+        Length of such a step, relative to the one before, from which on the Jacobian is computed anew.
     first_step_ratio : float
-        Times `max_change`, beyond which the first step of a costly problem counts as divergence.
+        Length of the first Newton step of a costly problem, relative to `max_change`, beyond which it
+        diverges.
     damped : DampedOptions
-        Of many contacts.
+        Options of Newton's method for many contacts.
     """
 
     max_iterations: int = 8
@@ -305,16 +329,18 @@ class ProlongationOptions(Frozen):
 
 
 class HarmonicBalanceOptions(Frozen):
-    """What a `System` is computed with.
+    """All options of the harmonic balance of a `System`.
 
     Attributes
     ----------
     extremes, spectrum, digits, stiff, rest, rigid, cost, work, workspace, units
-        Of the parts, each of a class of its own.
+        Options of the parts, each of a class of its own.
     samples : int
-        Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
+        Number of samples for each period of the highest harmonic, at least, where a contact's own law is
+        sampled over the cycle.
     own_law_changes : float
-        How far the changes of a contact's own law may be from central differences, relative to the greatest.
+        Difference of the changes of a contact's own law from central differences, relative to the greatest of
+        them, above which the law is refused.
     """
 
     extremes: ExtremeOptions = field(default_factory=ExtremeOptions)

@@ -41,7 +41,10 @@ class ForceLevelProblem(Problem):
         self.begin(omega)
 
     def begin(self, omega: float, lightly: bool = False) -> None:
-        """Another curve, at omega; lightly if slight corners are stepped over however few the unknowns."""
+        """Prepare for another curve, at omega.
+
+        lightly: slight corners are stepped over however few the unknowns.
+        """
         self.omega, self.costly = omega, lightly or self.many
         self.balance.largest[:] = 0.0
 
@@ -198,7 +201,7 @@ class Prolongation:
         self.set_harmonics(fewer)
 
     def take_options(self, options: ProlongationOptions) -> None:
-        """Have the tolerances as numbers of C."""
+        """Store the tolerances as numbers of C."""
         self.max_iterations, self.max_chord_steps = options.max_iterations, options.max_chord_steps
         self.final_step, self.max_change, self.min_cosine = (
             options.final_step,
@@ -219,7 +222,7 @@ class Prolongation:
         self.min_factor, self.max_factor = damped.min_factor, damped.max_factor
 
     def set_harmonics(self, fewer: list[int]) -> None:
-        """Points are of a balance of those harmonics; the others are nothing where they are looked from."""
+        """Take points of a balance of the harmonics `fewer`; the others are zero in the guesses."""
         if fewer == self.fewer:
             return
         self.fewer = fewer
@@ -230,7 +233,10 @@ class Prolongation:
         self.guess[:], self.row[:], self.prediction[:] = 0.0, 0.0, 0.0
 
     def reset(self, fewer: list[int], contacts: list[tuple[float, float, float, float]]) -> None:
-        """Points of those harmonics, contacts with other mu, k_u, k_v, n_0, as if nothing were known yet."""
+        """Take points of the harmonics `fewer` and other parameters of the contacts, and forget the rest.
+
+        contacts: their mu, k_u, k_v, n_0.
+        """
         self.set_harmonics(fewer)
         for law, numbers in zip(self.balance.laws, contacts, strict=True):
             law.set_parameters(*numbers)
@@ -241,8 +247,10 @@ class Prolongation:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def predict_from(self, z: cython.double[::1], there: cython.double[::1]) -> cython.int:
-        """Of many contacts: seek the next point as far from its guess as there (unknown + 1,) is from z
-        (fewer unknowns + 1,), and only then from the guess."""
+        """Predict, with many contacts, that the next point is as far from its guess as there is from z.
+
+        z (fewer unknowns + 1,), there (unknown + 1,). If that leads nowhere, the guess itself is tried.
+        """
         i: cython.Py_ssize_t
         if self.damps:
             self.prediction[:] = there
@@ -286,8 +294,10 @@ class Prolongation:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def rebalance(self, z: cython.double[::1], lack: cython.double[::1]) -> cython.bint:
-        """Whether there is a point near z (unknown + 1,) at the same frequency at which so much (unknown,) is
-        lacking in the equations; it is left in newton.z."""
+        """Correct z (unknown + 1,) at the same frequency, where so much is lacking in the equations.
+
+        lack (unknown,); the solution is left in newton.z. False where there is none near.
+        """
         self.prediction[:] = 0.0
         self.hold(z)
         self.homotopy.initial_residual[:] = lack
@@ -308,7 +318,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def report(self) -> cython.bint:
-        """Fill found; true."""
+        """Fill found with frequency and amplitudes of the point; returns true."""
         i: cython.Py_ssize_t
         self.balance.report(self.newton.z, self.still)
         self.found[0] = self.newton.z[self.balance.unknowns]
@@ -319,7 +329,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct(self) -> cython.bint:
-        """Move the guess to the curve: at once, or by parts."""
+        """Move the guess to the curve, at once or by homotopy; whether that leads to a point."""
         if self.correct_at_once(self.guess) and self.keeps_direction():
             return True
         return not self.brief and self.correct_by_homotopy(self.guess) and self.keeps_direction()
@@ -327,8 +337,10 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_at_once(self, guess: cython.double[::1], taken: cython.double = 0.0) -> cython.bint:
-        """Whether Newton's method leads from a guess to a point near it; of what was removed from the
-        equations a part may be taken."""
+        """Whether Newton's method leads from a guess to a point near it.
+
+        taken: the part of what was removed from the equations that is taken away.
+        """
         i: cython.Py_ssize_t
         leads: cython.bint = False
         self.homotopy.subtracted_part = taken
@@ -347,8 +359,11 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_by_homotopy(self, guess: cython.double[::1]) -> cython.bint:
-        """The same where the equations change gradually from those that the guess solves; not of many
-        contacts, of which that leads nowhere that damped steps do not."""
+        """Whether Newton's method leads from a guess to a point as the equations change gradually.
+
+        They begin as those that the guess solves. It is not tried with many contacts: there it leads nowhere
+        that damped steps do not.
+        """
         if self.damps:
             return False
         self.newton.z[:] = guess
@@ -363,8 +378,10 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keeps_direction(self) -> cython.bint:
-        """Whether the curve there goes the same way; of many contacts by what both ways strain the springs in
-        the harmonics that both have."""
+        """Whether the curve of more harmonics has the same direction at the point found.
+
+        With many contacts by what both directions strain the springs in the harmonics that both have.
+        """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         along: cython.double = 0.0
@@ -422,7 +439,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def damped_newton(self) -> cython.bint:
-        """The same of many contacts: no step is longer than the natural monotonicity test allows."""
+        """Damped Newton's method for many contacts: steps obey the natural monotonicity test."""
         i: cython.Py_ssize_t
         count: cython.int
         step: cython.double
@@ -470,8 +487,10 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def chord_steps_converge(self, enough: cython.double, before: cython.double) -> cython.bint:
-        """Whether steps with the Jacobian from before the last, which was so long, come to one so short that
-        it is the last; one that does not shrink as fast is not taken."""
+        """Whether steps with the same Jacobian come to one shorter than enough, which is the last.
+
+        before: the length of the step before. A step that does not shrink as fast as the others is not taken.
+        """
         count: cython.int
         step: cython.double
         newton: Newton = self.newton
@@ -489,7 +508,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(check=False)
     def move(self) -> cython.void:
-        """Take the step that is in delta."""
+        """Add the Newton step that is in delta to the point."""
         i: cython.Py_ssize_t
         for i in range(self.guess.shape[0]):
             self.newton.z[i] += self.newton.scale[i] * self.newton.delta[i]

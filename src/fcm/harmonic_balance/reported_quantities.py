@@ -1,4 +1,4 @@
-"""What is reported along a path: displacements, amplitudes, contact forces."""
+"""Quantities that are reported along a path: displacements, amplitudes, contact forces."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class ReportedQuantities(Frozen):
-    """What is reported along a path, as of a `PointRecord`.
+    """The quantities reported along a path, as of a `PointRecord`.
 
     growth (point, dof): of the amplitude along the path's direction. linear (point,): where no contact slips
     or separates.
@@ -39,12 +39,12 @@ class ReportedQuantities(Frozen):
 
 
 def reported_quantities(system: System, path: Path) -> ReportedQuantities:
-    """What is reported along a path."""
+    """The reported quantities at the points of a path."""
     return reported_at(system, path.z, path.direction)
 
 
 def reported_at(system: System, z: FloatArray, direction: FloatArray) -> ReportedQuantities:
-    """The same of points z with directions there, both (point, unknown + 1)."""
+    """The reported quantities at points z with directions there, both (point, unknown + 1)."""
     points = PointQuantities(system.shared_balance, len(z))
     points.evaluate(z, direction, np.ones(len(z)))
     X = np.empty(np.shape(points.re), dtype=np.complex128)

@@ -204,7 +204,7 @@ class Balance(Problem):
         self.alike = len(laws) >= units.min_contacts
 
     def condense(self, condensed: CondensedSystem) -> None:
-        """Solve the systems of Newton's method, of which there is a rank, by this."""
+        """Solve the systems of Newton's method by a condensed system; only where the problem has a rank."""
         self.condensed, self.answer = condensed, condensed.answer
 
     @cython.ccall
@@ -229,7 +229,10 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def evaluate_contacts(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
-        """The residual and the contacts' forces at z, and their tangents; which else stay as they were."""
+        """Fill the residual and the contacts' forces at z, and the tangents if these are wanted.
+
+        Tangents that are not wanted stay as they were.
+        """
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         self.receptance.at(z[self.unknowns])
@@ -253,7 +256,7 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def slopes(self) -> cython.int:
-        """Derivatives by the frequency."""
+        """Fill the derivatives of the residual by the frequency."""
         if self.condensed is None:
             slope(self.receptance, self.force, self.load, self.by_frequency)
             return 0
@@ -267,7 +270,7 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def contact_forces(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
-        """Forces of the contacts, and tangents, without those counted to the structure."""
+        """Fill forces and tangents of the contacts, without those counted to the structure."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -328,7 +331,10 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def together(self) -> cython.int:
-        """One size of all displacements of many contacts, their mean; else of both directions of sliding."""
+        """Replace the sizes of displacements by common ones.
+
+        With many contacts all have their root mean square; else the two directions of sliding have one.
+        """
         p: cython.Py_ssize_t
         total: cython.double = 0.0
         if self.alike:
@@ -344,7 +350,7 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, z: cython.double[::1]) -> cython.int:
-        """The margins of the contacts, one after the other."""
+        """Fill the margins of the contacts, one after the other."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         at: cython.Py_ssize_t = 0
@@ -367,7 +373,7 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
-        """Amplitudes of the reported degrees of freedom, and their growth.
+        """Fill the amplitudes of the reported degrees of freedom, and their growth.
 
         None of what no result has: where loads act the sum of many displacements may cancel, and its growth
         is that of rounding. Steps would become as short as it varies.
@@ -426,7 +432,7 @@ class Balance(Problem):
 
 @cython.cclass
 class PointQuantities:
-    """`evaluate` points (point, unknown + 1) and directions there, and have what the balance says of each.
+    """Reported quantities at points (point, unknown + 1) with directions, filled by `evaluate`.
 
     re, im (point, harmonic, dof), mean, amplitude, growth (point, dof), force (point, unknown): see
     `Displacements`; the growth is that along the direction. linear (point,): 1 where no contact slips or
@@ -447,7 +453,7 @@ class PointQuantities:
         direction: cython.double[:, ::1],
         level: cython.double[::1],
     ) -> PointQuantities:
-        """The quantities with the forces times level (point,); between two points a signal is seen to."""
+        """Fill the quantities with the forces times level (point,); signals are polled between points."""
         b: Balance = self.balance
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
@@ -478,7 +484,7 @@ def cycles_of(
     state: cython.int[:, ::1],
     contact_loads: cython.double[:, ::1],
 ) -> None:
-    """The cycles of a contact whose motions begin at x[:, first].
+    """Fill states and contact loads for the cycles of a contact whose motions begin at x[:, first].
 
     state (point, piece): beyond the last as before. contact_loads (point, 4): see `Law`.
     """

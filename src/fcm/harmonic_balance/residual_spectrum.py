@@ -1,4 +1,4 @@
-r"""What harmonics that a balance leaves out would do, were there no feedback.
+r"""Effect of the harmonics that a balance leaves out, if there were no feedback.
 
 The exact friction and normal forces of a motion of few harmonics have all harmonics. The response to one of
 them is its coefficient times the receptance of the structure at its frequency,
@@ -75,7 +75,7 @@ class FurtherHarmonics:
         self.reset(system)
 
     def reset(self, system: System) -> None:
-        """A system with the same structure and harmonics, whose contacts may be others."""
+        """Take another system with the same structure and harmonics, whose contacts may differ."""
         self.system = system
         self.laws = system.exact_laws(tuple(range(1, self.highest + 1)))
 
@@ -123,7 +123,7 @@ class FurtherHarmonics:
     def resonances_of_many(
         self, z: npt.NDArray[np.float64], amplitude: npt.NDArray[np.float64]
     ) -> npt.NDArray[np.intp]:
-        """The same of many modes or contacts.
+        """Points of a curve where a harmonic left out meets a mode and leads, with many modes or contacts.
 
         The forces, which change slowly, are those of every so many points, and a harmonic that meets a mode
         is compared with the greatest share there.
@@ -160,7 +160,10 @@ class FurtherHarmonics:
     def is_leading(
         self, z: cython.double[::1], amplitude: cython.double[::1], h: cython.Py_ssize_t
     ) -> cython.bint:
-        """Whether one of the shares at a point is nearly the greatest: none is where contacts are linear."""
+        """Whether the share of harmonic h + 1 at a point is nearly the greatest.
+
+        It is not where contacts are linear.
+        """
         k: cython.Py_ssize_t
         most: cython.double = 0.0
         bent: cython.bint = False
@@ -226,7 +229,7 @@ class FurtherHarmonics:
 def enriched_harmonics(
     harmonics: list[int], options: SpectrumOptions = HARMONIC_BALANCE.spectrum
 ) -> list[int]:
-    """The harmonics of the finer motion: all, and as many again beyond the highest."""
+    """Harmonics of the enriched motion: all up to the highest, and as many again beyond it."""
     highest = max(harmonics)
     further = min(max(highest, options.min_further), options.max_further)
     return list(range(1, highest + further + 1))
@@ -234,7 +237,9 @@ def enriched_harmonics(
 
 @cython.cclass
 class EnrichedMotion:
-    """`at` a point z of the balance fills x, the unknowns of the finer motion.
+    """The motion of a balance enriched by further harmonics, from the exact forces on it.
+
+    `at` a point z of the balance fills x, the unknowns of the enriched motion.
 
     shift is the greatest amplitude that was added to a displacement of a contact, tangential or normal,
     relative to the greatest amplitude of the same displacement. For a small normal motion opens and closes a
@@ -268,7 +273,7 @@ class EnrichedMotion:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def at(self, z: cython.double[::1]) -> cython.int:
-        """Fill x."""
+        """Fill x, the unknowns of the enriched motion, at a point z of the balance."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -328,7 +333,7 @@ class EnrichedMotion:
     @cython.cfunc
     @cython.exceptval(check=False)
     def unknowns(self, z: cython.double[::1]) -> cython.void:
-        """What was balanced, in its places."""
+        """Copy the balanced unknowns z to their places in x."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         h: cython.Py_ssize_t
@@ -346,7 +351,7 @@ class EnrichedMotion:
     @cython.cfunc
     @cython.exceptval(check=False)
     def displace(self, h: cython.Py_ssize_t) -> cython.void:
-        """What the structure answers in one harmonic that was left out, at few ports."""
+        """Fill x with the answer of the structure in one harmonic left out, at few ports."""
         p: cython.Py_ssize_t
         q: cython.Py_ssize_t
         c: cython.Py_ssize_t
@@ -394,7 +399,10 @@ class EnrichedMotion:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def displace_many(self, h: cython.int) -> cython.int:
-        """The same at many ports, by modes where these are fewer."""
+        """Fill x with the answer of the structure in one harmonic left out, at many ports.
+
+        It is computed by modes where these are fewer.
+        """
         receptance, each = self.receptance, self.directions
         at = np.asarray(receptance.wave_at) + receptance.stride * h
         force, K = np.asarray(self.force).ravel(), np.asarray(self.resistance)

@@ -1,4 +1,4 @@
-r"""How far a peak ranges with the residual traction of the contacts that stick all through the cycle.
+r"""Range of a peak with the residual traction of the contacts that stick all through the cycle.
 
 The slider of such a contact may rest anywhere between its slip limits, and a motion belongs to each place.
 The balance is of contacts that begin unstressed. With the mean friction t of those that stick, a peak changes
@@ -34,29 +34,26 @@ _End = tuple[float, float, FloatArray]  # of a stretch of a curve: length, slope
 
 
 class TractionOptions(Frozen):
-    """How the members of a family are come to.
+    """Options on how the members of a family of motions with other residual tractions are found.
 
-    start_distance : float
-        Where the slider begins that comes to rest at its limit, in the size of its motion and its limits.
-    min_change : float
-        Part of the peak, below which what a contact's traction changes of it is nothing.
-    min_factor, max_factor, min_step : float
-        Times a step that the next is, where it led to no motion, and where it did, along the curve and on the
-        way to the limits; and the part of that way below which none does.
-    max_members : int
-        On the way to the limits at most: near a corner of the curve steps may stay as short as they are.
-    max_rounds : int
-        Times that the limits are sought, of the motion and along the derivatives at the member found last.
-    traction_tolerance : float
-        Part of the greatest traction, by which one may miss its limit.
-    stick_tolerance : float
-        Part of its springs' forces, by which those of a contact that always sticks may differ from them.
-    initial_step, max_points, peak_tolerance : float, int, float
-        First length along the curve, points at most, and relative accuracy of the height, of a peak.
-    peak_threshold : float
-        A peak counts to that of another degree of freedom where the amplitude is at least this part of it.
-    max_peaks : int
-        Peaks of a curve that are looked at one by one.
+    start_distance : distance at which the slider begins that comes to rest at its limit, in the size of its
+        motion and its limits.
+    min_change : change of the peak by a contact's traction, relative to the peak, below which it is ignored.
+    min_factor, max_factor, min_step : factor on a step that led to no motion; factor on one that did, along
+        the curve and on the way to the limits; and step relative to that way below which there is no motion.
+    max_members : most members on the way to the limits: near a corner of the curve steps may stay as short as
+        they are.
+    max_rounds : most times that the limits are computed, of the motion and along the derivatives at the
+        member found last.
+    traction_tolerance : distance of a traction from its limit, relative to the greatest traction, that is
+        accepted.
+    stick_tolerance : difference of the forces of a contact from those of its springs, relative to these, up
+        to which it always sticks.
+    initial_step, max_points, peak_tolerance : first length along the curve, most points, and relative
+        accuracy of the height, of a peak.
+    peak_threshold : amplitude relative to the peak of another degree of freedom, from which on a peak counts
+        as that peak, too.
+    max_peaks : most peaks of a curve that are looked at one by one.
     """
 
     start_distance: float = 10.0
@@ -91,14 +88,14 @@ class FixedTractionContact(Law):
         self.without_margins()
 
     def evaluate(self, x: FloatArray, first: int) -> int:
-        """Forces; the tangent is always that of the springs."""
+        """Compute the forces; the tangent is always that of the springs."""
         self.force[:] = self.springs * np.asarray(x)[first : first + self.width]
         self.force[: self.mean.size] = self.mean
         self.force[self.mean.size] += min(self.n_0, 0.0)
         return 0
 
     def mean_from(self, block: FloatArray, start: FloatArray) -> FloatArray | None:
-        """The mean friction force that it keeps which began at a place; None where it slips or opens."""
+        """Mean friction force of a contact that began at a place; None where it slips or opens."""
         self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0, *start.tolist())
         force, spring = np.array(self.kernel.forces), (self.springs * block)[self.directions :]
         off = np.abs(force[self.directions :] - spring).max()
@@ -202,7 +199,9 @@ class _FixedTractionBalance:
     def derivatives(
         self, z: FloatArray, row: FloatArray, ports: npt.NDArray[np.intp]
     ) -> tuple[FloatArray, FloatArray]:
-        """By the mean friction forces at some ports, along a row.
+        """Derivatives of amplitudes and of mean normal displacements by the mean friction at some ports.
+
+        Along a row; (port, dof) of the amplitudes, (port, contact) of the displacements.
 
         Of the amplitudes (port, dof), and of the mean normal displacements (port, contact).
         """
@@ -247,7 +246,7 @@ class _Family:
         self.z, self.row = z, members.begin(z, edge)
 
     def change(self) -> FloatArray:
-        """By how much the amplitudes (dof,) change at most, relative; NaN where no motion was found."""
+        """Greatest relative changes of the amplitudes (dof,); NaN where no motion was found."""
         members = self.members
         nothing = np.full(members.balance.outputs, np.nan)
         base = None if self.row is None else self._top(self.z, self.row)
@@ -352,7 +351,7 @@ class _Family:
         return found
 
     def _reach(self, i: int, z: FloatArray) -> float:
-        """A force that the friction of a contact does not exceed."""
+        """An upper bound of the friction force of a contact."""
         law, layout = self.members.laws[i], self.members.system.layout
         x = np.abs(layout.blocks(z[None])[0, i])
         normal = x[layout.directions - 1] + x[layout.directions :].sum()
@@ -384,7 +383,7 @@ def peak_changes(
     stuck: BoolArray,
     options: TractionOptions = TRACTION,
 ) -> FloatArray:
-    """By how much peaks (dof,) change with residual tractions, relative to each; an estimate, see the module.
+    """Relative changes of peaks (dof,) by residual tractions: an estimate, see the module.
 
     Parameters
     ----------

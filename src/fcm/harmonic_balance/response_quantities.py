@@ -1,4 +1,4 @@
-"""What is reported of the points of traced paths: displacements, loops, states, energies."""
+"""Quantities that are reported of the points of traced paths: displacements, loops, states, energies."""
 
 from __future__ import annotations
 
@@ -42,8 +42,11 @@ class PointRecord(Frozen):
 
 
 class ContactRecord(Frozen):
-    """What contacts do and bear at points: their loops (point, contact, 5), see `loops`; what they do over a
-    cycle (point, contact) and bear (point, contact, 4), see `cycles`."""
+    """Loops, states and loads of the contacts at points.
+
+    loop (point, contact, 5), see `loops`; words (point, contact) and contact_loads (point, contact, 4), see
+    `cycles`.
+    """
 
     loop: FloatArray
     words: npt.NDArray[np.str_]
@@ -57,13 +60,13 @@ class ContactRecord(Frozen):
 
     @classmethod
     def joined(cls, parts: Sequence[ContactRecord]) -> ContactRecord:
-        """The record of the points of several, one after the other."""
+        """The record of the points of several records, one after the other."""
         return cls(
             *(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
         )
 
     def part(self, rows: IntArray) -> ContactRecord:
-        """The record of some points."""
+        """The record of some of the points."""
         return ContactRecord(self.loop[rows], self.words[rows], self.contact_loads[rows])
 
     def with_rows(self, after: IntArray, other: ContactRecord) -> ContactRecord:
@@ -94,8 +97,10 @@ def recorded(
 
 
 def table_errors(system: System, points: PointRecord) -> FloatArray:
-    """By how much (point,) the table's own solutions differ, relative to the unknowns' size: one Newton step
-    of its balance; 0 where no contact slips or separates, or no table is used."""
+    """Relative errors (point,) of the table's own solutions: one Newton step of its balance.
+
+    Relative to the unknowns' size; 0 where no contact slips or separates, or no table is used.
+    """
     error = np.zeros(points.path.size)
     if system.table_balance is None:
         return error
@@ -110,7 +115,7 @@ def table_errors(system: System, points: PointRecord) -> FloatArray:
 
 
 def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """One after the other; one alone is not copied."""
+    """Arrays one after the other in one; a single one is not copied."""
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
@@ -131,7 +136,7 @@ def recorded_at_levels(
 
 
 def loops(system: System, z: FloatArray) -> FloatArray:
-    """(point, contact, 5): n0_bar, b_bar, phi of the fundamental's loop, its a, and the force k_u a."""
+    """Loops of the fundamental (point, contact, 5): n0_bar, b_bar, phi, its a, and the force k_u a."""
     layout, j = system.layout, system.harmonics.index(1)
     normal = layout.directions - 1
     first = layout.directions + layout.stride * j
@@ -158,7 +163,9 @@ def loops(system: System, z: FloatArray) -> FloatArray:
 
 
 def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray[np.str_], FloatArray]:
-    """What each contact does over a cycle, such as "SPEN", (point, contact), and bears, (point, contact, 4).
+    """States of each contact over a cycle, such as "SPEN", (point, contact), and contact loads.
+
+    The loads are (point, contact, 4).
 
     A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE". What
     it bears are the greatest normal and friction force, the way of the slip, and the energy that friction
@@ -190,8 +197,9 @@ def contact_loads_along(system: System, z: FloatArray) -> FloatArray:
 def _solved_contacts(
     system: System, z: FloatArray, contact_loads: FloatArray
 ) -> Iterator[tuple[Contact, npt.NDArray[np.intc]]]:
-    """Each contact and the states of its cycle (point, piece), which the next replaces; contact_loads
-    (contact, point, 4) is filled.
+    """Each contact with the states of its cycle (point, piece); contact_loads (contact, point, 4) is filled.
+
+    The array of states is used again for the next contact.
 
     Without friction nothing is known of a slider, and its way is 0.
     """
@@ -231,5 +239,5 @@ def _without_friction(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
 
 
 def _blocks(system: System, z: FloatArray) -> FloatArray:
-    """Unknowns of each contact, (contact, point, width)."""
+    """Blocks of the unknowns of each contact, (contact, point, width)."""
     return system.layout.blocks(z).swapaxes(0, 1)

@@ -33,9 +33,11 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class PreciseFundamental(NamedTuple):
-    """The fundamental where contacts are stiff: z (unknown + 1,) with it; X (dof,) of the degrees of freedom,
-    of use for those that are no combination of contacts' displacements; and how far the displacements (port,)
-    and (dof,) are off by rounding."""
+    """The fundamental where contacts are stiff, with the digits that can be kept.
+
+    z (unknown + 1,) with it; X (dof,) of the degrees of freedom, of use for those that are no combination of
+    contacts' displacements; and how far the displacements (port,) and (dof,) are off by rounding.
+    """
 
     z: FloatArray
     X: ComplexArray
@@ -147,14 +149,14 @@ class _Forces:
         self.others = linear_of(replace(scene, forces=tuple(others))) if others else None
 
     def on_ports(self, omega: float) -> ComplexArray:
-        """Those along ports (port,)."""
+        """The forces along directions of contacts, by port (port,)."""
         f = np.zeros(self.linear.ports.shape[1], dtype=np.complex128)
         for port, share, force in self.along:
             f[port] += -1j * share * force.amplitude * omega**force.power * np.exp(1j * force.phase)
         return f
 
     def on_modes(self, omega: float) -> ComplexArray:
-        """The others (mode,)."""
+        """The other forces, on the modes (mode,)."""
         if self.others is None:
             return np.zeros(self.linear.natural.size, dtype=np.complex128)
         force: ComplexArray = self.others.force[0] + omega**2 * self.others.square[0]
@@ -162,7 +164,7 @@ class _Forces:
 
 
 def _share(direction: FloatArray, port: FloatArray) -> float:
-    """How much of a port's direction a direction is; 0 if it is another."""
+    """Factor by which a direction is a port's direction; 0 if it is not parallel to it."""
     most = int(np.abs(port).argmax())
     same = port[most] != 0.0 and np.array_equal(direction * port[most], port * direction[most])
     return float(direction[most] / port[most]) if same else 0.0

@@ -59,7 +59,7 @@ class SampledLaw(Law):
         """Take the numbers of the same contact, which the law has not."""
 
     def evaluate(self, x: FloatArray, first: int) -> int:
-        """Forces and tangent."""
+        """Compute forces and tangent from the sampled law."""
         force, change = self._sampled(self._motion(x, first), self.variation)
         self.force[:] = np.einsum("dso,ds->o", self.projection, force)
         self.tangent[:, :] = np.einsum("dso,dsk->ok", self.projection, change)
@@ -67,19 +67,19 @@ class SampledLaw(Law):
         return 0
 
     def probe(self, x: FloatArray, first: int) -> int:
-        """The forces alone."""
+        """Compute the forces alone from the sampled law."""
         force, _ = self._sampled(self._motion(x, first), self.variation[:, :, :1])
         self.force[:] = np.einsum("dso,ds->o", self.projection, force)
         self.nonlinear = True
         return 0
 
     def compute_resistance(self) -> int:
-        """The resistance is the tangent of the means."""
+        """Fill the resistance: the tangent of the means."""
         self.resistance[:, :] = np.asarray(self.tangent)[: self.directions, : self.directions]
         return 0
 
     def cycle(self, x: FloatArray, first: int) -> int:
-        """No states; the greatest forces and the energy, of the samples."""
+        """Fill the contact loads from the samples: greatest forces and energy; there are no states."""
         motion = self._motion(x, first)
         force = self._sampled(motion, self.variation[:, :, :1])[0] + self.rest
         power = force * (self.rate @ np.asarray(x)[first : first + self.width])
@@ -94,7 +94,7 @@ class SampledLaw(Law):
         return np.asarray(self.variation @ block)
 
     def _sampled(self, motion: FloatArray, variation: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What the law says, beyond rest, if it is of use."""
+        """Forces of the law, less those at rest, and their changes; ContactLawError if they are of no use."""
         force, change = (np.asarray(one, dtype=np.float64) for one in self.own.forces(motion, variation))
         if force.shape != motion.shape or change.shape != variation.shape:
             raise ContactLawError(
@@ -107,7 +107,7 @@ class SampledLaw(Law):
 
     @property
     def description(self) -> str:
-        """Which law it is, in a sentence."""
+        """The class of the law and the name of its contact, for a sentence."""
         return f"the law {type(self.own).__name__} of the contact {quoted(self.name)}"
 
 
@@ -130,7 +130,7 @@ def check_own_laws(scene: Scene) -> None:
 
 
 def _off_by(contact: Contact, law: ContactLaw, directions: int) -> float:
-    """The greatest error of its changes at motions of two sizes.
+    """Greatest error of a law's changes at motions of two sizes.
 
     Of each the least of two motions: one may have a sample where the forces have a corner.
     """
@@ -144,7 +144,7 @@ def _off_by(contact: Contact, law: ContactLaw, directions: int) -> float:
 
 
 def _waves(layout: Layout, harmonics: Sequence[int], angle: FloatArray) -> FloatArray:
-    """What each unknown of a contact is over the cycle, in its direction: (direction, sample, unknown)."""
+    """Motion over the cycle by each unknown of a contact alone: (direction, sample, unknown)."""
     found = np.zeros((layout.directions, angle.size, layout.width))
     for d in range(layout.directions):
         found[d, :, d] = 1.0

@@ -40,7 +40,7 @@ NO_EQUILIBRIUM = (
 
 
 class RestError(ValueError):
-    """There is no equilibrium; the message says why."""
+    """No equilibrium under the static loads exists; the message says why."""
 
 
 class Held(Frozen):
@@ -58,7 +58,7 @@ class Held(Frozen):
 
     @classmethod
     def of(cls, system: System) -> Held:
-        """That of a system."""
+        """The coordinates of a system, as `Held`."""
         linear = system.linear
         turn, count = _held_by_friction(linear, system.springs(stuck=True))
         modes = np.hstack(
@@ -121,7 +121,7 @@ class StaticLoadProblem(Problem):
         return 0
 
     def measure(self, z: FloatArray) -> int:
-        """Coordinates by the root mean square of the ports' displacements, the greatest so far."""
+        """Fill the units: of coordinates the greatest root mean square so far of the ports' displacements."""
         y, ports = np.asarray(z)[:-1], self.held.ports
         self.moved = max(self.moved, float(np.sqrt(np.mean((y @ ports) ** 2))))
         motion = np.abs(ports).max(axis=1)
@@ -131,7 +131,7 @@ class StaticLoadProblem(Problem):
         return 0
 
     def bound(self, z: FloatArray) -> int:
-        """Margins."""
+        """Fill the margins of the contacts."""
         self.balance.bound(self._placed(z))
         self.margin[:] = self.balance.margin
         self.kind[:], self.angle[:] = self.balance.kind, self.balance.angle
@@ -149,7 +149,7 @@ class StaticLoadProblem(Problem):
         return bool((np.abs(load - ports @ self.force) <= tolerance * size.max(initial=0.0)).all())
 
     def solved_sign(self) -> float:
-        """The sign of its determinant."""
+        """Sign of the determinant of the Jacobian."""
         return float(self.balance.solved_sign())
 
     def _placed(self, z: FloatArray) -> FloatArray:
@@ -260,7 +260,7 @@ def check_contacts_can_close(system: System) -> None:
 
 
 def _linear(system: System, held: Held, share: float) -> Iterator[FloatArray]:
-    """Coordinates with the contacts as they are without the loads, then all stuck, then all open."""
+    """Linear equilibria: with the contacts as they are without the loads, then all stuck, then all open."""
     n_0 = np.array([c.n_0 for c in system.scene.contacts])
     d = system.layout.directions
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):

@@ -16,7 +16,7 @@ from fcm.model.scene import FloatArray
 
 
 def too_stiff(system: System, moves: bool = False) -> str:
-    """Which contact's stiffness leaves no digits, and what to take instead; empty if none does.
+    """Sentence on a contact whose stiffness leaves no digits, and what to take instead; empty without any.
 
     moves: whether what is said is of the motion in time, which has the digits, but of which every vibration
     on a contact that sticks is followed.
@@ -46,7 +46,7 @@ def too_stiff(system: System, moves: bool = False) -> str:
 
 
 def _least_receptance(system: System) -> FloatArray:
-    """|G| of each port in its own direction, the least at the ends of the range."""
+    """Receptances |G| of each port in its own direction, the least at the ends of the range."""
     receptance, found = system.shared_balance.receptance, []
     for omega in system.scene.frequency_range:
         receptance.at(omega)

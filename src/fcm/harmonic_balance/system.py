@@ -45,7 +45,7 @@ Options = TypeVar("Options")
 
 
 class System(Frozen):
-    """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
+    """A scene with its linear structure, and the harmonics that are balanced, the first of which is 1.
 
     The harmonics of its forces are balanced whatever harmonics are asked for.
 
@@ -76,7 +76,7 @@ class System(Frozen):
         object.__setattr__(self, "coefficients", ClosedForm() if self.table is None else self.table.law())
 
     def of(self, scene: Scene) -> System:
-        """The same balance of another scene."""
+        """A balance of another scene with the same harmonics and options."""
         return System(
             scene,
             self.harmonics,
@@ -93,7 +93,7 @@ class System(Frozen):
         return next(given, default)
 
     def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
-        """The same with other harmonics."""
+        """The system with other harmonics."""
         return self._with(harmonics=self._with_driven(harmonics))
 
     def _with_driven(self, harmonics: tuple[int, ...]) -> tuple[int, ...]:
@@ -116,7 +116,7 @@ class System(Frozen):
 
     @cached_property
     def normalised(self) -> System:
-        """The same with all preloads divided by the greatest."""
+        """The system with all preloads divided by the greatest."""
         contacts = tuple(replace(one, n_0=one.n_0 / self.preload_unit) for one in self.scene.contacts)
         own, work = self.work, WorkCount()  # which those that share the curve are charged with
         work.poll = lambda: own.poll()  # of now, which may be another later
@@ -144,7 +144,7 @@ class System(Frozen):
         return self.layout_of(self.harmonics)
 
     def layout_of(self, harmonics: tuple[int, ...]) -> Layout:
-        """The same with other harmonics."""
+        """The layout of the unknowns for other harmonics."""
         return layout_of(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
 
     def extended(self, z: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
@@ -154,7 +154,7 @@ class System(Frozen):
 
     @cached_property
     def _at_rest(self) -> AtRest:
-        """See `harmonic_balance.static_equilibrium`."""
+        """The equilibrium under static loads, see `harmonic_balance.static_equilibrium`."""
         from fcm.harmonic_balance.static_equilibrium import at_rest  # which balances a system
 
         return at_rest(self)
@@ -178,17 +178,17 @@ class System(Frozen):
 
     @property
     def shared_balance(self) -> Balance:
-        """A balance for what looks at points or follows curves, one after the other."""
+        """A balance that is shared by whatever looks at points or follows curves, one after the other."""
         return self._workspace.reset_for(self).balance
 
     @property
     def shared_stepper(self) -> Stepper:
-        """The stepper of `shared_balance`, for whoever follows it."""
+        """The stepper of `shared_balance`."""
         return self._workspace.reset_for(self).stepper
 
     @property
     def level_problem(self) -> tuple[ForceLevelProblem, Stepper]:
-        """`shared_balance` in the level of its forces."""
+        """The `shared_balance` as a problem in the level of its forces."""
         return self._workspace.reset_for(self).level_problem
 
     @cached_property
@@ -197,7 +197,7 @@ class System(Frozen):
 
     @contextmanager
     def exclusive_balance(self) -> Iterator[None]:
-        """While a curve is followed no other system takes its balance, as one of a progress would.
+        """Context in which no other system takes this balance, as one of a progress would.
 
         Nor does one after an error, in the middle of which it was left: it is forgotten.
         """
@@ -211,14 +211,17 @@ class System(Frozen):
         mine.exclusive = before
 
     def reset_balance(self) -> Balance:
-        """`shared_balance` at the level 1, as if nothing had been followed yet."""
+        """The `shared_balance` at the level 1, as if nothing had been followed yet."""
         balance = self.shared_balance
         balance.largest[:] = 0.0
         balance.load = 1.0
         return balance
 
     def new_balance(self, loaded: bool = True) -> Balance:
-        """A problem of its own, to be followed in the frequency; loaded: with the static loads."""
+        """A new balance, to be followed in the frequency.
+
+        loaded: whether with the static loads.
+        """
         low, high = self.scene.frequency_range
         linear = self.linear
         rank = condensed_size(self, linear.ports.shape[1], len(self.harmonics))
@@ -247,7 +250,7 @@ class System(Frozen):
 
     @cached_property
     def modal_compliance(self) -> FloatArray:
-        """How much each mode (mode,) yields beside the contacts; none of a ring's."""
+        """Compliance of each mode (mode,) beside the contacts; empty for a ring."""
         linear, highest = self.linear, max(self.harmonics) * self.scene.frequency_range[1]
         if type(linear) is not Linear:
             return np.zeros(0)
@@ -256,7 +259,7 @@ class System(Frozen):
 
     @cached_property
     def table_balance(self) -> System | None:
-        """The balance by the table, whose solutions are told how far they are off; None without a table.
+        """The system that is balanced by the table, to tell how far its solutions are off; None without one.
 
         Where solving takes the time the closed form costs no more than a table, and none is looked at.
         """
@@ -267,22 +270,22 @@ class System(Frozen):
 
     @property
     def _of_one_harmonic(self) -> bool:
-        """Whether all contacts have a law of one harmonic."""
+        """Whether the law of one harmonic holds for all contacts: on a line, without own laws."""
         return not self.scene.planar and not self.own_laws
 
     def laws(self) -> list[Law]:
-        """The contacts; those on a line with one harmonic in closed form, or by the table."""
+        """Contact laws of the balance; those on a line with one harmonic in closed form, or by the table."""
         if self.harmonics != (1,) or not self._of_one_harmonic:
             return self.exact_laws(self.harmonics)
         of = ClosedForm() if self.corrected else self.coefficients
         return [SingleHarmonicLaw(of, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
-        """The contacts with the exact forces of the motion, of which some harmonics are asked for."""
+        """Contact laws with the exact forces of the motion, in some harmonics."""
         return self.exact_laws_of(self.harmonics, outputs)
 
     def exact_laws_of(self, harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> list[Law]:
-        """The same of a motion with other harmonics."""
+        """Contact laws with the exact forces of a motion with other harmonics."""
         found: list[Law] = []
         if self.scene.planar:  # one on a line is one in whose second direction nothing moves
             in_plane = planar_contact(harmonics, outputs)
@@ -299,14 +302,14 @@ class System(Frozen):
         return found
 
     def springs(self, stuck: bool) -> FloatArray:
-        """Stiffnesses of all contacts, (port,): all stuck, or all open."""
+        """Stiffnesses of all contacts (port,), all stuck or all open."""
         along = self.scene.directions_of_contact - 1
         each = [(*[c.k_u if c.mu > 0.0 else 0.0] * along, c.k_v) for c in self.scene.contacts]
         return np.array(each).ravel() * float(stuck)
 
 
 class _Workspace:
-    """A balance and its fronts, for one after the other of the systems whose contacts alone are others.
+    """A balance and its fronts, shared in turn by systems that differ in their contacts alone.
 
     exclusive: no other system takes it now.
     """
@@ -315,7 +318,7 @@ class _Workspace:
         self.system, self.balance, self.exclusive = system, system.new_balance(), False
 
     def reset_for(self, system: System) -> _Workspace:
-        """As if it were new."""
+        """Take a system with other contacts, and forget what is known."""
         if self.system is not system:
             self.system, self.balance.laws = system, system.laws()
             system.reset_balance()
@@ -347,7 +350,7 @@ _WORKSPACES = _WorkspaceCache()
 
 
 def _workspace_of(system: System) -> _Workspace:
-    """For a system: if it is small, that of one before it, as in a sweep."""
+    """The workspace for a system: if it is small, that of a system before it, as in a sweep."""
     scene, kept = system.scene, _WORKSPACES.by_key
     large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.max_size
     if scene.ring is not None or scene.loads or system.own_laws or large:
@@ -364,7 +367,7 @@ def _workspace_of(system: System) -> _Workspace:
 
 
 def _displacements(linear: Linear, receptance: Receptance, options: ExtremeOptions) -> Displacements:
-    """What is reported of the structure that a receptance is of."""
+    """The displacements of the structure that a receptance belongs to."""
     if not (isinstance(linear, RingLinear) and isinstance(receptance, TravellingReceptance)):
         return Displacements(receptance, linear, options)
     shapes = [linear.wave(int(h)).dofs for h in receptance.harmonics]

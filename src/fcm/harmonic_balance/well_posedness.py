@@ -105,8 +105,10 @@ def _friction_margin(system: System, x: FloatArray, force: FloatArray) -> FloatA
 
 
 def _balanced(ports: FloatArray, push: FloatArray, weight: FloatArray) -> tuple[FloatArray, float]:
-    """What is left of a push (mode,) once contacts take it, by their weights (contact,) and ports
-    (mode, contact, direction); and the greatest friction that one of them takes, over its weight."""
+    """The rest of a push (mode,) once contacts take it, and the greatest friction that one of them takes.
+
+    By their weights (contact,) and ports (mode, contact, direction); the friction is relative to its weight.
+    """
     ways = (ports * weight[:, None]).reshape(len(push), -1)
     taken = np.linalg.lstsq(ways, push, rcond=None)[0]
     share = np.linalg.norm(taken.reshape(len(weight), -1), axis=1)

@@ -1,4 +1,4 @@
-"""What has been calculated with a system, in seconds of `cost_model`, and how much may be."""
+"""Count of the work done with a system, in seconds of `cost_model`, and its limit."""
 
 from __future__ import annotations
 
@@ -9,18 +9,21 @@ import numpy as np
 
 
 class WorkLimitError(Exception):
-    """More was calculated than may be."""
+    """The work of a system has exceeded its limit."""
 
 
 class WorkCount:
-    """Of a system and all that are made from it with other harmonics; poll is called now and then."""
+    """Work of a system, and of all that are made from it with other harmonics.
+
+    poll is called now and then.
+    """
 
     def __init__(self) -> None:
         self.seconds, self.limit = 0.0, np.inf
         self.poll: Callable[[], object] = int
 
     def add(self, seconds: float) -> None:
-        """So much more; `WorkLimitError` where that is more than may be."""
+        """Add seconds of work; raises `WorkLimitError` if that exceeds the limit."""
         self.poll()
         self.seconds += seconds
         if self.seconds > self.limit:
@@ -28,7 +31,7 @@ class WorkCount:
 
     @contextmanager
     def limited_to(self, seconds: float) -> Iterator[None]:
-        """No more than this, with all that was calculated before."""
+        """Context in which the work, with all that was done before, may not exceed a limit."""
         before, self.limit = self.limit, min(self.limit, seconds)
         try:
             yield

@@ -23,7 +23,7 @@ _KIND = re.compile("(" + "|".join(sorted(_SHAPES, key=len, reverse=True)) + r")[
 
 
 class _Deck:
-    """What has been read of a deck so far."""
+    """Contents of a deck read so far."""
 
     def __init__(self) -> None:
         self.xyz: dict[int, list[float]] = {}
@@ -68,7 +68,7 @@ def read_abaqus(path: Path) -> Mesh:
 def _blocks(
     path: Path, within: tuple[Path, ...] = ()
 ) -> Iterator[tuple[str, dict[str, str], str, list[list[str]]]]:
-    """Each keyword with its options, where it stands, and the words of the lines behind it.
+    """Yields each keyword with its options, its line, and the words of its data lines.
 
     Remarks may be in any coding; a number is not. `within` are the files that include this one.
     """

@@ -1,4 +1,4 @@
-"""What a mesh is here: where its nodes are, what elements join them, and sets of them."""
+"""Mesh of a structure: places of its nodes, elements that join them, and named sets."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ IntArray = npt.NDArray[np.intp]
 
 
 class MeshError(ValueError):
-    """What is wrong with a file of a mesh, in a sentence for each fault, without the file's name."""
+    """Raised for a faulty mesh file; the message has a sentence for each fault, without the file's name."""
 
     def __init__(self, *faults: str) -> None:
         self.faults = faults

@@ -104,7 +104,7 @@ def _by_entity(words: list[str]) -> tuple[list[int], list[list[float]]]:
 
 
 def _with_cells(path: Path, nodes: list[int], xyz: list[list[float]], kind: str) -> Mesh:
-    """With the elements that meshio finds."""
+    """Mesh of given nodes with the elements that meshio finds."""
     own: FloatArray = np.array(xyz, dtype=np.float64).reshape(-1, 3)
     read = _read(path, kind)
     if read.points.shape != own.shape or not np.array_equal(read.points, own):

@@ -13,7 +13,7 @@ MOST_NAMED = 5  # nodes in a sentence
 
 
 class PairingOptions(Frozen):
-    """What counts as nothing when nodes are paired and planes are fitted.
+    """Tolerances for pairing nodes and fitting planes.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Paired(Frozen):
 
 
 def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: float) -> Paired:
-    """Each node of a set with the nearest node of another, within a tolerance [length].
+    """Pairs each node of a set with the nearest node of another set, within a tolerance [length].
 
     Raises
     ------
@@ -94,7 +94,7 @@ def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: floa
 def nearest_partners(
     mesh: Mesh, pairs: Sequence[tuple[int, int]], options: PairingOptions = PAIRING
 ) -> list[int | None]:
-    """Of each pair the node that is nearer to its first node than its second; None where none is.
+    """Node that is nearer to a pair's first node than its second one, for each pair; None if there is none.
 
     It is looked for among the second nodes of all pairs.
 
@@ -155,7 +155,7 @@ def fitted_plane(points: FloatArray, options: PairingOptions = PAIRING) -> Plane
 
 
 def across(normal: FloatArray, options: PairingOptions = PAIRING) -> tuple[FloatArray, FloatArray]:
-    """Two unit directions (3,) at right angles to a normal and to each other.
+    """Two unit vectors (3,) orthogonal to a normal and to each other.
 
     The first is nearest to one of the axes, the second is normal x first.
 
@@ -240,7 +240,7 @@ def _middle(mesh: Mesh, places: IntArray) -> FloatArray | None:
 
 
 def _nodes(nodes: Sequence[int], verb: bool = True) -> str:
-    """As "node 3 is", "nodes 3, 4 are"; without the verb "nodes 3, 4".
+    """Nodes in words, as "node 3 is", "nodes 3, 4 are"; without the verb "nodes 3, 4".
 
     >>> _nodes([3]), _nodes([3, 4]), _nodes([3, 4], verb=False)
     ('node 3 is', 'nodes 3, 4 are', 'nodes 3, 4')

@@ -1,4 +1,4 @@
-"""Where the pairs of nodes of a contact are, for pictures."""
+"""Places of the node pairs of a contact, for pictures."""
 
 from __future__ import annotations
 

@@ -65,12 +65,12 @@ class Ring(Frozen):
         return self.sectors // gcd(self.engine_order, self.sectors)
 
     def at(self, used: npt.NDArray[np.bool_]) -> Ring:
-        """The same at some of the degrees of freedom."""
+        """The ring restricted to some of the degrees of freedom."""
         return replace(self, shapes=self.shapes[:, used])
 
 
 def with_own(dofs: tuple[str, ...], used: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Those used of the degrees of freedom, and a sector's own for those of the next, which are its shapes.
+    """Mask of the used degrees of freedom, with a sector's own added for each used one of the next sector.
 
     >>> with_own(("tip", "root", "next.tip", "next.root"), np.array([False, False, True, False])).tolist()
     [True, False, True, False]

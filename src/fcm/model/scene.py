@@ -40,7 +40,7 @@ class Modal(Frozen):
     complete: bool = False  # whether it is known that there are no others
 
     def at(self, used: npt.NDArray[np.bool_]) -> Modal:
-        """The same modes at some of the degrees of freedom."""
+        """The modes restricted to some of the degrees of freedom."""
         dofs = tuple(name for name, one in zip(self.dofs, used, strict=True) if one)
         return replace(self, dofs=dofs, shapes=self.shapes[:, used])
 
@@ -63,13 +63,13 @@ class Contact(Frozen):
 
     @property
     def directions(self) -> tuple[FloatArray, ...]:
-        """Those along which it slides, and the normal."""
+        """Directions of the contact: those along which it slides, then the normal."""
         if self.second is None:
             return self.tangential, self.normal
         return self.tangential, self.second, self.normal
 
     def at(self, used: npt.NDArray[np.bool_]) -> Contact:
-        """The same at some of the degrees of freedom."""
+        """The contact restricted to some of the degrees of freedom."""
         second = None if self.second is None else self.second[used]
         return replace(self, tangential=self.tangential[used], second=second, normal=self.normal[used])
 
@@ -97,7 +97,7 @@ class Load(Frozen):
 
 
 class Phase(Frozen):
-    """One phase of a time simulation."""
+    """One phase of a schedule: a frequency held for some cycles."""
 
     frequency: float  # [rad/s]
     cycles: float
@@ -122,7 +122,7 @@ class Held(Frozen):
 
 
 class Aim(Frozen):
-    """What is to be least: the peak of a degree of freedom, or its greatest amplitude at the ends as well."""
+    """Quantity to minimise: the peak of a degree of freedom, or its greatest amplitude including the ends."""
 
     dof: str
     ends: bool = False
@@ -159,17 +159,17 @@ class Measured(Frozen):
 
     @property
     def points(self) -> int:
-        """How many there are."""
+        """Number of measured points."""
         return self.frequency.size
 
     @property
     def components(self) -> int:
-        """Residuals of each."""
+        """Number of residuals of each measured point."""
         return 3 if self.phase is not None else 2
 
     @property
     def values(self) -> int:
-        """How many were measured: of the components of a response its frequencies were chosen."""
+        """Number of measured values; the frequencies of a response were chosen, and are not counted."""
         return self.points * (self.components if self.damping is not None else self.components - 1)
 
 
@@ -193,7 +193,7 @@ class SweptKey(Protocol):
 
 
 class Source(Protocol):
-    """What a scene was made of, so that any number of it can be given another value; `fcm.scene.draft`."""
+    """Protocol of what a scene was made of, so that any of its numbers can be changed; `fcm.scene.draft`."""
 
     @property
     def parts(self) -> dict[str, Any]: ...
@@ -207,10 +207,10 @@ class Source(Protocol):
         """The scene with swept values, and then numbers at addresses; fix: it is then made of these."""
 
     def fixed(self, scene: Scene) -> Source:
-        """What a curve of the scene was made of, with its swept values."""
+        """The source of a curve of the scene, with its swept values in place."""
 
     def at(self, used: npt.NDArray[np.bool_]) -> Source:
-        """The same at some of the degrees of freedom."""
+        """The source restricted to some of the degrees of freedom."""
 
 
 class Scene(Frozen):
@@ -382,7 +382,7 @@ class Scene(Frozen):
 
     @property
     def directions_of_contact(self) -> int:
-        """In how many directions each contact moves, along its normal too.
+        """Number of directions of each contact, including its normal.
 
         Beside one in a plane those on a line have a second direction as well, in which nothing moves.
         """
@@ -393,7 +393,7 @@ class Scene(Frozen):
         return [*self.directions_of_contacts(), *self.pushes()]
 
     def directions_of_contacts(self) -> list[FloatArray]:
-        """Those of the contacts, each (dof,), as many of each as `directions_of_contact`."""
+        """Directions (dof,) of all contacts, `directions_of_contact` for each."""
         if not self.planar:
             return [one for contact in self.contacts for one in contact.directions]
         still = np.zeros(len(self.modal.dofs))

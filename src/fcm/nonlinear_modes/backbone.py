@@ -22,7 +22,7 @@ from fcm.scene.options import LIMITS
 
 
 class ModeError(ValueError):
-    """There is no such mode; the message says which there are."""
+    """Raised for a mode that does not exist; the message says which there are."""
 
 
 class Mode(Frozen):
@@ -138,7 +138,7 @@ def mode_at(system: System, problem: AutonomousProblem, path: Path) -> Mode:
 def damping_rounding(
     system: System, omega: FloatArray, Q: ComplexArray, options: NonlinearModeOptions = NONLINEAR_MODE
 ) -> FloatArray:
-    """Up to which damping ratio there is none, beside rounding, (point,).
+    """Damping ratios (point,) that are no more than rounding.
 
     The work of a cycle is what is left of forces of the stiffness, omega^2, and of the contacts' springs:
     of their sum so many last digits, over 2 omega^2.

@@ -41,7 +41,10 @@ AMPLITUDE_UNIT = float(np.log(10.0))  # unit of the parameter
 
 
 class Guess(Frozen):
-    """Where a mode is sought: modal amplitudes (mode,), frequency, damping, modes that it may come near."""
+    """Initial guess of a mode: modal amplitudes Q (mode,), frequency and damping.
+
+    `kept` are the modes that it may come near.
+    """
 
     Q: FloatArray
     omega: float
@@ -50,7 +53,10 @@ class Guess(Frozen):
 
 
 class Motion(Frozen):
-    """Of a point: a, omega, D, modal amplitudes over a: from rest (mode,), harmonics (harmonic, mode)."""
+    """Motion at a point of a mode: a, omega, D, and modal amplitudes over a.
+
+    These are at rest, `mean` (mode,), and harmonics Q (harmonic, mode).
+    """
 
     amplitude: float
     omega: float
@@ -227,7 +233,7 @@ class AutonomousProblem(Problem):
         return 0
 
     def report(self, z: Any, direction: Any) -> int:
-        """Damping and frequency."""
+        """Reports the damping and the frequency with their growth along the curve."""
         omega = self.guess.omega
         self.output[0], self.growth[0] = self.units.damping_offset + abs(z[self.n - 1]), direction[self.n - 1]
         self.output[1], self.growth[1] = z[self.n - 2] / omega, direction[self.n - 2] / omega

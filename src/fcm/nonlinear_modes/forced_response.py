@@ -21,7 +21,7 @@ from fcm.nonlinear_modes.backbone import Mode, mode_at
 
 
 def modal_force(mode: Mode) -> FloatArray:
-    """What the scene's forces do on the mode, p at level 1, (point,); with the mode's own omega."""
+    """Modal force p (point,) of the scene's forces at level 1, at the mode's own omega."""
     first, dofs = mode.system.harmonics.index(1), mode.system.linear.dofs
     total = np.zeros(mode.omega.size, dtype=np.complex128)
     for force in mode.system.scene.forces:
@@ -81,7 +81,7 @@ def _where(mode: Mode, quantity: Callable[[Mode], FloatArray], value: float) -> 
 
 
 def _between(mode: Mode, i: int, quantity: Callable[[Mode], FloatArray], value: float) -> FloatArray | None:
-    """Where a quantity has a value, between a point and the next."""
+    """Point of the mode between two neighbours at which a quantity has a value; None if there is none."""
     curve = Segment(mode.problem, mode.path, i)
 
     def off(part: float) -> float:

@@ -12,16 +12,17 @@ from fcm.frozen import Frozen
 
 
 class LinearModeOptions(Frozen):
-    """Where a mode begins.
+    """Options for the linear start of a mode.
 
     Attributes
     ----------
     rigid_tolerance : float
-        Part of the greatest square of a frequency: rigid-body modes are below.
+        Square of a frequency, relative to the greatest, up to which the mode counts as a rigid-body mode.
     contact_shares : tuple of float
-        Shares of its springs that a contact which just touches may have in the mean: one guess for each.
+        Mean shares of its springs that a contact which just touches may have: one guess of the mode for each.
     frequency_ratio : float
-        Ratio of frequencies: modes this near to what the motion may come to are unknowns.
+        Ratio of a mode's frequency to the frequencies the motion may reach, up to which the mode's amplitude
+        is an unknown.
     """
 
     rigid_tolerance: float = 1e-12
@@ -35,14 +36,15 @@ class ModeUnitOptions(Frozen):
     Attributes
     ----------
     own_fraction, greatest_fraction : float
-        Parts of its own greatest size so far, and of the greatest of all, that the unit of a displacement is
-        at least.
+        Least unit of a displacement, relative to its own greatest size so far, and relative to the greatest
+        size of all.
     damping : float
         Unit of the damping ratio.
     damping_offset : float
-        Added to the damping ratio where its change is judged: that of nearly nothing is rounding.
+        Number added to the damping ratio where its relative change is judged: a change of nearly nothing is
+        rounding.
     max_log_amplitude : float
-        ln a, beyond which nothing is calculated.
+        Size of ln a beyond which the amplitude is not computed, but that of this limit.
     """
 
     own_fraction: float = 0.1
@@ -53,7 +55,9 @@ class ModeUnitOptions(Frozen):
 
 
 class ManyContactsOptions(Frozen):
-    """How a mode of many contacts is followed: by steps of nearly ln a, past the corners of single contacts.
+    """Options on how a mode of many contacts is followed.
+
+    It takes steps of nearly ln a, past the corners of single contacts.
 
     Each contact that begins to slip turns its mean displacement like a root. Most of them turn frequency and
     damping by nothing that matters.
@@ -61,9 +65,9 @@ class ManyContactsOptions(Frozen):
     Attributes
     ----------
     min_contacts : int
-        Contacts from which on no corner is looked for,
+        Number of contacts from which on no corner is looked for.
     unit_factor : float
-        and the units of all unknowns but ln a are so many times as large.
+        Factor by which the units of all unknowns but ln a are then larger.
     """
 
     min_contacts: int = 16
@@ -71,20 +75,23 @@ class ManyContactsOptions(Frozen):
 
 
 class RestartOptions(Frozen):
-    """How a mode is taken up again beyond a corner where its steps make no progress.
+    """Options on how a mode is taken up again beyond a corner where its steps make no progress.
 
     Attributes
     ----------
     max_restarts : int
-        Restarts of a mode.
+        Most restarts of a mode.
     max_reports, min_progress : int, float
-        Reports of progress, of 16 steps each, within which ln a has to move by that part of its span.
+        Most reports in a row, of 16 steps each, without progress; and the change of ln a from one report to
+        the next, relative to its span, below which there is none.
     end_fraction : float
-        Part of the way to where steps make no progress, by which the part before ends short of that.
+        Distance of the end of the first part from where steps make no progress, relative to the way to there.
     restart_lengths : tuple of float
-        Of the unit of ln a, by which the mode is taken up further on: the first that leads to a solution,
+        Distances in ln a, in its unit, at which the mode is taken up again, in turn, until a solution is
+        found.
     max_distance_ratio : float
-        which is no further away than so many times as much: another is none of this mode.
+        Distance of that solution from its guess, relative to the distance in ln a, from which on it is none
+        of this mode.
     """
 
     max_restarts: int = 12
@@ -96,31 +103,32 @@ class RestartOptions(Frozen):
 
 
 class RoundingOptions(Frozen):
-    """What of the damping is rounding.
+    """Options on the rounding of the damping ratio.
 
     Attributes
     ----------
     last_digits : float
-        Units of the last digit of float64 that a sum of forces may be off.
+        Error of a sum of forces, in units of the last digit of float64.
     """
 
     last_digits: float = 100.0
 
 
 class TruncationOptions(Frozen):
-    """At which points of a mode the error by the harmonics left out is estimated.
+    """Options on the points of a mode at which the error by the harmonics left out is estimated.
 
     Attributes
     ----------
     many_unknowns : int
-        Unknowns with twice as many harmonics, from which on it is estimated at some of them, evenly
-        spread, of which the last is one:
+        Number of unknowns with twice as many harmonics, from which on the error is estimated only at some
+        points, evenly spread, with the last one among them.
     min_points : int
-        at so many of them or more,
+        Least number of these points.
     time_fraction : float
-        as many as take this part of the time of the mode, which grows as the cube of the unknowns.
+        Time for these points, relative to that of the mode; it grows as the cube of the unknowns and decides
+        how many there are.
     damping_floor : float
-        Damping ratio: errors of a smaller one are relative to this.
+        Damping ratio that the error of a smaller one is referred to.
     """
 
     many_unknowns: int = 500
@@ -130,16 +138,17 @@ class TruncationOptions(Frozen):
 
 
 class NonlinearModeOptions(Frozen):
-    """How a nonlinear mode is found, followed and judged.
+    """Options on how a nonlinear mode is found, followed and judged.
 
     Attributes
     ----------
     linear, units, many, restart, rounding, truncation
-        Of the parts, each of a class of its own.
+        Options of the parts, each of a class of its own.
     resonance : float
-        Part of a step along the mode, to which a resonance is found.
+        Error of the place of a resonance, relative to the step along the mode.
     same_end : float
-        Relative: what is sought is at an end of the mode where its value there is as near.
+        Relative difference of a value from that at an end of the mode, up to which the point sought is that
+        end.
     """
 
     linear: LinearModeOptions = field(default_factory=LinearModeOptions)

@@ -18,7 +18,7 @@ from fcm.nonlinear_modes.options import NONLINEAR_MODE, RestartOptions
 
 
 class _StuckError(Exception):
-    """The steps make no progress."""
+    """Raised when the steps make no progress."""
 
 
 def follow_past_corners(

@@ -40,7 +40,7 @@ QUANTITIES = {
 
 
 class Mark(NamedTuple):
-    """One run: processor time [s], error, whether that is only a limit, whether its curves are complete."""
+    """One run: processor time [s], error, whether this is only a limit, whether its curves are complete."""
 
     seconds: float
     error: float
@@ -58,7 +58,7 @@ class Panel(Frozen):
 
 
 class Accuracy(Frozen):
-    """What a picture shows."""
+    """Contents of a picture of accuracy over cost."""
 
     title: str
     quantity: str
@@ -104,7 +104,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
 
 
 def _number(value: Any) -> float:
-    """A time, an error or a step."""
+    """A time, an error or a step read from a file, checked to be a plausible number."""
     number = float(value)
     if not 0.0 <= number <= READ.max_bytes:
         raise ValueError(f"it holds {number:g} in the place of a time, an error or a step")

@@ -26,7 +26,7 @@ _NUMBER = (0.12, 0.01, 0.045)  # of diameters beside one, and of the axis below 
 
 
 class Ring(Frozen):
-    """What is drawn, in the scene's unit of frequency."""
+    """Contents of a Campbell diagram of a ring, in the scene's unit of frequency."""
 
     title: str
     sectors: int
@@ -70,7 +70,7 @@ def draw_campbell(ring: Ring) -> Figure:
 
 
 def _title(ring: Ring) -> str:
-    """What is drawn, and of how many engine orders some are."""
+    """Title of the diagram; tells how many of the engine orders are shown."""
     count = len(ring.engine_orders)
     text = f"{ring.sectors} sectors"
     return (
@@ -81,7 +81,7 @@ def _title(ring: Ring) -> str:
 
 
 def _top(ring: Ring) -> float:
-    """Where the frequency axis ends: above the modes that are of interest."""
+    """Upper end of the frequency axis, above the modes of interest."""
     end = 0.0 if ring.span is None else ring.span[1]
     limit = LAYOUT.campbell_top * end if end else np.inf
     every = np.concatenate((*ring.opened, *ring.stuck))
@@ -102,7 +102,7 @@ def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatA
 
 
 def _orders(axes: Axes, ring: Ring, top: float) -> None:
-    """For each engine order where its harmonics are, and the line of its highest speed; if alone, of both.
+    """Draws each engine order's harmonics and the line of its highest speed; if alone, of both speeds.
 
     None without a range.
     """
@@ -123,7 +123,7 @@ def _orders(axes: Axes, ring: Ring, top: float) -> None:
 
 
 def _bars(axes: Axes, ring: Ring, span: tuple[float, float], colours: dict[int, str], top: float) -> None:
-    """Where the harmonics of engine orders are: those that meet one diameter stand beside one another."""
+    """Draws the harmonics of engine orders as bars; those at one diameter stand side by side."""
     placed = [
         one
         for x, bars in _met(ring.sectors, span, tuple(colours), top).items()
@@ -154,7 +154,7 @@ def _number(axes: Axes, ring: Ring, harmonic: int, x: float, end: float, top: fl
 
 
 def free_height(ring: Ring, x: float, end: float, top: float) -> float:
-    """Where a number stands that belongs to the end of a bar: above it, and above the modes in its way.
+    """Height of a number at the end of a bar: above it, and above the modes in its way.
 
     Below the end, if the axis does not go so far.
     """

@@ -132,8 +132,7 @@ def name_at_side(
 def varying(
     parameters: Sequence[Mapping[str, float]], units: Mapping[str, str]
 ) -> tuple[list[dict[str, float]], list[str]]:
-    """Of several swept quantities those that differ, and a title with the names of these; the others are
-    there with their value."""
+    """The swept quantities that differ, with a title naming them; equal ones are in it with their value."""
     same = {
         key: value for key, value in parameters[0].items() if all(one[key] == value for one in parameters)
     }

@@ -14,7 +14,7 @@ from fcm.rotational_dofs import MOST_DOFS, greatest_first
 
 
 def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has") -> int:
-    """Its place, the first by default; that of a node and a direction may be written 40x, 40:x or 40:1.
+    """Column of a degree of freedom, 0 by default; a node's may be written 40x, 40:x or 40:1.
 
     >>> column_of(["40x", "tip"], "40:1"), column_of(["40x", "tip"], None), column_of(["40x", "tip"], "tip")
     (0, 0, 1)
@@ -33,7 +33,7 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
 
 
 def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:
-    """Those degrees of freedom that the scene of a file asks for, by its attribute; none where it says none.
+    """Degrees of freedom that the scene of a file asks for, from its attribute; empty where it has none.
 
     >>> asked_for('["2x"]', ["1x", "2x"]), asked_for("", ["1x", "2x"])
     (('2x',), ())
@@ -55,7 +55,8 @@ def leading_column(
     amplitudes: npt.NDArray[np.float64],
     asked: Sequence[str] = (),
 ) -> int:
-    """As `column_of`, but by default, of more than fit on a line, that of the greatest amplitude (any, dof).
+    """Column of a degree of freedom; by default, if there are many, that of the greatest amplitude (any,
+    dof).
 
     Of those that the scene asks for, where it does.
 
@@ -74,7 +75,7 @@ def leading_column(
 def greatest_column(
     dofs: Sequence[str], amplitudes: npt.NDArray[np.float64], asked: Sequence[str] = ()
 ) -> int:
-    """That of the greatest amplitude (any, dof), of those that the scene asks for where it does.
+    """Column of the greatest amplitude (any, dof), among those the scene asks for if it does.
 
     >>> amplitudes = np.array([[1.0, 3.0], [2.0, np.nan]])
     >>> greatest_column(["1x", "2x"], amplitudes), greatest_column(["1x", "2x"], amplitudes, ["1x"])

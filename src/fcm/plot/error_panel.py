@@ -46,7 +46,7 @@ def name_errors(
     width: float,
     notes: Mapping[str, Line2D],
 ) -> None:
-    """What the lines and the area of the panel are, and notes of lines of the curves."""
+    """Names the lines and the area of the error panel, and adds notes on lines of the curves."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -1,5 +1,5 @@
-"""What cannot be drawn."""
+"""Error raised for what cannot be drawn."""
 
 
 class PlotError(ValueError):
-    """The file is not what the picture needs, or does not hold what was asked for."""
+    """Raised when a file is not what the picture needs, or does not hold what was asked for."""

@@ -65,7 +65,7 @@ def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> Dr
 
 
 def _edges(data: Any, axis: str) -> tuple[FloatArray, FloatArray]:
-    """Where the phases begin and the last one ends; the same of the cycles."""
+    """Begins of the phases, and of the cycles, each with the end: in time, or in cycles passed."""
     end = floats(data[axis])[-1:]
     if axis == "time":
         phases, cycles = floats(data["schedule_start"]), floats(data["cycle_start"])

@@ -220,7 +220,7 @@ def _mode(y: FloatArray) -> str:
 
 
 def _said(curve: DrawnCurve, state: str) -> Any:
-    """What is shown of each point beside its place: the error, the stability, and which branch it is on."""
+    """Text shown at each point beside its place: error, stability, and branch."""
     error = curve.truncation_error
     told = np.full(len(curve.frequency), np.nan) if error is None else error
     shown = ["unknown" if np.isnan(one) else f"{one:.1e}" for one in told]

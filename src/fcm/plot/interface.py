@@ -1,4 +1,4 @@
-"""What the contacts of an interface do at points of a curve: which stick, slip or open; what they bear."""
+"""States and loads of the contacts of an interface at points of a curve."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ NONE = ("#808080", "x")  # colour and mark of a contact whose value is none
 
 
 class InterfaceFile(Frozen):
-    """What a response file has on its contacts."""
+    """Data of a response file on its contacts."""
 
     path: Path
     unit: str
@@ -68,8 +68,10 @@ class InterfaceFile(Frozen):
 
 
 class InterfacePoint(Frozen):
-    """All contacts at one point of a curve; state (contact,) numbers `sticks`, `slips`, `slips and opens`,
-    `open`."""
+    """All contacts at one point of a curve.
+
+    state (contact,) numbers `sticks`, `slips`, `slips and opens`, `open`.
+    """
 
     frequency: float
     stable: float
@@ -362,7 +364,7 @@ def _name_contacts(grid: Any, names: Sequence[str], at: FloatArray, room: float,
 
 
 def _head(file: InterfaceFile, point: InterfacePoint) -> str:
-    """Which point of which curve it is."""
+    """Heading of a panel: which point of which curve it shows."""
     unknown = ", stability unknown" if point.modal_amplitude is None else ""
     stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
     place = place_of(file, point).replace(", ", "\n")  # a film strip has narrow panels
@@ -478,7 +480,7 @@ def _limits(places: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _size(places: FloatArray, width: float, columns: int) -> float:
-    """Of a mark [point^2], so that those next to one another do not touch."""
+    """Size [point^2] of a mark, so that neighbouring marks do not touch."""
     low, high = _limits(places)
     between = np.linalg.norm(places[:, None] - places, axis=-1)
     np.fill_diagonal(between, np.inf)
@@ -488,7 +490,7 @@ def _size(places: FloatArray, width: float, columns: int) -> float:
 
 
 def _height(places: FloatArray, width: float, rows: int, columns: int) -> float:
-    """Of the figure [inch], so that panels of one scale in both directions fill it."""
+    """Height [inch] of the figure, so that panels of one scale in both directions fill it."""
     low, high = _limits(places)
     across, up = (high - low).tolist()
     panel = (width - _BAR) / columns * up / across

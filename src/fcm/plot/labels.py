@@ -21,7 +21,7 @@ def plain(text: str) -> str:
 
 
 def short_names(keys: Iterable[str]) -> dict[str, str]:
-    """Of each key its last part, if that says enough; where two would be the same, the whole key.
+    """Short name of each key: its last part, or the whole key where two would be the same.
 
     >>> short_names(["contact.shroud.n_0", "modal.shapes.0.u"])
     {'contact.shroud.n_0': 'n_0', 'modal.shapes.0.u': 'modal.shapes.0.u'}
@@ -64,7 +64,7 @@ def symbols(keys: Iterable[str], units: Mapping[str, str] | None = None) -> list
 def curve_label(
     parameters: Mapping[str, float], named: bool = True, units: Mapping[str, str] | None = None
 ) -> str:
-    """What was swept, with units of keys; without names only the values.
+    """Label of a curve: its swept values with units of keys; without names only the values.
 
     >>> curve_label({"contact.shroud.n_0": -5.0, "contact.shroud.mu": 0.4}, units={"contact.shroud.n_0": "N"})
     '$n_{0}$ = −5 N, $\\\\mu$ = 0.4'
@@ -77,7 +77,7 @@ def curve_label(
 
 
 def _unit(key: str, units: Mapping[str, str] | None) -> str:
-    """Of a key, as text beside mathematical text."""
+    """Unit of a key, as text beside mathematical text."""
     return plain((units or {}).get(key, ""))
 
 
@@ -114,7 +114,7 @@ def power_to_label(axis: Axis) -> None:
 
 
 def staying(stable: float) -> str:
-    """What is said beside a peak of which it is not known that a motion stays there.
+    """Text beside a peak at which no motion is known to stay.
 
     >>> staying(1.0), staying(0.0), staying(float("nan"))
     ('', ', unstable', ', stability unknown')

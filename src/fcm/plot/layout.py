@@ -1,4 +1,4 @@
-"""How the variables of a file of results are laid out; a file that is not so is refused at reading."""
+"""Layout of the variables of a result file; a file with another layout is refused at reading."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class DrawnLoop(Frozen):
 
 
 class LoopAxes(Frozen):
-    """What the axes are called, and where their angle begins."""
+    """Names of the axes, and where their angle begins."""
 
     displacement: str = "Displacement $u/a$ (–)"
     force: str = "Friction force $f/k_u a$ (–)"
@@ -72,7 +72,7 @@ class LoopAxes(Frozen):
 
 
 def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: str = "") -> Figure:
-    """Of each loop the force over the displacement, and below it over the angle with the slip limits."""
+    """Draws each loop: force over displacement, and below it force over angle with the slip limits."""
     names = axes or LoopAxes()
     shared = _same_scale(loops)
     with house_style():
@@ -96,7 +96,10 @@ def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: 
 
 
 def _panels(count: int, titled: bool) -> tuple[Figure, list[tuple[Axes, Axes]]]:
-    """Two panels for each loop, one above the other; one loop alone is a column wide, several are two."""
+    """Two panels for each loop, one above the other.
+
+    A single loop is one column wide, several are two.
+    """
     columns = min(count, LAYOUT.loop_columns)
     rows = -(-count // columns)
     height = rows * (_LOOP_HEIGHT + _TIME_HEIGHT + _LABELS) + _LEGEND + (_TITLE if titled else 0.0)

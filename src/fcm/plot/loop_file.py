@@ -37,7 +37,7 @@ _PARTS = ("n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force")
 
 
 class PlanePoint(Frozen):
-    """What `fcm.planar_loop` takes of a contact that slides in a plane, and how its directions are named."""
+    """Arguments of `fcm.planar_loop` for a contact that slides in a plane, with names of its directions."""
 
     motion: npt.NDArray[np.complex128]  # (direction, harmonic), the mean first
     law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
@@ -45,7 +45,7 @@ class PlanePoint(Frozen):
 
 
 class LinePoint(Frozen):
-    """What `fcm.periodic_loop` takes of a contact on a line; u counts from its mean.
+    """Arguments of `fcm.periodic_loop` for a contact on a line; u counts from its mean.
 
     Angles count from where its fundamental is a sine.
     """
@@ -63,7 +63,7 @@ class PointIndex(NamedTuple):
 
 
 class MotionFile(Frozen):
-    """What a response file has on the motions across contacts, in a plane or in several harmonics."""
+    """Data of a response file on the motions across contacts, in a plane or in several harmonics."""
 
     mean: FloatArray  # (curve, point, contact, direction)
     amplitude: FloatArray  # (curve, point, contact, direction, harmonic)
@@ -73,7 +73,7 @@ class MotionFile(Frozen):
     directions: dict[str, Any]  # of each contact in a plane, by x, y and normal
 
     def at(self, index: PointIndex, contact: str) -> PlanePoint | LinePoint | None:
-        """Of a point; None of a contact on a line that moves in one harmonic alone."""
+        """Motion at a point; None for a contact on a line that moves in one harmonic alone."""
         names = self.directions.get(contact)
         mean = self.mean[index]
         motion = np.zeros((mean.size, 1 + max(self.harmonics)), dtype=np.complex128)
@@ -94,7 +94,7 @@ class MotionFile(Frozen):
 
 
 class LoopPoint(Frozen):
-    """One contact at one point of a curve."""
+    """Data of one contact at one point of a curve."""
 
     curve: int
     parameters: dict[str, float]  # the swept values of the curve
@@ -133,7 +133,7 @@ class PlaceOnCurve(NamedTuple):
 
 
 class LoopFile(Frozen):
-    """What a response file has on the loops of its contacts."""
+    """Data of a response file on the loops of its contacts."""
 
     path: Path
     unit: str
@@ -192,7 +192,7 @@ def read_loops(path: Path) -> LoopFile:
 
 
 def _motions(data: Any) -> MotionFile | None:
-    """Of contacts in a plane or in several harmonics, where there are some."""
+    """Motions of contacts in a plane or in several harmonics; None where there are none."""
     if not all(name in data.variables for name in _MOTION):
         return None
     orders = floats(data["contact_harmonic"])
@@ -288,7 +288,7 @@ def _row(file: LoopFile, curve: int | None) -> int:
 
 
 def _greatest(energy: FloatArray, contacts: int) -> FloatArray:
-    """Of each contact over all points; 0 where it is nowhere known."""
+    """Greatest value of each contact over all points; 0 where it is nowhere known."""
     each = energy.reshape(-1, contacts)
     found: FloatArray = np.nanmax(np.where(np.isfinite(each), each, 0.0), axis=0, initial=0.0)
     return found

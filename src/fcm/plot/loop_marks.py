@@ -83,7 +83,7 @@ def _leader(axes: Axes, mark: FloatArray, offset: tuple[float, float]) -> FloatA
 
 
 def _box(axes: Axes, mark: FloatArray, offset: tuple[float, float], extent: Bbox) -> Bbox:
-    """Where a text of an extent is [pixel] when it is written at an offset [point] from a mark."""
+    """Box [pixel] of a text with an extent, written at an offset [point] from a mark."""
     from matplotlib.transforms import Bbox
 
     across, up = _alignment(offset)
@@ -124,7 +124,7 @@ def _text(
 
 
 def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
-    """What a text there would cover: other texts, the frame and its ticks, points of the loop (1 each)."""
+    """Count of what a text there would cover: other texts, frame and ticks, points of the loop (1 each)."""
     frame = axes.get_window_extent().padded(-LAYOUT.tick * axes.figure.dpi / 72.0)
     outside = bool(box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
     others = sum(bool(box.overlaps(other)) for other in taken)

@@ -43,7 +43,7 @@ _NOTHING: FloatArray = np.zeros(0)
 
 
 class DrawnMode(Frozen):
-    """One curve without its padding."""
+    """One curve of a nonlinear mode, without its padding."""
 
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) in the file's unit
@@ -71,7 +71,7 @@ class DrawnMode(Frozen):
         return np.exp(fine), PchipInterpolator(way, values)(fine)
 
     def lost(self, values: FloatArray) -> BoolArray:
-        """At the places of `smooth`, whether there is no steady state there, or at a point beside them."""
+        """Mask, at the places of `smooth`, of places without a steady state there or at a neighbour."""
         known = np.isfinite(values)
         lost = np.zeros(known.sum(), np.bool_) if self.steady is None else ~self.steady[known]
         if not self._is_smooth(known):
@@ -85,7 +85,7 @@ class DrawnMode(Frozen):
 
 
 def _places(count: int) -> FloatArray:
-    """Of a line through some points, in points from the first."""
+    """Places on a line through points, as fractional point numbers."""
     return np.arange((count - 1) * LAYOUT.line_places + 1) / LAYOUT.line_places
 
 
@@ -139,7 +139,7 @@ def read_modes(path: Path) -> DrawnModes:
 
 
 class Resonance(NamedTuple):
-    """Of a mode with the scene's forces, in the unit of the file."""
+    """Resonance of a mode with the scene's forces, in the units of the file."""
 
     level: float  # of the forces
     modal: float  # amplitude
@@ -149,7 +149,7 @@ class Resonance(NamedTuple):
 
 
 def resonances_of(data: Any) -> list[tuple[Resonance, ...]]:
-    """Those of each curve, as the file's summary has them."""
+    """Resonances of each curve, from the file's summary."""
     try:
         curves = json.loads(str(getattr(data, "summary", "{}"))).get("curves", ())
         return [
@@ -279,7 +279,7 @@ def _mark_resonances(figure: Figure, upper: Axes, lower: Axes, mode: DrawnMode) 
 
 
 def _inwards(mode: DrawnMode, amplitude: float) -> int:
-    """To which side of an amplitude there is more room on a logarithmic axis: -1 is the left."""
+    """Side of an amplitude with more room on a logarithmic axis: -1 is the left."""
     return -1 if amplitude**2 > mode.amplitude[0] * mode.amplitude[-1] else 1
 
 

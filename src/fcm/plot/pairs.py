@@ -23,7 +23,7 @@ _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many pairs and for few
 
 
 def view_of(interface: Interface) -> FloatArray:
-    """Two directions (2, 3) in the plane of an interface; see `plane_view`."""
+    """Two directions (2, 3) in the plane of an interface, see `plane_view`."""
     if interface.plane is not None:
         return _forward(interface.plane.first, interface.plane.second)
     places = (interface.first, interface.second, interface.alone, interface.other_alone)
@@ -52,7 +52,7 @@ def _forward(*directions: FloatArray) -> FloatArray:
 
 
 def direction_name(direction: FloatArray, axes: Sequence[str] = "xyz") -> str:
-    """As "x", or "0.6 x − 0.8 z".
+    """A direction in words, as "x", or "0.6 x − 0.8 z".
 
     >>> direction_name(np.array([1.0, 0.0, 0.0])), direction_name(np.array([0.6, 0.0, -0.8]))
     ('x', '0.6 x − 0.8 z')
@@ -97,7 +97,7 @@ def draw_pairs(interfaces: Sequence[Interface], length: str = "") -> Figure:
 
 
 def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
-    """One contact."""
+    """Draws the node pairs of one contact."""
     along = view_of(one)
     seen = [side @ along.T for side in (one.first, one.second)]
     apart = np.linalg.norm(one.second - one.first, axis=1)

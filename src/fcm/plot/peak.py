@@ -258,7 +258,7 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
 
 
 def _say_scatter(axes: Axes, peaks: Peaks, column: int, known: BoolArray) -> None:
-    """Of random draws, which nobody chooses, the middle and how far they scatter."""
+    """Writes the median and the scatter of random draws, which nobody chooses."""
     from fcm.results.scatter import PERCENTS, percentiles  # and all that makes results
 
     each = dict(zip(PERCENTS, percentiles(peaks.amplitude[known, column : column + 1])[:, 0], strict=True))
@@ -306,7 +306,7 @@ def _mark_unknown(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, 
 
 
 def _say_mark(axes: Axes, said: str) -> None:
-    """What a mark means, below what others do."""
+    """Explains a mark, below other explanations."""
     lines = "\n".join(filter(None, (axes.get_title(loc="left"), said)))
     axes.set_title(lines, loc="left", fontsize=8, color=_MARK)
 

@@ -64,14 +64,17 @@ def path_of(loop: PlanarLoop) -> Path:
 
 
 def _without_rounding(values: FloatArray) -> FloatArray:
-    """Both directions (sample, 2), one of them 0 where it is of the other's rounding."""
+    """Values (sample, 2) in both directions, with 0 for a direction that is rounding of the other."""
     rest = at_rest(np.abs(values).max(axis=0), RestOptions(displacement=LAYOUT.planar_rest))
     return np.where(rest, 0.0, values)
 
 
 def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
-    """At the left the plane: paths of u and of the slider, discs, and below it the path of the force between
-    its limits; at the right force over displacement."""
+    """Draws the loop of a contact in its plane.
+
+    At the left is the plane with the paths of u and of the slider, and discs. Below it is the path of the
+    force between its limits. At the right is the force over the displacement, for each direction.
+    """
     path = path_of(drawn.loop)
     length, force = (f" ({unit.replace('$', '')})" for unit in drawn.units) if drawn.units else ("", "")
     if drawn.dimensionless:
@@ -180,7 +183,7 @@ def _draw_direction(axes: Axes, path: Path, i: int) -> None:
 
 
 def _instants(path: Path, count: int) -> list[int]:
-    """Evenly over the cycle."""
+    """Indices of the samples at angles evenly spread over the cycle."""
     wanted = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     return [int(np.abs(path.theta - angle).argmin()) for angle in wanted]
 

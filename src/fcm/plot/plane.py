@@ -1,4 +1,4 @@
-"""What every picture over the plane (n0_bar, b_bar) shares: panels, labels, the lines between the regimes."""
+"""Shared parts of pictures over the plane (n0_bar, b_bar): panels, labels, lines between regimes."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def finish_plane(axes: list[Axes], plane: Plane) -> None:
 
 
 def boundary_legend(figure: Figure) -> None:
-    """One for all panels, below them."""
+    """Draws one legend of the regime boundaries, below all panels."""
     from matplotlib.lines import Line2D
 
     handles = [
@@ -86,7 +86,7 @@ def boundary_legend(figure: Figure) -> None:
 
 
 def shared_range(values: list[FloatArray], signed: bool) -> tuple[float, float]:
-    """From 0, or symmetrical about it, to the largest of all panels."""
+    """Value range for all panels: from 0, or symmetric about it, to the largest value."""
     largest = max(float(np.max(np.abs(one))) for one in values)
     largest = largest if largest > 0.0 else 1.0
     return (-largest if signed else 0.0), largest

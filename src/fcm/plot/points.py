@@ -95,13 +95,13 @@ def name_points(figure: Figure, axes: Axes) -> None:
 
 
 def frequency_factor(theirs: str, ours: str) -> float:
-    """What turns frequencies of one unit into the other."""
+    """Factor that converts frequencies of one unit to another."""
     units = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
     return units.get(theirs, 1.0) / units.get(ours, 1.0)
 
 
 def _match(points: DrawnCurve, curves: Sequence[DrawnCurve]) -> int:
-    """Which curve has the parameters of the points."""
+    """Number of the curve that has the parameters of the points."""
     if len(curves) == 1 and not (points.parameters and curves[0].parameters):
         return 0
     for number, curve in enumerate(curves):

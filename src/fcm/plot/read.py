@@ -113,14 +113,14 @@ def read_response(path: Path) -> DrawnResponse:
 
 
 class _Variables(dict[str, Any]):
-    """By name; ValueError says which is not there."""
+    """Variables by name; a missing one raises ValueError with its name."""
 
     def __missing__(self, name: str) -> Any:
         raise ValueError(f"it has no variable {name}")
 
 
 class Held:
-    """What an open netCDF dataset holds: its variables by name, and its attributes as its own."""
+    """An open netCDF dataset: variables by name, and its attributes as attributes of the object."""
 
     def __init__(self, dataset: Any) -> None:
         self._dataset, self.variables = dataset, _Variables(dataset.variables)
@@ -158,15 +158,17 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
 
 
 def _cause(error: BaseException) -> str:
-    """What a library says of a file, without its name and number of the error, which are said before."""
+    """Message of a library on a file, without the file's name and error number, which are said before."""
     said = getattr(error, "strerror", None) or str(error)
     return str(said).partition("\n")[0]
 
 
 @contextmanager
 def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
-    """What is read from a file, which may be damaged, or written by anything: `PlotError` says what it is
-    otherwise, and why."""
+    """Context for reading a file that may be damaged: errors become `PlotError`.
+
+    It says what the file is `otherwise`, and why.
+    """
     try:
         yield
     except (PlotError, MemoryError):
@@ -182,7 +184,7 @@ def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
 
 
 def _hint(dataset: Any) -> str:
-    """Which command draws the file, if one does; why none does where an optimum, or a fit, is all it has."""
+    """Sentence on the command that draws the file; or why none does, if it only has an optimum or a fit."""
     kinds = (
         ("history", {"displacement", "time"}),
         ("response", {"amplitude", "frequency"}),
@@ -245,7 +247,7 @@ def _curve(
     regime: Any,
     errors: list[FloatArray | None],
 ) -> DrawnCurve:
-    """Take the padding away; points of NaN between branches stay, so that no line joins them."""
+    """Curve without its padding; points of NaN between branches stay, so that no line joins them."""
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
     unknown = None if stable is None else np.isfinite(frequency[there]) & unknown_stability(stable[there])
@@ -273,7 +275,7 @@ def swept_units(variables: Any, keys: Iterable[str]) -> dict[str, str]:
 
 
 def drawn_keys(variables: Any, keys: Iterable[str]) -> tuple[str, ...]:
-    """Those of swept keys whose values are random draws."""
+    """Swept keys whose values are random draws."""
     held = _swept(variables)
     return tuple(key for key in keys if getattr(held[key], "drawn", "") == "true")
 

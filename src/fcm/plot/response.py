@@ -204,7 +204,7 @@ def _seen(axes: Axes, curve: DrawnCurve, column: int, which: BoolArray) -> bool:
 
 
 def _not_stable(curve: DrawnCurve) -> BoolArray:
-    """Where a curve is unstable, or that is unknown."""
+    """Mask of points at which a curve is unstable, or its stability unknown."""
     found = np.zeros(len(curve.frequency), np.bool_)
     for here in (None if curve.stable is None else ~curve.stable, curve.unknown):
         found = found if here is None else found | here
@@ -212,7 +212,7 @@ def _not_stable(curve: DrawnCurve) -> BoolArray:
 
 
 def doubtful(curve: DrawnCurve) -> BoolArray:
-    """Where the estimated error of the harmonics left out is more than a fifth, or not known for long.
+    """Mask of points where the error by harmonics left out exceeds a fifth, or is unknown for long.
 
     Beside a fold it is never known; a curve of which it is nowhere, as of exact motions, has none.
     """
@@ -253,7 +253,7 @@ def _name_curves(
     column: int,
     units: Mapping[str, str],
 ) -> None:
-    """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
+    """Writes the curves' names at the peaks if there is room, otherwise in a legend beside the axes."""
     names = [_named(curve, units, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= LAYOUT.bar_names and label_at_peaks(figure, axes, lines, names):
@@ -263,7 +263,7 @@ def _name_curves(
 
 
 def _legend(figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]) -> None:
-    """Beside the axes; several swept quantities are named once, above their values."""
+    """Draws a legend beside the axes; several swept quantities are named once, above their values."""
     several = len(curves[0].parameters) > 1
     parameters, title = varying([curve.parameters for curve in curves], units)
     curves = [replace(curve, parameters=one) for curve, one in zip(curves, parameters, strict=True)]

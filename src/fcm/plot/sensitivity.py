@@ -1,4 +1,4 @@
-"""What each number of a scene does to a peak: relative derivatives as bars, the greatest first."""
+"""Sensitivities of a peak to numbers of a scene: relative derivatives as bars, the greatest first."""
 
 from __future__ import annotations
 

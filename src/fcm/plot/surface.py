@@ -41,7 +41,10 @@ def draw_regions(axes: Axes, found: Regions) -> None:
 
 
 def name_regions(axes: Axes, found: Regions) -> None:
-    """Each sequence in the middle of its region, unless it is too small; the panel has its final size."""
+    """Writes each sequence in the middle of its region, unless that is too small.
+
+    The panel has its final size then.
+    """
     frame, dpi = axes.get_window_extent(), axes.figure.dpi
     for name, where in found.where.items():
         size = _HEIGHT * dpi / frame.height, _LETTER * (len(name) + 0.5) * dpi / frame.width

@@ -46,7 +46,7 @@ _MARK, _SHADE = "#c03020", "#c0d4ea"
 
 
 class DrawnTrack(Frozen):
-    """One curve without its padding."""
+    """One tracked curve without its padding."""
 
     what: str
     number: FloatArray  # (point,)
@@ -59,7 +59,7 @@ class DrawnTrack(Frozen):
 
 
 class DrawnTracking(Frozen):
-    """All curves of a file, and the optimum if there is one."""
+    """All tracked curves of a file, and the optimum if there is one."""
 
     key: str
     dofs: tuple[str, ...]
@@ -120,7 +120,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
 
 
 def _stays(variables: Any) -> str:
-    """What is to be said of the stability of the motion at the optimum, or at those peaks that are equal."""
+    """Sentence on the stability of the motion at the optimum, or at its equal peaks."""
     if "optimum_stable" not in variables:
         return ""
     told = floats(variables["optimum_stable"])[0][np.isfinite(floats(variables["optimum_frequency"])[0])]
@@ -231,8 +231,10 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
 
 
 def _colours(tracks: Sequence[DrawnTrack], names: Sequence[str]) -> dict[int, str]:
-    """Of each track, by its id: that of its name, or where all have one a colour of its own, which shows
-    which height and which frequency belong together."""
+    """Colour of each track, by its id: that of its name, or its own where all share one name.
+
+    Own colours show which height and which frequency belong together.
+    """
     if len(names) > 1:
         of_name = dict(zip(names, sequence_colours(len(names)), strict=True))
         return {id(track): of_name[track.what] for track in tracks}
@@ -247,7 +249,7 @@ def _colours_of_sweep(tracks: Sequence[DrawnTrack]) -> dict[tuple[float, ...], s
 
 
 def _name_swept(figure: Figure, drawn: DrawnTracking, colours: Mapping[tuple[float, ...], str]) -> None:
-    """What was swept beside the axes, in its colours."""
+    """Writes the swept values beside the axes, in their colours."""
     from matplotlib.lines import Line2D
 
     lines = [Line2D([], [], color=colour) for colour in colours.values()]
@@ -269,7 +271,7 @@ def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str 
 
 
 def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
-    """What colours, dashed and dotted lines mean, where there are some."""
+    """Explains colours, dashed and dotted lines, where there are some."""
     stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
     peaks = {track.what for track in tracks if track.what != "fold"}
     alike = len(peaks) == len({track.swept for track in tracks}) == 1

@@ -22,7 +22,7 @@ NO_SPAN = (np.nan, np.nan)
 
 
 class Unfinished(Frozen):
-    """Of the curves of a file, in their order."""
+    """Reasons why curves of a file are unfinished, in their order."""
 
     reasons: tuple[str, ...] = ()  # (curve,) empty where a curve is whole
     span: tuple[float, float] = NO_SPAN  # sought, in the file's unit; NaN where the file does not say it
@@ -34,7 +34,7 @@ class Unfinished(Frozen):
 
 
 def unfinished_of(data: Any) -> Unfinished:
-    """What an open file says of its curves, and of a fit; of one without `complete` nothing."""
+    """Unfinished parts of an open file; none for a file without `complete`."""
     if "complete" not in data.variables:
         return Unfinished()
     whole = np.atleast_1d(np.ma.filled(np.ma.asarray(data.variables["complete"][:], dtype=float), 1.0)) == 1.0
@@ -75,7 +75,7 @@ def _summary(data: Any) -> dict[str, Any]:
 
 
 def open_ends(x: FloatArray, y: FloatArray, span: tuple[float, float]) -> list[int]:
-    """Where an unfinished curve ends: points that end a branch, neither at the span's ends nor on another.
+    """Ends of an unfinished curve: ends of branches neither at the span's ends nor on another branch.
 
     A closed branch has no end.
 
@@ -133,7 +133,7 @@ def say_unfinished(axes: Axes, told: Unfinished) -> None:
 
 
 def sentence(told: Unfinished) -> str:
-    """That curves are unfinished, and why the first is, or a fit; empty where all are whole.
+    """Sentence that curves, or a fit, are unfinished, and why the first is; empty where all are complete.
 
     >>> sentence(Unfinished(("", "")))
     ''

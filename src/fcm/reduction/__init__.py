@@ -1,1 +1,1 @@
-"""What a scene does not need: left out, put back into the results, its effect checked."""
+"""Leaves out what a scene does not need, restores it in the results, and checks the effect."""

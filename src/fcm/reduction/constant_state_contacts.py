@@ -126,14 +126,14 @@ def whole_state(scene: Scene, state: State) -> State:
 
 
 def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
-    """What each contact of the whole scene does over a cycle."""
+    """State sequence of each contact of the whole scene, the held ones included."""
     letters = dict(zip(scene.computed(), states, strict=True))
     letters |= {one.place: "S" if one.open else "E" for one in scene.held}
     return tuple(letters[i] for i in range(len(letters)))
 
 
 def whole_contact_loads(scene: Scene, computed: FloatArray, held: FloatArray) -> FloatArray:
-    """What each contact of the whole scene bears, as of `contact_loads`; those that are held do not slip.
+    """Contact loads of every contact of the whole scene, as of `contact_loads`; held ones do not slip.
 
     held : of these the normal and the friction force, (held, 2).
     """
@@ -146,7 +146,7 @@ def whole_contact_loads(scene: Scene, computed: FloatArray, held: FloatArray) ->
 
 
 def on_contacts(curves: Sequence[Curve], contacts: Sequence[Contact]) -> list[str]:
-    """What was left out of curves: contacts that keep their state, with what they keep of their limits."""
+    """Sentences on contacts left out of curves since they keep their state, with their margins."""
     each = [curve.orbits.held for curve in curves if curve.orbits is not None and curve.orbits.held.size]
     if not each:
         return []

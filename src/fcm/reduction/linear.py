@@ -74,7 +74,7 @@ class DrivenModes:
 
 
 def _compliance(linear: Linear, w: FloatArray) -> ComplexArray:
-    """Of each mode (frequency, mode)."""
+    """Compliance of each mode (frequency, mode)."""
     natural, rate = linear.natural, 2.0 * linear.damping * linear.natural
     return np.asarray(1.0 / ((natural - w) * (natural + w) + 1j * rate * w))
 

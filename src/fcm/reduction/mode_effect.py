@@ -1,4 +1,4 @@
-"""What modes that were left out of exact curves change: points are solved once more with all of them."""
+"""Effect of the modes left out of exact curves: some points are solved again with all modes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def effect(response: Response, lighter: ReducedScenes) -> float:
 
 
 def expected_effect(lighter: ReducedScenes) -> float:
-    """The same at the motions that the balance leads to, before any curve is followed."""
+    """Effect of the modes left out, at the starts from the balance, before any curve is followed."""
     numbers = np.unique(np.linspace(0, len(lighter.full) - 1, REDUCTION.max_curves).astype(int))
     return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)
 

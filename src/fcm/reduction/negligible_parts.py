@@ -1,4 +1,4 @@
-"""What a scene does not need and is not computed, with a sentence on each: what, why, and its effect.
+"""Parts of a scene that need not be computed, with a sentence on each: what, why, and its effect.
 
 Without any effect are left out: modes that neither a force nor a contact moves, and contacts that carry
 nothing. Modes far above the range are replaced by few (`static_modes`) where that pays; what this changes
@@ -39,7 +39,7 @@ class ReducedScenes(Frozen):
 
 
 def unreduced(curves: tuple[Scene, ...]) -> ReducedScenes:
-    """The scenes as they are."""
+    """The scenes with nothing left out."""
     return ReducedScenes(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
@@ -64,7 +64,7 @@ def without_negligible_parts(
 def leave_out_modes(
     curves: tuple[Scene, ...], tolerance: float, highest: int, options: ReductionOptions = REDUCTION
 ) -> ReducedScenes:
-    """The same with all contacts: only modes are left out."""
+    """Scenes with negligible modes left out, and with all contacts."""
     lighter, said = _without_still_modes(curves)
     every = tuple(range(len(curves[0].contacts)))
     return _static(ReducedScenes(curves, lighter, lighter, every, tuple(said)), tolerance, highest, options)
@@ -105,7 +105,7 @@ def _stiffest(curves: tuple[Scene, ...]) -> Scene:
 
 
 def _different(curves: tuple[Scene, ...]) -> list[Scene]:
-    """One scene for each structure with directions of its contacts and forces."""
+    """One scene for each distinct structure with directions of contacts and forces."""
 
     def key(s: Scene) -> tuple[int | bytes, ...]:
         along = [d.tobytes() for d in s.directions_of_contacts()]
@@ -136,7 +136,7 @@ def _springs_back(scene: Scene, contact: Contact) -> bool:
 
 
 def _moved(scene: Scene) -> BoolArray:
-    """Which modes a force or a contact moves."""
+    """Mask of the modes that a force or a contact moves."""
     along = [one for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0 for one in c.directions[:-1]]
     along += [c.normal for c in scene.contacts if c.k_v > 0.0]
     along += scene.pushes()
@@ -170,7 +170,7 @@ def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
 
 
 def _parts_of_contacts(lighter: ReducedScenes) -> list[str]:
-    """Of contacts that are traced, those whose friction or whose normal force is not computed."""
+    """Sentences on traced contacts whose friction or normal force is not computed."""
     contacts, said = lighter.full[0].contacts, []
     smooth = [i for i in lighter.contacts if not any(has_friction(s.contacts[i]) for s in lighter.full)]
     if smooth:

@@ -1,4 +1,4 @@
-"""What was left out of a calculation put back into its results, and its effect on them measured."""
+"""Restores what was left out of a calculation in its results, and measures its effect."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
 
 
 def on_modes(lighter: ReducedScenes, shift: float) -> str:
-    """What was replaced, with the bound that the check gives."""
+    """Sentence on the modes that were replaced, with the bound that the check gives."""
     modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
     limit = lighter.above or 0.0
     high, few = (int((one.frequency > limit).sum()) for one in (modal, fewer))

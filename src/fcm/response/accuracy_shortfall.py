@@ -1,4 +1,4 @@
-"""What is said of a curve that is complete, but falls short of the accuracy that was asked for."""
+"""Sentences on a curve that is complete, but falls short of the accuracy that was asked for."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fcm.units import in_unit
 def shortfall(
     found: RefinedResponse, lost: Sequence[StabilityLimit], accuracy: float, spent: float = 0.0
 ) -> str:
-    """What keeps a curve from the accuracy, and what more would take; empty if nothing does.
+    """Sentence on what keeps a curve from the accuracy, and what more would take; empty if nothing does.
 
     lost: how far the frequencies are off at which stability is lost without a fold. spent: processor time [s]
     of the curve until now, with its stability and errors: more harmonics take these as well.
@@ -30,7 +30,7 @@ def shortfall(
 
 
 def remedy(harmonics: Sequence[int], *, exact: bool = False) -> str:
-    """What helps where a curve with these harmonics falls short, and none that would do more are named.
+    """Sentence on what helps where a curve with these harmonics falls short and no further ones are named.
 
     exact: whether the exact motion can be computed instead.
 
@@ -59,7 +59,7 @@ def _remedy(found: RefinedResponse) -> str:
 
 
 def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
-    """Too large errors of peaks and folds, and how long it takes with more harmonics."""
+    """Sentence on too large errors of peaks and folds, and how long more harmonics would take."""
     folds, said = found.folds, _with_harmonics(found)
     unknown = np.count_nonzero(np.isnan(folds))
     if np.isnan(found.max_error) and np.isnan(found.peak[found.dofs_of_interest]).any():
@@ -88,7 +88,7 @@ def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
 
 
 def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> float:
-    """What a curve takes with more harmonics, to a digit: what it took, as much more as its equations do."""
+    """Seconds that a curve takes with more harmonics, to a digit: in proportion to its equations."""
     alone = found.seconds_with(more)
     whole = max(alone, spent * alone / found.seconds if found.seconds else 0.0)
     return float(f"{whole:.1g}") if whole > 1.0 else 1.0
@@ -114,7 +114,7 @@ def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
 
 
 def _of_stability(found: RefinedResponse, off: Sequence[StabilityLimit]) -> str:
-    """Frequencies at which stability is lost that are too far off: the worst of them."""
+    """Sentence on frequencies at which stability is lost that are too far off: the worst of them."""
     worst = max(off, key=lambda one: 0.0 if np.isnan(one.error) else one.error)
     error = "is unknown" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
     unit = found.system.scene.frequency_unit

@@ -18,8 +18,9 @@ Tell = Callable[[str], None]  # what there is, and what is at work
 
 
 class BestSoFar:
-    """Receives every response that has been traced, as `fcm.accuracy.refinement.OnTraced`; found is the
-    last, and stable (path,) whether each of its points is, once that is known.
+    """The best response that was traced until now; receives each, as `fcm.accuracy.refinement.OnTraced`.
+
+    found is the last, and stable (path,) whether each of its points is, once that is known.
 
     How often all is traced again nobody knows. So each response takes half of what is left of the progress,
     and half of that while it is traced. Of what comes then it is taken that it lasts as long as all before.
@@ -41,12 +42,12 @@ class BestSoFar:
             self.tell(f"{self._harmonics_reached()}; now {self._missing()}")
 
     def covered(self, share: float) -> None:
-        """A response that is traced has come to a share of the range of frequencies."""
+        """Show that the response being traced has come to a share of the range of frequencies."""
         self.told, self.since = 1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)), time.monotonic()
         self._show(self.told)
 
     def poll(self) -> None:
-        """Called now and then: the progress moves also where nobody tells what share is done."""
+        """Move the progress, also where nobody tells what share is done; called now and then."""
         now = time.monotonic()
         if now - self.shown >= SWEEP.progress_interval:
             spent, before = now - self.since, self.since - self.begun
@@ -59,16 +60,16 @@ class BestSoFar:
             self.progress(self.share)
 
     def take_stability(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
-        """The same response with its stability, which more harmonics may still confirm."""
+        """Take the stability of the response found, which more harmonics may still confirm."""
         self.found, self.stable = found, stable
 
     def take_part(self, found: UncheckedResponse) -> None:
-        """A response that was interrupted, if there is no other."""
+        """Take a response that was interrupted, if there is no other."""
         if self.found is None:
             self.found, self.cut = found, True
 
     def _missing(self) -> str:
-        """What comes next."""
+        """What the best response so far still lacks, in words."""
         if self.next:
             return counted(self.next, "harmonic")
         return "its stability" if isinstance(self.found, RefinedResponse) else "its errors"
@@ -79,7 +80,7 @@ class BestSoFar:
         return f"{has}, {'error not estimated yet' if math.isnan(self.error) else f'error {self.error:.1e}'}"
 
     def reason(self) -> str:
-        """Why the curve is not complete, and what is missing."""
+        """Reason why the curve is not complete, and what is missing."""
         unknown = " before its stability was confirmed" if self.stable else " before its stability was known"
         missing = f" before it was traced with {self.next}" if self.next else unknown
         missing = " before it came to its end" if self.cut else missing

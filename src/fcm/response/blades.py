@@ -1,4 +1,4 @@
-"""The tuned ring beside a mistuned one, by which its amplification is told."""
+"""The peaks of the tuned ring beside those of a mistuned one, which tell its amplification."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def with_blades(response: Response, scene: Scene, trace: Callable[[Scene], Respo
 
 
 def _factors(scene: Scene) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Of each curve, (curve, sector)."""
+    """Mistuning factors of the sectors of each curve, (curve, sector)."""
     curves: Sequence[Scene] = scene.each_curve()
     assert scene.draft is not None
     return np.array([factors_of(scene.draft.fixed(one).parts["whole"][0]) for one in curves])

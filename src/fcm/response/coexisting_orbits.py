@@ -34,7 +34,7 @@ from fcm.time_domain.system import System
 
 
 class CoexistingOrbits(Frozen):
-    """What was found at one frequency."""
+    """Motions that were found at one frequency."""
 
     frequency: float  # [rad/s]
     samples: tuple[OrbitRecord, ...]
@@ -75,7 +75,7 @@ def coexisting_orbits(
 def _coexisting_at(
     problem: OrbitProblem, omega: float, guesses: Sequence[State], known: list[OrbitRecord], poll: Poll
 ) -> list[OrbitRecord]:
-    """Those at one frequency that are not known.
+    """Stable motions at one frequency that are not known yet.
 
     Where no periodic motion is near a guess, or one with a multiplier below -1 or a complex pair outside the
     unit circle, the motion is simulated from there, and from rest. It is not where a motion of several
@@ -115,7 +115,7 @@ def _orbit_from(
 def _stable(
     problem: OrbitProblem, orbit: Orbit | None, known: Sequence[OrbitRecord], poll: Poll
 ) -> OrbitRecord | None:
-    """The point of a motion that is stable and not known."""
+    """The record of a motion that is stable and not known; else None."""
     if (
         orbit is None
         or not orbit.stable
@@ -136,7 +136,10 @@ def _disturbance_alternates(orbit: Orbit) -> bool:
 def _simulated(
     problem: OrbitProblem, omega: float, guess: State, known: Sequence[OrbitRecord], poll: Poll
 ) -> OrbitRecord | None:
-    """The steady motion that one from a guess comes to; if it repeats after each period, one not known."""
+    """The steady motion that a simulation from a guess comes to.
+
+    If it repeats after each period, only one that is not known; None without any.
+    """
     system = System(problem.scene, omega)
     found = steady(system, guess, poll)
     if not isinstance(found, SteadyMotion):

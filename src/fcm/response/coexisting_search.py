@@ -14,7 +14,7 @@ from fcm.shooting.periodic_orbit import Poll, never_interrupt
 
 
 class CoexistingMotions(Frozen):
-    """What is found at one frequency: of its points the extent over residual friction; and what is beside."""
+    """Motions at one frequency: the extent of its points over residual friction, and those beside them."""
 
     frequency: float
     amplitude: FloatArray  # (point, dof)
@@ -25,7 +25,7 @@ class CoexistingMotions(Frozen):
 
     @classmethod
     def unknown(cls, frequency: float, amplitude: FloatArray) -> CoexistingMotions:
-        """To be filled in."""
+        """A record without results, to be filled in."""
         least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
         return cls(frequency, amplitude, least, greatest, np.full(len(amplitude), np.nan), [])
 
@@ -49,13 +49,13 @@ class Search:
 
     @classmethod
     def none(cls) -> Search:
-        """One in which nothing is looked for."""
+        """A search that looks for nothing."""
         search = cls(never_interrupt, Report(lambda _fraction, _text: None))
         search.end()
         return search
 
     def poll(self) -> None:
-        """To be called now and then: raises `TimeOver` if the search is over."""
+        """Raise `TimeOver` if the search is over; to be called now and then."""
         if not self.over:
             self._report(1.0, "looking for other motions")
             try:
@@ -66,15 +66,15 @@ class Search:
             raise TimeOver
 
     def end(self) -> None:
-        """Look for nothing more."""
+        """End the search: look for nothing more."""
         self.over = True
 
     def known(self, frequency: float, amplitude: FloatArray) -> CoexistingMotions | None:
-        """What was found at the points of a frequency."""
+        """The motions found before at the points of a frequency, or None."""
         return self._known.get((frequency, amplitude.tobytes()))
 
     def keep(self, found: CoexistingMotions) -> None:
-        """Know, and save, what was found, unless the search was ended while it was."""
+        """Keep and save the motions found, unless the search was ended meanwhile."""
         if not self.over:
             self._known[_key(found)] = found
             self._report.save(found)

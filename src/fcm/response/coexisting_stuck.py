@@ -23,7 +23,7 @@ def coexisting_stuck(
     regime: npt.NDArray[np.str_],
     others: FrictionExtent,
 ) -> list[Stuck]:
-    """Those at the frequencies of some points that are not of a point there, nor in the extent of a family.
+    """Motions with stuck contacts at the frequencies of some points that no point and no family there has.
 
     frequency, regime : of all points, (point,) and (point, contact).
     others : of which families are known there.
@@ -47,7 +47,7 @@ def coexisting_stuck(
 
 
 def _within(amplitude: FloatArray, least: FloatArray, greatest: FloatArray) -> bool:
-    """Whether amplitudes lie in one of some extents."""
+    """Whether amplitudes lie within one of some extents."""
     room = COEXISTING.extent_tolerance * greatest
     inside = (amplitude >= least - room) & (amplitude <= greatest + room)
     return bool(inside.all(axis=1).any())

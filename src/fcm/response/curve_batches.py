@@ -61,7 +61,7 @@ _BY_POINT = (
 
 
 class Work(Frozen):
-    """What all groups are traced with."""
+    """The task that traces a group of curves."""
 
     request: Request
     peaks_only: bool = False
@@ -87,7 +87,7 @@ class Work(Frozen):
         return curves
 
     def _kept(self, curve: Curve) -> Curve:
-        """What is kept of a curve."""
+        """The part of a curve that is kept: without its points where only peaks are asked for."""
         return without_points(curve, self.samples) if self.peaks_only else curve
 
 
@@ -117,14 +117,14 @@ def _known(group: Group, saved: Sequence[Any]) -> list[Curve]:
 
 
 def _save(curves: Sequence[Curve], saved: int, report: Report) -> int:
-    """Save the curves of a group that are not saved; how many there are then."""
+    """Save the curves of a group that are not saved; returns how many are then."""
     for curve in curves[saved:]:
         report.save(curve)
     return len(curves)
 
 
 def anonymous(scenes: Group) -> list[Scene]:
-    """The scenes without what no curve depends on: where they came from."""
+    """The scenes without what no curve depends on, as their names."""
     return [
         replace(scene, name="", title="", curves=(), draft=None, tuned=None, files=()) for scene in scenes
     ]
@@ -157,7 +157,7 @@ def _alike(array: Any, model: Any) -> bool:
 
 
 def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Curve:
-    """A result of a sweep; a curve without points where there is none, as the run was interrupted."""
+    """The curve of a result of a sweep; one without points where the run was interrupted before."""
     if isinstance(result, Lost):
         if result.defect:
             return lost_curve(scene, f"{DEFECT}, {result.reason}", Cause.DEFECT)
@@ -166,7 +166,7 @@ def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Cur
 
 
 def lost_curve(scene: Scene, reason: str, cause: Cause = Cause.CALCULATION) -> Curve:
-    """A curve without points, and why."""
+    """A curve without points, with the reason."""
     none, dofs = np.empty(0), scene.modal.dofs
     return Curve(
         parameters=dict(scene.parameters),
@@ -194,7 +194,7 @@ def lost_curve(scene: Scene, reason: str, cause: Cause = Cause.CALCULATION) -> C
 
 @dataclass
 class CurveBatches:
-    """Where curves are computed and kept: the same for everything that one run computes."""
+    """The place where curves are computed and kept: the same for everything that one run computes."""
 
     jobs: int  # processes of this machine
     checkpoint: Checkpoint | None

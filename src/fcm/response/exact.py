@@ -98,13 +98,13 @@ def trace_exact(
 
 
 class _SweepRun(Frozen):
-    """One after the other the sweeps of a run, the second with all modes where they turn out to be needed."""
+    """The sweeps of a run, the second with all modes where they turn out to be needed."""
 
     work: ExactWork
     sweep: CurveBatches
 
     def response(self, scene: Scene, tolerance: float | None, progress: Progress | None) -> Response:
-        """The curves without the modes that they do not need."""
+        """The response, computed without the modes that its curves do not need."""
         scenes = scene.each_curve()
         if tolerance is None:
             return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
@@ -133,7 +133,7 @@ class _SweepRun(Frozen):
 
 
 def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | None:
-    """The frequencies to visit, upward [rad/s]."""
+    """The frequencies to visit, checked and in rising order [rad/s]."""
     if at is None and not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     if at is None:

@@ -1,4 +1,4 @@
-"""How each curve of exact periodic solutions is made: followed in its range, or visited at frequencies."""
+"""Computation of a curve of exact periodic solutions: followed in its range, or visited at frequencies."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were 
 
 
 class ExactWork(Frozen):
-    """How each curve is made: traced, or visited at frequencies."""
+    """The task that makes exact curves: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
     only_peaks: bool = False
@@ -85,7 +85,7 @@ class ExactWork(Frozen):
 
 
 class _CurveFollower(Frozen):
-    """Curves that are followed in the range of a scene."""
+    """Follows the exact curves of a scene in its range."""
 
     report: Report
     clock: CurveTimeLimit
@@ -134,7 +134,7 @@ class _CurveFollower(Frozen):
         )
 
     def peaks(self, scene: Scene) -> Curve:
-        """The peaks, folds and jumps alone."""
+        """The curve of peaks, folds and jumps alone."""
         known, search = list[OrbitRecord](), Search(self.clock.poll, self.report, self.options)
         try:
             alone = peaks_only(scene, known, self.report, self.clock.poll, self.options)
@@ -153,7 +153,9 @@ class _CurveFollower(Frozen):
         )
 
     def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str, Cause]:
-        """All branches, and why they are not complete, else ''; what is stiff is said then, too; the cause.
+        """All branches, the reason why they are not complete, else '', and its cause.
+
+        What is stiff is said then, too.
 
         Raises
         ------
@@ -199,7 +201,10 @@ class _CurveFollower(Frozen):
 def _finished(
     made: Callable[[str, Search], Curve], reason: str, search: Search, cause: Cause = Cause.CALCULATION
 ) -> Curve:
-    """A curve of what was found; once it is interrupted, no other motions are looked for beside that."""
+    """The curve of the branches found.
+
+    Once it is interrupted, no other motions are looked for beside it.
+    """
     if cause is Cause.INTERRUPTED:
         search.end()
     try:
@@ -211,13 +216,13 @@ def _finished(
 
 
 def _with_uncertain_frequencies(curve: Curve, uncertain: UncertainFrequencies) -> Curve:
-    """With where the balance that it began near may lack branches."""
+    """The curve with the frequencies where the balance that it began near may lack branches."""
     curve.uncertain_at, curve.folds_uncertain_at = list(uncertain.levels), list(uncertain.folds)
     return curve
 
 
 def _missing_periods(problem: OrbitProblem, lost: int) -> str:
-    """Why the curves of motions that repeat after so many periods are not complete."""
+    """Reason why the curves of motions that repeat after so many periods are not complete."""
     return (
         f"from {counted(lost, 'period doubling')} no motion was found that repeats after {problem.repeats} "
         "periods"
@@ -225,25 +230,25 @@ def _missing_periods(problem: OrbitProblem, lost: int) -> str:
 
 
 def _check_held_contacts(problem: OrbitProblem, z: FloatArray) -> None:
-    """`NotKeptError` if a contact that is held would not have kept its state in the motion at z."""
+    """Raise `NotKeptError` if a held contact would not have kept its state in the motion at z."""
     shot = problem.shot(z)
     if shot is not None:
         check(shot)
 
 
 def _stop_prefix(stop: BaseException, limit: float | None) -> str:
-    """How the reason of a curve begins that has been stopped."""
+    """Beginning of the sentence on why a curve was stopped."""
     over = isinstance(stop, TimeOver)
     return f"not finished in {limit:g} s of processor time, at " if over else f"{INTERRUPTED} at "
 
 
 def _cause(stop: BaseException) -> Cause:
-    """Why it is not complete then."""
+    """Cause for which a curve that was stopped is not complete."""
     return Cause.CALCULATION if isinstance(stop, TimeOver) else Cause.INTERRUPTED
 
 
 def _too_stiff(scene: Scene, options: ExactOptions) -> tuple[str, float | None]:
-    """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
+    """Sentence on a contact too stiff for its motion to be followed, and what to take instead; else ''.
 
     And the limit of time: where that never ends it is said after so long, if there is none of one's own.
     """

@@ -78,7 +78,7 @@ def fit(
 
 
 def _fit(scene: Scene, method: str | Table, request: Request, execution: Execution) -> Response:
-    """With the harmonics that are asked for, or as many as the data take at the numbers found.
+    """Fit the numbers with the harmonics asked for, or with as many as the data take; the response with them.
 
     These are the harmonics with which the response errs by less than the data are off: with fewer the numbers
     would make up for those that are left out.
@@ -122,7 +122,7 @@ def _fit(scene: Scene, method: str | Table, request: Request, execution: Executi
 
 
 class _Round(Frozen):
-    """The numbers found with some harmonics."""
+    """The numbers found with some harmonics, in one round of a fit."""
 
     parameters: Parameters
     solved: Solved
@@ -130,7 +130,9 @@ class _Round(Frozen):
 
 
 def _shares(rounds: int, last: bool) -> tuple[float, float, float]:
-    """Of the progress, after so many rounds: where one begins, has its numbers, and ends.
+    """Shares of the progress at which a round begins, has its numbers, and ends.
+
+    rounds: how many there were before.
 
     Each takes half of what is left, as nobody knows whether another follows; the last takes all.
     """
@@ -140,7 +142,7 @@ def _shares(rounds: int, last: bool) -> tuple[float, float, float]:
 
 
 def _ends(one: _Round) -> list[FloatArray]:
-    """Where the searches of a round have come to, the best first, each once."""
+    """Numbers at which the searches of a round ended, the best first, each once."""
     found = [one.solved.values]
     for start in one.solved.starts:
         same = (np.allclose(start.end, known, rtol=FIT.number_tolerance, atol=0.0) for known in found)
@@ -150,7 +152,7 @@ def _ends(one: _Round) -> list[FloatArray]:
 
 
 def _accuracy(found: Solved, request: Request) -> float:
-    """That of the response beside which what the data are off is not of the harmonics left out."""
+    """Accuracy of the response at which the harmonics left out do not account for the misfit of the data."""
     off = min(
         misfit(one, rows.residual, _errors(one)) for one, rows in zip(found.data, found.parts, strict=True)
     )
@@ -165,8 +167,10 @@ def _model_response(
     request: Request,
     execution: Execution,
 ) -> Response:
-    """What the data were measured of, with the numbers found: the responses at their levels, or the mode of
-    which all are backbones; with the harmonics of the numbers, or those that an accuracy takes."""
+    """The response with the numbers found: at the levels of the data, or the mode of which all are backbones.
+
+    With the harmonics of the numbers, or those that an accuracy takes.
+    """
     given = found.harmonics if accuracy is None else None
     parameters, numbers = found.parameters, found.solved
     modes = {one.mode if one.damping is not None else None for one in data}
@@ -182,7 +186,7 @@ def _model_response(
 
 
 def _on_mode(data: FittedData, response: Response) -> FittedData:
-    """With the modal amplitudes at which a mode that was followed has the amplitudes measured."""
+    """The data with the modal amplitudes at which a mode that was followed has the amplitudes measured."""
     curve = response.curves[0] if response.curves else None
     if curve is None or curve.mode is None or not curve.points:
         return data
@@ -202,7 +206,7 @@ def _fitted_parameters(
     *,
     execution: Execution,
 ) -> tuple[Parameters, Solved]:
-    """The numbers with the harmonics chosen; near: the ends of searches with fewer."""
+    """The numbers fitted with some harmonics; near: the ends of searches with fewer."""
     assert scene.fit is not None
     try:
         parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
@@ -225,7 +229,7 @@ def _fitted_parameters(
 def _kept(
     scene: Scene, harmonics: tuple[int, ...], near: Sequence[FloatArray], checkpoint: Checkpoint
 ) -> Results:
-    """What is finished of this fit; it is known by all that decides its numbers."""
+    """The results of this fit that are kept; it is known by all that decides its numbers."""
     count = len(scene.fit.vary) if scene.fit is not None else 0
     mark = fingerprint("fit", FIT, harmonics, list(near), replace(scene, name="", title=""))
     found = checkpoint.results(mark, (SearchResult,), lambda _, results: is_search_result(count, results))
@@ -262,7 +266,7 @@ def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) 
 
 
 def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -> Fitted:
-    """What is told of the numbers of the last round; untraced: their response was interrupted."""
+    """Report of the numbers of the last round; untraced: their response was interrupted."""
     parameters, found, harmonics = rounds[-1].parameters, rounds[-1].solved, rounds[-1].harmonics
     told = estimated(parameters, found.values, found.rows)
     return Fitted(
@@ -296,14 +300,14 @@ def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -
 
 
 def _errors(data: Measured) -> FloatArray:
-    """Of the points: of the amplitude, or of frequency and damping ratio."""
+    """Errors of the points of data: of the amplitude, or of frequency and damping ratio."""
     if data.damping is not None:
         return backbone_errors(data, FIT)
     return errors_of(data, False, FIT).amplitude[:, None]
 
 
 def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tuple[int, ...]) -> list[str]:
-    """Sentences on what to measure."""
+    """Sentences that advise what to measure."""
     doubtful = set(np.flatnonzero(told.without_effect + told.undetermined).tolist())
     doubtful |= {k for i, j, _ in told.alike for k in (i, j)}
     every = advice(parameters, found, sorted(doubtful), harmonics)

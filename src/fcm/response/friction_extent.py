@@ -1,4 +1,4 @@
-"""What other motions residual friction allows at some points of a curve, where a contact never slips."""
+"""Other motions that residual friction allows at points of a curve where a contact never slips."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ REST = RestOptions()
 
 @dataclass
 class FrictionExtent:
-    """The extent over residual friction at points, nan where the amplitude is unique; and what is beside."""
+    """Extent of the amplitudes over residual friction at points, and motions beside it.
+
+    It is nan where the amplitude is unique.
+    """
 
     least: FloatArray  # (point, dof)
     greatest: FloatArray  # (point, dof)
@@ -38,7 +41,7 @@ def friction_extent(
     rows: Sequence[int],
     search: Search,
 ) -> FrictionExtent:
-    """What is found at some of the points; amplitude : of all, (point, dof)."""
+    """The extent over residual friction at some of the points; amplitude : of all, (point, dof)."""
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
     out = FrictionExtent(least, greatest, np.full(len(points), np.nan))
     told = [(k, point) for k in rows if (point := points[k]) is not None]
@@ -57,7 +60,7 @@ def friction_extent(
 def _told(
     scene: Scene, points: list[OrbitRecord], out: CoexistingMotions, search: Search
 ) -> CoexistingMotions:
-    """What is found at the points of one frequency."""
+    """The extent over residual friction at the points of one frequency."""
     families, amplitude = dict[int, Family](), out.amplitude
     for k, point in enumerate(points):
         same = [
@@ -93,7 +96,7 @@ def _told(
 
 
 def _family(scene: Scene, point: OrbitRecord, whole: FloatArray, k: int, search: Search) -> Family | None:
-    """The family of a point; None if it has none, or, with 0 for the whole, if it is unknown."""
+    """The family of a point; None if it has none, or if it is unknown, with 0 for the whole then."""
     alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
     if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip
         return None

@@ -1,4 +1,4 @@
-"""Why a curve is not complete, and what would help."""
+"""Reasons why a curve is not complete, and remedies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ UNDAMPED = (
 
 
 def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.NDArray[np.bool_]]:
-    """Why a curve is not complete, empty if it is; and which of its points are no steady states (point,)."""
+    """Reason why a curve is not complete, else empty; and which of its points are no steady states
+    (point,)."""
     system, branches = found.system, found.traced.branches
     unit = system.scene.frequency_unit
     reasons = undetermined(system, points.z, points.force)
@@ -46,19 +47,19 @@ def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.ND
 
 
 def reason_for(system: System, why: str) -> str:
-    """One of REASONS in the keys of the scene; what is pushed by static loads is said to be."""
+    """One of REASONS in the keys of the scene; for static loads that push a rigid-body mode it says so."""
     linear = system.linear
     why = "loaded" if why == "pushed" and linear.load[linear.adrift].any() else why
     return REASONS[why].format(_soft(system.scene.of_matrices))
 
 
 def _soft(of_matrices: bool) -> str:
-    """What holds a rigid-body mode and hardly changes another, by the key that a scene has."""
+    """Name of what holds a rigid-body mode and hardly changes another, by the key that a scene has."""
     return "soft springs in structure.stiffness" if of_matrices else "a small modal.frequency"
 
 
 def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[str, npt.NDArray[np.bool_]]:
-    """For each of REASONS whether it applies at points z (point, unknown + 1), each (point,).
+    """Masks (point,) of the points z (point, unknown + 1) to which each of REASONS applies.
 
     level : (point,) that the forces are multiplied by. Nothing where no mode is a rigid-body one. What is at
     rest, at the level 0, stays where it is.
@@ -70,22 +71,23 @@ def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[s
 
 
 def holds_unknown(system: System, z: FloatArray, level: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether it is not known that contacts which stick hold points at levels, see `hold_unknown`."""
+    """Whether it is unknown that contacts which stick hold points at levels, see `hold_unknown`."""
     if system.linear.natural.all():
         return np.zeros(len(z), dtype=np.bool_)
     return hold_unknown(system, z, _forces(system, z, level))
 
 
 def _forces(system: System, z: FloatArray, level: FloatArray) -> FloatArray:
-    """Of the contacts, laid out as the unknowns (point, unknown)."""
+    """Forces of the contacts, laid out as the unknowns (point, unknown)."""
     points = PointQuantities(system.shared_balance, len(z))
     points.evaluate(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
     return np.asarray(points.force)
 
 
 def _resonant(system: System, omega: float) -> str:
-    """Which harmonic of a frequency [rad/s] meets a resonance of a body on its closed contacts that nothing
-    damps, and what would; empty if none does, or modes are damped.
+    """Sentence on a harmonic that meets an undamped resonance of a body on its closed contacts, and a remedy.
+
+    Of a frequency [rad/s]; empty if none does, or modes are damped.
 
     There the harmonic has no limit, and the curve may turn back on the spot.
     """
@@ -109,7 +111,7 @@ def _resonant(system: System, omega: float) -> str:
 
 
 def remedy(system: System, status: Status) -> str:
-    """What would help where a curve has stalled, if that is known."""
+    """Sentence on what would help where a curve has stalled, if that is known."""
     if status is not Status.STALLED:
         return ""
     if not system.linear.natural.all():

@@ -35,7 +35,7 @@ Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peak
 
 
 def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scene:
-    """The scene (of one curve) with values of numbers."""
+    """The scene (of one curve) with values of some numbers."""
     assert scene.draft is not None
     every = {
         a: x
@@ -46,7 +46,7 @@ def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scen
 
 
 class PeakTask:
-    """One scene (of one curve) with what is to be chosen."""
+    """The task of finding the least peak of one scene (of one curve)."""
 
     def __init__(
         self, scene: Scene, numbers: list[Number], accuracy: float, options: ResponseOptions = RESPONSE
@@ -69,7 +69,7 @@ class PeakTask:
         return with_values(self.scene, self.numbers, values)
 
     def optimum(self, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
-        """With given harmonics, or with those that the accuracy takes at the optimum itself."""
+        """The optimum with given harmonics, or with those that the accuracy takes at the optimum itself."""
         return _optimum(self, harmonics, progress)
 
     def needed(self, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
@@ -78,7 +78,7 @@ class PeakTask:
         return _harmonics_for_peaks(self, found.values, harmonics, most)[0]
 
     def least_traced(self) -> Optimal | None:
-        """Of a search that is interrupted: the least of what was traced; None where nothing was."""
+        """The least peak that an interrupted search has traced; None where nothing was."""
         found = None if self.seeking is None else self.seeking.least_traced()
         if self.seeking is None or found is None:
             return None if self.fewer is None else replace(self.fewer, kind=INCOMPLETE)
@@ -86,7 +86,7 @@ class PeakTask:
 
 
 def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
-    """With given harmonics, or with those that the accuracy takes at the optimum itself."""
+    """The optimum with given harmonics, or with those that the accuracy takes at the optimum itself."""
     rounds = task.options.optimum.max_rounds
     chosen, seconds = harmonics or (1,), task.options.balance.work.max_seconds_repeated
     known: LowestPeak | None = None
@@ -125,7 +125,7 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
 
 
 class _Moving:
-    """Progress of a search: what it says is over, and from there what it works, of which no end is known.
+    """Progress of a search: the share that it reports, and from there its work, of which no end is known.
 
     As much as a curve takes moves it by a quarter of what is left.
     """
@@ -140,7 +140,7 @@ class _Moving:
         self.poll()
 
     def poll(self) -> None:
-        """Show it; called now and then by the work."""
+        """Show the progress; called now and then by the work."""
         work = self._seconds() - self.begin
         ahead = (1.0 - self.share) * work / (work + self.usual) / 2.0
         count = 0 if self.task.seeking is None else self.task.seeking.responses
@@ -154,7 +154,7 @@ class _Moving:
 def _sharing(
     task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None
 ) -> Callable[[float], None] | None:
-    """The progress of what a task seeks, which its work moves on."""
+    """The progress of the search of a task, which its work moves on."""
     if progress is None or task.seeking is None:
         return None
     moving = _Moving(task, harmonics, progress)
@@ -210,7 +210,7 @@ def _search(task: PeakTask, harmonics: tuple[int, ...]) -> LowestPeakSearch:
 
 
 def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> Found:
-    """Of one number, by the curves of the peaks."""
+    """The optimum of one number, with the curves of the peaks."""
     if found.best is None:
         raise ResponseError(_no_peak(task))
     setup = _search(task, harmonics).setup
@@ -234,7 +234,7 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
 
 
 def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None) -> Found:
-    """Of several numbers; from what was found with fewer harmonics."""
+    """The optimum of several numbers, from that found with fewer harmonics."""
     task.seeking = valley = PeakEnvelope(
         task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets, steps=task.steps
     )
@@ -258,7 +258,7 @@ def _no_peak(task: PeakTask) -> str:
 
 
 def still(dofs: str, count: int) -> str:
-    """Of degrees of freedom that only rounding moves.
+    """Sentence on degrees of freedom that only rounding moves.
 
     >>> still("8y", 1)
     '8y does not move, but for rounding: no force reaches it. Minimise another degree of freedom'

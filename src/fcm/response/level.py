@@ -58,7 +58,7 @@ def trace_levels(
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """A curve for each curve of the scene and each frequency, in the scene's unit.
+    """Trace a curve for each curve of the scene and each frequency, in the scene's unit.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
     with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
@@ -101,12 +101,12 @@ def trace_levels(
 
 
 def span_fault(low: float, high: float) -> str:
-    """What is wrong with a span of levels, of the forces or of a mode; empty if nothing is."""
+    """What is wrong with a span of levels, of the forces or of a mode, as text; empty if nothing is."""
     return "" if 0.0 <= low < high else "the levels must rise, from 0 or more"
 
 
 def level_fault(low: float, high: float) -> str:
-    """What is wrong with a span of levels of the forces; empty if nothing is."""
+    """What is wrong with a span of levels of the forces, as text; empty if nothing is."""
     if fault := span_fault(low, high):
         return fault
     if high > INPUT_LIMITS.max_level:
@@ -119,7 +119,7 @@ def level_fault(low: float, high: float) -> str:
 
 
 def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCULATION) -> Curve:
-    """A curve without points, and why."""
+    """A curve without points, with the reason."""
     parameters = {**scene.parameters, EXCITATION: float(in_unit(omega, scene.frequency_unit))}
     return replace(lost_curve(scene, reason, cause), parameters=parameters, level=np.empty(0))
 
@@ -127,7 +127,8 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
 def _level_curve(
     scene: Scene, request: Request, omega: float, span: tuple[float, float], tell: Tell
 ) -> Curve:
-    """With the harmonics of the request; with ever more until they are enough for the accuracy."""
+    """The curve with the harmonics of the request, or with ever more until they are enough for the
+    accuracy."""
     begin, stopped = time.perf_counter(), ""
     system = request.system(scene)
     curve = _followed(system, omega, span, tell)
@@ -164,8 +165,10 @@ def _level_curve(
 
 
 def _worst(curve: Curve, scene: Scene) -> float:
-    """The greatest error of the peaks, and of those motions at the level 1 of which it is known; NaN where
-    that of a peak is not. What hardly moves is not asked for."""
+    """Greatest error of the peaks, and of those motions at the level 1 of which it is known.
+
+    NaN where that of a peak is not known. What hardly moves is not asked for.
+    """
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)
     moves = dofs_of_interest(scene, height)
@@ -201,7 +204,7 @@ def _followed(system: System, omega: float, span: tuple[float, float], tell: Tel
 
 
 def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str, Any]:
-    """What a `Curve` holds of the points of a path inside the span; NaN where it leaves it."""
+    """Contents of a `Curve` at the points of a path inside the span, NaN where the path leaves it."""
     left = np.flatnonzero(np.diff(inside) > 1) + 1
     rows = np.insert(np.arange(inside.size), left, -1)  # -1: outside the span
     level, z = path.parameter[inside], path.z[inside].copy()
@@ -258,7 +261,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
 
 
 def _unsteady_ranges(system: System, level: FloatArray, lost: Mapping[str, npt.NDArray[np.bool_]]) -> str:
-    """From where to where there is no steady state, and why; empty if there is one everywhere."""
+    """Sentence on the range of levels without a steady state, and why; empty if there is one everywhere."""
     for why, which in lost.items():
         if which.any():
             return (

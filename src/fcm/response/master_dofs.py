@@ -1,4 +1,4 @@
-"""The degrees of freedom that a curve is followed by, where many are reported; and all of them afterwards.
+"""Master degrees of freedom that a curve is followed by, where many are reported; all of them afterwards.
 
 All displacements are sums over the same modes, and whatever moves a mode acts at a contact or a force. So a
 curve that is resolved there, and where each mode moves most, is resolved for all other degrees of freedom.
@@ -45,20 +45,21 @@ def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
 
 
 def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> RefinedResponse:
-    """What was found of a scene that leads, of all degrees of freedom of another."""
+    """A response followed by master degrees of freedom, with errors, at all degrees of freedom of a scene."""
     every = with_errors(of_all_dofs(found, scene), accuracy)
     return replace(every, further=found.further, begun=found.begun)
 
 
 def of_all_dofs(found: UncheckedResponse, scene: Scene) -> UncheckedResponse:
-    """The same without errors."""
+    """A response followed by master degrees of freedom at all degrees of freedom of a scene, without
+    errors."""
     system = found.system.of(scene)
     quantities = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
     return UncheckedResponse(system, found.traced, quantities, found.seconds)
 
 
 def with_tops(peaks: Mapping[str, Peak], found: RefinedResponse) -> dict[str, Peak]:
-    """Peaks (by dof) with what is higher between the points."""
+    """Peaks (by dof) raised to what is higher between the points."""
     raised = dict(peaks)
     for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True):
         height, omega = tops_between(found.system, path, quantities)

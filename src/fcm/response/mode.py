@@ -219,7 +219,7 @@ def _recorded(mode: Mode, asked: ModeRequest, error: FloatArray, theirs: FloatAr
 
 
 def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> NonlinearMode:
-    """What is a mode's own, and the response that it foretells at levels of the forces."""
+    """The quantities of a mode itself, and the response that it predicts at levels of the forces."""
     return NonlinearMode(
         number=asked.number,
         amplitude=mode.amplitude,
@@ -235,7 +235,10 @@ def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> Non
 
 
 def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> Iterator[MotionOfMode]:
-    """The motions at modal amplitudes; without any at the resonances, or else at the greatest amplitude."""
+    """Motions of a mode at modal amplitudes.
+
+    Without any amplitudes at the resonances, or else at the greatest amplitude.
+    """
     if at:
         found = [at_amplitude(mode, one) for one in at]
     else:
@@ -254,7 +257,7 @@ def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> It
 
 
 def _reason(mode: Mode) -> str:
-    """Why a mode does not reach the greatest amplitude."""
+    """Reason why a mode does not reach the greatest amplitude."""
     path = mode.path
     if path.status is not Status.RETURNED:
         return f"stopped at modal amplitude {mode.amplitude[-1]:.6g}: {path.status.value}"
@@ -269,7 +272,7 @@ def _reason(mode: Mode) -> str:
 
 
 def _resonances(mode: Mode, level: float) -> list[Resonance]:
-    """With the scene's forces at a level."""
+    """Resonances of a mode with the scene's forces at a level."""
     found = resonances(mode, level)
     if found is None:
         return []

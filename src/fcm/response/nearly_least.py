@@ -1,4 +1,4 @@
-"""Numbers with which the greatest of some peaks is hardly more than the least."""
+"""Numbers with which the greatest of some peaks is hardly more than the least one."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SEARCHED = ("smooth", "kink", "corner", "bound")  # kinds of optima beside which
 def nearly_least(
     found: Optimal, curves: Iterable[TrackedCurve], dofs: Sequence[str], share: float
 ) -> NearlyLeast | None:
-    """Between which values of a number no tracked peak is more than this share above the least.
+    """The range of a number in which no tracked peak is more than this share above the least.
 
     Peaks between two points of a curve are those of a straight line. An end of the curves is one of the range
     where the peaks are not greater up to there. None of several numbers, and where peaks end or are unknown.
@@ -40,7 +40,7 @@ def nearly_least(
 
 
 def _above(number: FloatArray, height: FloatArray, limit: float) -> FloatArray:
-    """Numbers at which a curve is at or above a limit, and where it crosses that."""
+    """Ranges of numbers at which a curve is at or above a limit, and where it crosses that."""
     off = height - limit
     crossed = np.flatnonzero((off[:-1] * off[1:] < 0.0) & np.isfinite(off[:-1] * off[1:]))
     part = off[crossed] / (off[crossed] - off[crossed + 1])

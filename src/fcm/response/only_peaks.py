@@ -36,7 +36,7 @@ from fcm.time_domain.errors import SimulationError
 
 
 class PeaksOnly(Frozen):
-    """The peaks, folds and jumps of a scene, by frequency, and what it took to find them."""
+    """The peaks, folds and jumps of a scene, by frequency, and how many periods it took to find them."""
 
     points: list[OrbitRecord]
     jumps: list[Jump] = field(default_factory=list)
@@ -115,7 +115,7 @@ def _curve(
 
 
 def _one_harmonic_suffices(single: Curve) -> bool:
-    """Whether by one harmonic the peaks are nearly those of the motion, and it jumps at folds alone.
+    """Whether the peaks by one harmonic are nearly those of the motion, and it jumps at folds alone.
 
     Else a balance that is near enough takes longer than to follow the exact curve, and often that is
     followed after all.
@@ -127,7 +127,7 @@ def _one_harmonic_suffices(single: Curve) -> bool:
 
 
 def _at_folds(swept: FrequencySweep, curve: Curve) -> bool:
-    """Whether each jump is at a fold, and none where stability is lost otherwise, which is not looked for."""
+    """Whether each jump is at a fold: where stability is lost otherwise is not looked for."""
     return all(jump.frequency in curve.folds for jump in swept.jumps)
 
 
@@ -139,7 +139,7 @@ def _paired(folds: dict[float, OrbitRecord], points: list[OrbitRecord]) -> bool:
 
 
 def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:
-    """Places of the balance at which it has peaks, of which one may be the highest, and folds."""
+    """Guesses at points of the balance: its peaks, of which one may be the highest, and its folds."""
     if not curve.points:
         return
     for dof in range(curve.amplitude.shape[1]):
@@ -151,7 +151,7 @@ def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:
 
 
 def _peaks(curve: Curve, dof: int) -> list[int]:
-    """Points that are higher than their neighbours, and nearly as high as the highest."""
+    """Indices of points higher than their neighbours, and nearly as high as the highest."""
     a = np.where(np.isfinite(curve.amplitude[:, dof]), curve.amplitude[:, dof], -np.inf)
     padded = np.concatenate(([-np.inf], a, [-np.inf]))
     tops = (a >= padded[:-2]) & (a >= padded[2:]) & (a >= EXACT_CURVES.peak_threshold * a.max()) & (a > 0.0)

@@ -106,7 +106,7 @@ def optimise(
 
 
 def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
-    """The numbers of some keys, and the scene in which they are free."""
+    """The numbers of some keys, and the scene with these numbers free."""
     numbers = [number_of(scene, key) for key in keys]
     for number in numbers:
         scene = number.freed(scene)
@@ -114,7 +114,7 @@ def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
 
 
 def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Response:
-    """What an interruption leaves of the search for optima: those so far, and no response with them."""
+    """The response that an interruption leaves of the search for optima: those so far, and no curves."""
     unknown = [(np.nan,) * len(one.active) for one in tracking.optima]
     tracking.optima = [
         replace(one, stable=none, residual=none) for one, none in zip(tracking.optima, unknown, strict=True)
@@ -131,7 +131,7 @@ def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Re
 
 
 def _tracking(aim: Optimum, found: list[Found]) -> Tracking:
-    """What was followed, for a file: the optima, and the curves that led there."""
+    """The optima and the curves that led there, for a file."""
     key = aim.vary[0] if len(aim.vary) == 1 else ""
     curves = [curve for _, tracked in found for curve in tracked]
     tracking = Tracking(key, "optimum", aim.bounds[0], found[0][0].harmonics, curves)
@@ -155,7 +155,7 @@ def scenes_at(scene: Scene, optima: list[Optimal]) -> tuple[Scene, ...]:
 
 
 def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
-    """The scene whose curves are those at the optima."""
+    """The scene with one curve for each optimum."""
     curves = []
     for curve, found in zip(free.each_curve(), optima, strict=True):
         there = with_values(curve, numbers, np.array(list(found.values.values())))
@@ -171,7 +171,7 @@ def _check_moves(found: Optimal, curve: Curve) -> None:
 
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:
-    """With the estimated error of the peaks that are greatest, and what else is known of the motion there."""
+    """An optimum with the estimated error of its greatest peaks, and what else is known of the motion."""
     there = [_known_of_peak(curve, dof, omega) for dof, omega in found.active]
     error = float(np.max([one.error for one in there])) if there else np.nan
     stable, residual = (tuple(getattr(one, name) for one in there) for name in ("stable", "residual"))
@@ -179,7 +179,7 @@ def _with_error(found: Optimal, curve: Curve) -> Optimal:
 
 
 def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
-    """What is known of the peak of a degree of freedom at a frequency.
+    """The peak of a degree of freedom at a frequency, with its error and stability.
 
     That need not be its greatest amplitude, which may be at an end of the range. NaN where it is not known.
     """
@@ -196,7 +196,7 @@ def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
 
 
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:
-    """Of the accuracy that was asked for, where more harmonics would take too long or change nothing."""
+    """Say where the accuracy falls short, as more harmonics would take too long or change nothing."""
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         exact = one.error <= accuracy
         if curve.complete and not (exact and one.end_error <= accuracy):
@@ -218,7 +218,7 @@ def _with(harmonics: tuple[int, ...]) -> str:
 
 
 def _missed_peak(found: Optimal, curve: Curve) -> tuple[str, float] | None:
-    """The highest of what is minimised that the response has there and that was not followed."""
+    """The highest peak of a minimised quantity in the response that was not followed."""
     ends, higher = (curve.condensed or condense(curve)).ends, list[tuple[float, str]]()
     for name in found.minimised:
         what, _, dof = name.partition(".")
@@ -241,7 +241,7 @@ def optima(
     checkpoint: Checkpoint | None,
     progress: Progress | None,
 ) -> tuple[list[Found], bool]:
-    """That of each task, all with the same harmonics; or those so far, and that it was interrupted.
+    """The optimum of each task, all with the same harmonics; or those so far, and that it was interrupted.
 
     Raises
     ------
@@ -267,7 +267,7 @@ def _optima(
     checkpoint: Checkpoint | None,
     progress: Progress | None,
 ) -> Iterator[Found]:
-    """That of each task, kept as soon as it is found, and so is each response and curve that leads to it.
+    """The optimum of each task, kept as soon as it is found, with each response and curve that leads to it.
 
     What is kept already is as it was.
     """
@@ -281,7 +281,7 @@ def _optima(
 
 
 def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: Checkpoint) -> Results:
-    """What is finished of these tasks; they are known by all that decides their optima."""
+    """The results of these tasks that are kept; they are known by all that decides their optima."""
     scenes = [replace(task.scene, name="", title="", curves=()) for task in tasks]
     mark = fingerprint(
         "optima", harmonics, [(task.numbers, task.accuracy, task.options) for task in tasks], scenes
@@ -301,7 +301,7 @@ def _fits(tasks: list[PeakTask], number: int, results: Any) -> bool:
 
 
 def _with_the_same(tasks: list[PeakTask], found: list[Found], checkpoint: Checkpoint | None) -> list[Found]:
-    """The optima with the same harmonics, as the curves of a response have: what any of them takes."""
+    """The optima with the same harmonics, those that any of them takes, as the curves of a response have."""
     every = {h for one, _ in found for h in one.harmonics}
     if all(len(one.harmonics) == len(every) for one, _ in found):
         return found

@@ -13,22 +13,23 @@ from fcm.tracking.options import SEARCH, SearchOptions
 
 
 class InputLimits(Frozen):
-    """What is asked for and is more likely a mistake than meant.
+    """Limits of what may be asked for: beyond them it is more likely a mistake than meant.
 
     Attributes
     ----------
     accuracy : float
-        Relative, of peaks and folds, where nothing else is said.
+        Relative accuracy of peaks and folds, where nothing else is asked for.
     max_frequency_ratio : float
-        Times the highest natural frequency, beyond which a frequency is a mistake of units.
+        Frequency relative to the highest natural frequency, beyond which it is refused as a mistake of units.
     max_level : float
-        Level of the forces, beyond which it is a mistake of units.
+        Level of the forces beyond which it is refused as a mistake of units.
     min_level : float
-        Level of the forces, below which the structure does not move.
+        Level of the forces below which the structure does not move: a lower one is refused.
     max_amplitude_ratio : float
-        Greatest ratio of the ends of a span of amplitudes.
+        Greatest ratio of the ends of a span of amplitudes; more is refused.
     min_relative_width : float
-        Relative width of a span: of a narrower one not even the first steps are more than rounding.
+        Relative width of a span below which it is refused: not even the first steps would be more than
+        rounding.
     """
 
     accuracy: float = 1e-2
@@ -43,22 +44,26 @@ INPUT_LIMITS = InputLimits()
 
 
 class SentenceOptions(Frozen):
-    """How many things one sentence names.
+    """Options on how many things one sentence names.
 
     Attributes
     ----------
     max_dofs, max_harmonics, max_frequencies : int
-        Of each kind at most.
+        Most degrees of freedom, harmonics and frequencies that are named.
     low_peak : float
-        Share of the greatest peak, below which it is said of the peak with the greatest error how low it is.
+        Height of the peak with the greatest error, relative to the greatest peak, below which it is said how
+        low it is.
     max_states : int
-        Letters of a sequence of contact states: a contact that chatters has more, and the rest is cut off.
+        Most letters of a sequence of contact states: that of a contact which chatters has more, and is cut
+        off.
     resonance_tolerance : float
-        Relative distance of a harmonic's frequency from a resonance, up to which a curve stops at that.
+        Relative distance of a harmonic's frequency from a resonance, up to which a curve is said to stop at
+        it.
     spring_ratio : float
-        Times below that resonance the spring to the ground is that is advised: it shifts it by 1/1800.
+        Ratio of that resonance to the frequency of the spring to the ground that is advised: the spring
+        shifts the resonance by 1/1800.
     contacts_in_time : int
-        With more nobody is sent to the exact motion: a frequency takes minutes.
+        Number of contacts above which nobody is sent to the exact motion: a frequency takes minutes.
     """
 
     max_dofs: int = 3
@@ -75,22 +80,22 @@ SENTENCES = SentenceOptions()
 
 
 class SweepOptions(Frozen):
-    """How the curves of a sweep are traced.
+    """Options on how the curves of a sweep are traced.
 
     Attributes
     ----------
     batch : int
-        Curves that are finished or interrupted together.
+        Number of curves that are finished or interrupted together.
     expected_harmonic : int
-        Harmonic that is expected to be the highest, where an accuracy decides.
+        Highest harmonic that is expected, where an accuracy decides.
     traced_share : float
-        Share of the progress bar at which the curves are traced; then they are checked.
+        Share of the progress bar for tracing the curves; the rest is for checking them.
     max_rounds : int
-        Of more harmonics, after which what is left is said.
+        Most rounds of more harmonics, after which what is lacking is said.
     save_interval : float
-        [s] after which finished curves are saved before their group is, and no kill can lose them.
+        [s] Time after which finished curves are saved before their batch is, so that no kill loses them.
     progress_interval : float
-        [s] after which the progress moves where nobody tells what share is done.
+        [s] Time after which the progress moves where nobody tells what share is done.
     peaks_only : bool
         Whether to keep peaks, folds and errors of each curve, and not its points.
     """
@@ -108,16 +113,17 @@ SWEEP = SweepOptions()
 
 
 class InterruptedOptions(Frozen):
-    """What is calculated of a curve once it is interrupted, which is to take a second or so.
+    """Options on what is still computed of a curve after an interruption, in a second or so.
 
     Attributes
     ----------
     max_states : int
-        Points times contacts: a curve with more is written with fewer points, and no more errors.
+        Most points times contacts of a curve with errors: a curve with more is written with fewer points, and
+        no further errors.
     min_points : int
-        However many contacts there are.
+        Least number of points that are written, however many contacts there are.
     max_seconds_of_errors : float
-        [s] that errors may take which are not known yet.
+        [s] Time that errors not known yet may take; with more they are left out.
     """
 
     max_states: int = 20_000
@@ -125,7 +131,7 @@ class InterruptedOptions(Frozen):
     max_seconds_of_errors: float = 0.2
 
     def max_points(self, contacts: int) -> int:
-        """Of a curve with so many contacts.
+        """Most points that are written of a curve with so many contacts.
 
         >>> InterruptedOptions().max_points(25), InterruptedOptions().max_points(300)
         (800, 200)
@@ -137,27 +143,29 @@ INTERRUPTED_CURVES = InterruptedOptions()
 
 
 class SteppedOptions(Frozen):
-    """How a sweep by steps of the frequency follows one motion.
+    """Options on how a sweep by steps of the frequency follows one motion.
 
     Attributes
     ----------
     max_distance : float
-        Distance along the curve, in units of the motion, that is not continued at once.
+        Distance along the curve, in units of the motion, above which a step is divided.
     max_deviation : float
-        Distance from what the direction foretells, relative to the way, beyond which a solution is on another
-        branch;
+        Distance of a solution from its prediction, relative to the step, above which it is on another branch.
     min_deviation : float
-        but never within this distance, in units of the motion.
+        Distance of a solution from its prediction, in units of the motion, up to which it is never on another
+        branch.
     min_step : float
-        Part of the way between two frequencies that is not divided further: jumps are known to it.
+        Step relative to the way between two frequencies, below which it is not divided: jumps are known to
+        it.
     overshoot : float
-        Part of that way, past the end of a branch, where the motion is simulated: nearer it would linger.
+        Distance past the end of a branch, relative to the way that is left, at which the motion is simulated:
+        nearer it would linger.
     irregular_step : float
-        Part of the frequency by which a motion that repeats after no single period is taken at once,
+        Longest step, relative to the frequency, of a motion that repeats after no number of periods.
     irregular_cycles : int
-        and periods for which it is simulated after each leap.
+        Number of periods for which such a motion is simulated after each step.
     min_jump : float
-        Relative change of an amplitude that is a jump.
+        Relative change of an amplitude above which it is a jump.
     """
 
     max_distance: float = 0.5
@@ -174,24 +182,26 @@ STEPPED = SteppedOptions()
 
 
 class ExactOptions(Frozen):
-    """How exact curves are calculated.
+    """Options on how exact curves are calculated.
 
     Attributes
     ----------
     max_harmonic : int
-        Harmonic up to which modes are kept as they are; what that does is measured.
+        Highest harmonic of the response that modes have to lie far above to be replaced by static ones; the
+        effect of that is measured.
     min_contacts : int
-        Fewest of a scene of which some may be foreseen to keep their state.
+        Least number of contacts of a scene of which some may be foreseen to keep their state.
     max_seconds : float, optional
-        [s] of processor time for a curve; what there is of it then, is the result. None for no limit.
+        [s] Processor time of a curve, after which what there is of it is the result. None for no limit.
     stiff_seconds : float
-        [s] of processor time for a curve that a stiff contact may keep from ever being finished.
+        [s] The same limit for a curve that a stiff contact may keep from ever being finished.
     search_fraction : float
-        Part of the time for a curve, that the search for what leads to further branches may take.
+        Time of the search for further branches, relative to the time of a curve, at most.
     peak_threshold : float
-        Part of the greatest amplitude of a degree of freedom: lower peaks of the balance are not the highest.
+        Height of a peak of the balance, relative to the greatest amplitude of its degree of freedom, below
+        which it is not one of the highest.
     max_peak_error : float
-        Relative error of peaks by one harmonic, beyond which one that is near enough has too many.
+        Relative error of the peaks with one harmonic, up to which they are near enough as guesses.
     """
 
     max_harmonic: int = 3
@@ -207,16 +217,16 @@ EXACT_CURVES = ExactOptions()
 
 
 class ResumableOptions(Frozen):
-    """How often a curve is saved while it is followed.
+    """Options on how often a curve is saved while it is followed.
 
     Attributes
     ----------
     save_interval : float
-        [s] between two savings at least,
+        [s] Least time between two savings.
     time_fraction : float
-        which may take this part of the time.
+        Time that savings may take, relative to all.
     poll_interval : float
-        [s] between two looks at the processor time, which takes long to tell on some machines.
+        [s] Time between two readings of the processor time, which takes long to read on some machines.
     """
 
     save_interval: float = 0.5
@@ -228,16 +238,16 @@ RESUMABLE = ResumableOptions()
 
 
 class CoexistingOptions(Frozen):
-    """Which motions at one frequency are the same.
+    """Options on which motions at one frequency are the same.
 
     Attributes
     ----------
     orbit_tolerance : float
-        Relative difference of two periodic motions, below which they are one.
+        Relative difference of two periodic motions below which they are the same.
     extent_tolerance : float
-        Relative difference of amplitudes, up to which a motion is within an extent.
+        Relative difference of amplitudes up to which a motion is within an extent.
     amplitude_tolerance : float
-        Relative range of amplitudes, below which they are the same.
+        Relative range of amplitudes up to which they are the same.
     """
 
     orbit_tolerance: float = 1e-5
@@ -249,12 +259,12 @@ COEXISTING = CoexistingOptions()
 
 
 class ContactChangeOptions(Frozen):
-    """Which changes at a contact are rounding.
+    """Options on which changes at a contact are rounding.
 
     Attributes
     ----------
     point_tolerance : float
-        Distance, in the problem's scale, that rounding may put between the same point of two problems.
+        Distance in the problem's scale that rounding may put between the same point of two problems.
     """
 
     point_tolerance: float = 1e-8
@@ -264,18 +274,18 @@ CONTACT_CHANGES = ContactChangeOptions()
 
 
 class FittedResponseOptions(Frozen):
-    """How the response of a fit is traced.
+    """Options on how the response of a fit is traced.
 
     Attributes
     ----------
     max_rounds : int
-        Of more harmonics, until the response takes no more than the fit had.
+        Most rounds of more harmonics, until the response takes no more than the fit had.
     misfit_share : float
-        Of what the data are off, relative, that the response may err by.
+        Error that the response may have, relative to the misfit of the data.
     min_accuracy : float
-        Relative, below which no more harmonics are taken for it.
+        Relative accuracy beyond which no more harmonics are taken for it.
     fit_share : float
-        Share of the progress bar that is over when the numbers are found.
+        Share of the progress bar for finding the numbers.
     """
 
     max_rounds: int = 3
@@ -288,24 +298,25 @@ FITTED_RESPONSE = FittedResponseOptions()
 
 
 class OptimumOptions(Frozen):
-    """How the least peak is found, and the curves of peaks on which it is.
+    """Options on how the least peak is found, and the curves of peaks on which it is.
 
     Attributes
     ----------
     max_rounds : int
-        Of choosing harmonics by the accuracy at the optimum.
+        Most rounds of choosing harmonics by the accuracy at the optimum.
     min_height : float
-        Part of the greatest peak: those that are lower are none.
+        Height relative to the greatest peak, up to which a peak is ignored.
     search_share : float
-        Share of the progress bar that is over when the optimum is found.
+        Share of the progress bar for finding the optimum.
     frequency_tolerance : float
-        Relative difference of frequencies at which a peak was tracked and traced.
+        Relative difference of the frequencies of a tracked and a traced peak, up to which they are the same.
     max_dofs : int
-        Degrees of freedom, up to which a curve is followed by all: their peaks are points of it.
+        Number of degrees of freedom up to which all of them steer the steps of a curve, so that their peaks
+        are points of it.
     nearly : float
-        Share above the least peak, up to which it is reported for which numbers.
+        Relative height above the least peak, up to which it is reported for which numbers peaks are as low.
     search : SearchOptions
-        How the least over a range of one number is found.
+        Options of the search for the least peak over a range of one number.
     """
 
     max_rounds: int = 4
@@ -326,7 +337,7 @@ class ResponseOptions(Frozen):
     Attributes
     ----------
     balance : HarmonicBalanceOptions
-        Of the balance, and what more harmonics may take.
+        Options of the harmonic balance, and what more harmonics may take.
     refinement : RefinementOptions
         How harmonics are added for an accuracy.
     optimum : OptimumOptions
@@ -338,9 +349,9 @@ class ResponseOptions(Frozen):
     reduction : ReductionOptions
         What curves do not need: modes that are replaced by static ones.
     exact : ExactOptions
-        How exact curves are calculated,
+        How exact curves are calculated.
     shooting : ShootingOptions
-        and the periodic motions that they consist of.
+        How the periodic motions are calculated of which exact curves consist.
     others : tuple
         Options of what is computed from a balance, each of the class of its package: `FoldOptions`,
         `LevelOptions`, `LevelCurveOptions` and `LevelReachOptions` of the branches, `ValidityOptions` and
@@ -362,5 +373,8 @@ RESPONSE = ResponseOptions()
 
 
 def leaving_out(tolerance: float | None, options: ResponseOptions = RESPONSE) -> ResponseOptions:
-    """What changes the response by no more is left out; 0: what has no effect at all, None: nothing."""
+    """Options that leave out whatever changes the response by no more than a tolerance.
+
+    0: what has no effect at all, None: nothing.
+    """
     return replace(options, reduction=replace(options.reduction, tolerance=tolerance))

@@ -14,7 +14,10 @@ from fcm.shooting.problem import OrbitProblem
 
 
 class OrbitBranches(Frozen):
-    """The paths of a problem; of doubled periods those of half of them, at whose flips they end."""
+    """The paths of a problem of exact motions.
+
+    Of doubled periods, once: those of half of them, at whose flips they end.
+    """
 
     problem: OrbitProblem
     paths: Sequence[Path]
@@ -28,7 +31,7 @@ class OrbitBranches(Frozen):
 
     @cached_property
     def points(self) -> list[list[OrbitRecord]]:
-        """The same, with those at the frequencies at which others end."""
+        """The points of each path, with those at the frequencies at which others end."""
         found = self.own
         if self.cut_off:
             return found

@@ -71,7 +71,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
 
 
 def _of_whole(scene: Scene, point: OrbitRecord) -> OrbitRecord:
-    """A point with the contacts that are held."""
+    """A record with the contacts that are held, too."""
     states, contact_loads = (
         whole_states(scene, point.states),
         whole_contact_loads(scene, point.contact_loads, point.held[:, 1:]),
@@ -80,7 +80,7 @@ def _of_whole(scene: Scene, point: OrbitRecord) -> OrbitRecord:
 
 
 def _kept(scene: Scene, points: Sequence[OrbitRecord]) -> FloatArray:
-    """The least of its limit or gap that each contact which is held keeps: (contact, 2), else nan."""
+    """Least distance of each held contact from its limit or gap: (contact, 2), else nan."""
     kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
     if not points:
         return kept
@@ -91,7 +91,7 @@ def _kept(scene: Scene, points: Sequence[OrbitRecord]) -> FloatArray:
 
 
 def curve_of_points(scene: Scene, points: Sequence[OrbitRecord], reason: str, search: Search) -> Curve:
-    """Points that no curve joins: one of NaN between each and the next."""
+    """A curve of separate points: one of NaN between each and the next."""
     apart = [one for point in points for one in (None, point)]
     return _curve(scene, apart[1:], reason, search)
 
@@ -160,7 +160,7 @@ def _curve(
 def _orbits(
     points: Sequence[OrbitRecord | None], empty: Curve, others: FrictionExtent, stuck: Sequence[Stuck]
 ) -> Orbits:
-    """What only exact curves have; stuck : motions beside the points, other than those of families."""
+    """Quantities that only exact curves have; stuck : motions beside the points, not of families."""
     return Orbits(
         closure_error=_numbers(points, "residual"),
         sweep=np.full(len(points), "", dtype="<U4"),
@@ -175,12 +175,12 @@ def _orbits(
 
 
 def _numbers(points: Sequence[OrbitRecord | None], name: str) -> FloatArray:
-    """A number of each point; NaN between branches."""
+    """Values (point,) of one number at each point, NaN between branches."""
     return np.array([np.nan if point is None else getattr(point, name) for point in points])
 
 
 def _rows(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> FloatArray:
-    """A measure of each point, (point, dof)."""
+    """One measure of each point, (point, dof)."""
     none = np.full(len(empty.peaks), np.nan)
     rows = [none if point is None else getattr(point.measure, name) for point in points]
     return np.array(rows).reshape(len(points), len(empty.peaks))
@@ -204,7 +204,7 @@ def _cycles(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> Fl
 
 
 def _told_points(amplitude: FloatArray, everywhere: bool) -> list[int]:
-    """The points of which it is told what other motions residual friction allows: the peaks, or all."""
+    """Points for which other motions that residual friction allows are looked for: the peaks, or all."""
     known = np.isfinite(amplitude).any(axis=1)
     if everywhere:
         return np.flatnonzero(known).tolist()
@@ -221,7 +221,7 @@ def _short(states: str) -> str:
 
 
 def _residual(amplitude: FloatArray, others: FrictionExtent, unseen: npt.NDArray[np.bool_]) -> FloatArray:
-    """By how much residual friction changes each amplitude (point, dof), relative; NaN where unknown."""
+    """Relative changes of each amplitude (point, dof) by residual friction; NaN where unknown."""
     up, down = others.greatest - amplitude, amplitude - others.least
     change = np.maximum(up, down) / np.where(amplitude > 0.0, amplitude, 1.0)
     unknown = unseen | (np.isfinite(others.greatest).any(axis=1) & (others.whole != 1.0))

@@ -100,7 +100,7 @@ def refined(
 def _with_branches(
     now: Refined, _: Refined | None, accuracy: float | None, __: Scene
 ) -> tuple[Refined, Harmonics]:
-    """With what levels below its peaks, its folds and its branch points lead to."""
+    """The response with what levels below its peaks, its folds and its branch points lead to."""
     known, most = now.found.traced, _most(accuracy)
     found = with_levels_below_peaks(now.found, most)
     traced = with_further_branches(found.system, found.traced, isolated=not _is_of_these_alone(found))
@@ -125,7 +125,8 @@ def _is_of_these_alone(found: RefinedResponse) -> bool:
 def _with_events(
     now: Refined, before: Refined | None, accuracy: float | None, _: Scene
 ) -> tuple[Refined, Harmonics]:
-    """With its stability, the points where that changes, and what levels lead to where nothing is stable."""
+    """The response with its stability, where that changes, and what levels lead to where nothing is
+    stable."""
     now = _with_stability(now, accuracy)
     found, exceeded = with_levels_where_unstable(now.found, now.stable, _most(accuracy))
     now = _with_stability(replace(now, found=found, exceeded=exceeded), accuracy)
@@ -139,7 +140,7 @@ def _with_events(
 def _with_all_dofs(
     now: Refined, _: Refined | None, accuracy: float | None, scene: Scene
 ) -> tuple[Refined, Harmonics]:
-    """Of all degrees of freedom of a scene, if only those that lead were followed."""
+    """The response at all degrees of freedom of a scene, if it was followed by master ones."""
     found, most = now.found, _most(accuracy)
     if found.system.scene is scene:
         return replace(now, every=found), found.system.harmonics
@@ -153,8 +154,9 @@ def _most(accuracy: float | None) -> float:
 
 
 def _with_stability(now: Refined, accuracy: float | None) -> Refined:
-    """With points where stability changes between folds, and whether each point is stable, for the branches
-    of which that is not known yet.
+    """The response with the stability of its points, and points where it changes between folds.
+
+    For the branches of which that is not known yet.
 
     With an accuracy, and how far it is from where more harmonics have these; not of a curve that has not come
     to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
@@ -208,6 +210,6 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
 
 
 def _between(values: FloatArray, after: Rows) -> FloatArray:
-    """With the means of neighbours inserted after some rows."""
+    """Values with the means of neighbours inserted after some rows."""
     means = 0.5 * (values[after] + values[np.minimum(after + 1, len(values) - 1)])
     return np.insert(values, after + 1, means, axis=0)

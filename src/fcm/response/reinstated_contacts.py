@@ -1,4 +1,4 @@
-"""Curves of a scene with contacts held, taken over where some of these have to be computed after all.
+"""Curves with contacts held, carried over to a problem in which some of these are computed after all.
 
 As long as a contact keeps its state, a motion in which it is held is one in which it is computed. So what
 there is of a curve need not be followed again, up to the last point before a contact that was held loses its
@@ -23,7 +23,7 @@ from fcm.shooting.problem import OrbitProblem
 
 
 class ReinstatedContacts:
-    """From points of a problem with contacts held to those of one with fewer: linear in the unknowns.
+    """The map from points of a problem with contacts held to those of one with fewer; it is linear.
 
     The friction force of a contact that sticks is k_u (u - rest), with u the displacement along it.
     """
@@ -44,7 +44,7 @@ class ReinstatedContacts:
                 self._rest[row] = -one.contact.k_u * one.rest
 
     def saved_paths(self, saved_paths: Iterable[SavedPath]) -> Iterator[SavedPath]:
-        """Those of a number of paths that are also of the other problem."""
+        """Saved paths that are also paths of the other problem, in its unknowns."""
         for saved in saved_paths:
             path = None if saved.path is None else self._path(saved.path)
             checkpoint = (
@@ -61,12 +61,12 @@ class ReinstatedContacts:
         return all(shot is not None and (shot.held_distances[self._released] > 0.0).all() for shot in shots)
 
     def point(self, z: FloatArray) -> FloatArray:
-        """The same motion in the other unknowns."""
+        """A motion in the unknowns of the other problem."""
         there: FloatArray = self._linear @ z + self._rest
         return there
 
     def way(self, direction: FloatArray) -> FloatArray:
-        """The same direction in the other unknowns."""
+        """A direction in the unknowns of the other problem."""
         there: FloatArray = self._linear @ direction
         return there
 
@@ -104,7 +104,7 @@ class ReinstatedContacts:
         )
 
     def _stepper(self, z: FloatArray, direction: FloatArray) -> Stepper | None:
-        """One of the other problem at a point; None where its curve is not found there, in that direction."""
+        """A stepper of the other problem at a point; None where its curve is not found in that direction."""
         there, stepper = self.point(z), Stepper(self.now)
         row = _unit(self.now, there, self.way(direction))
         if not stepper.begin(there, row):
@@ -124,12 +124,12 @@ class ReinstatedContacts:
 
 
 def _each(change: Callable[[FloatArray], FloatArray], rows: FloatArray) -> FloatArray:
-    """Rows one by one, so that the same one is the same afterwards to its last digit."""
+    """Rows changed one by one, so that equal rows stay equal to the last digit."""
     return np.array([change(row) for row in rows]).reshape(len(rows), -1)
 
 
 def _places(problem: OrbitProblem) -> FloatArray:
-    """What each unknown of a point is, among those of the whole scene; the frequency is -1."""
+    """Positions of the unknowns of a point among those of the whole scene; the frequency is -1."""
     scene = problem.scene
     modes = 2 * scene.modal.mass.size
     every: Sequence[int] = [*range(modes), *(modes + i for i in scene.computed())]

@@ -1,4 +1,4 @@
-"""What is asked of a curve: some harmonics, or an accuracy that chooses them; the error of asking amiss."""
+"""Requests of a curve: some harmonics, or an accuracy that chooses them; and the error of a bad one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ResponseError(ValueError):
 
 
 class Request(Frozen):
-    """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
+    """Request for a curve: with given harmonics, or with as many as an accuracy needs.
 
     With one harmonic and a table it is reported how far the table's own solutions are from the points, which
     are solutions with the closed form; unless they are not to be corrected: then they are the table's.
@@ -48,7 +48,7 @@ def request_of(
     accuracy: float | None,
     options: ResponseOptions | None = None,
 ) -> Request:
-    """What was asked for: by a caller, else by the scene, else the default accuracy.
+    """The request of a caller, else of the scene, else the default accuracy.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def request_of(
 
 
 def _numbers(harmonics: object) -> tuple[Any, ...]:
-    """Harmonics up to a number, or some; integers of numpy are as good as those of Python."""
+    """Harmonics up to a number, or some given ones; integers of numpy are as good as those of Python."""
     if isinstance(harmonics, Integral) and not isinstance(harmonics, bool):
         return harmonics_up_to(int(harmonics))
     some = harmonics if isinstance(harmonics, Iterable) else (harmonics,)

@@ -32,7 +32,7 @@ class SavedPath(Frozen):
     checkpoint: Checkpoint | None
 
     def partial_path(self) -> Path:
-        """The points that there are, as those of a curve that is cut off."""
+        """The points of a saved path as those of a curve that is cut off."""
         if self.path is not None:
             return replace(self.path, status=Status.INTERRUPTED)
         assert self.checkpoint is not None
@@ -51,7 +51,7 @@ class TimeOver(Exception):  # noqa: N818
 
 
 class CurveTimeLimit:
-    """Of the processor time that a curve may take [s], from the beginning; without end if that is None.
+    """The processor time [s] that a curve may take, from now on; no limit if it is None.
 
     Each look is reported as a step.
     """
@@ -61,16 +61,16 @@ class CurveTimeLimit:
         self._end = None if limit is None else time.process_time() + limit
 
     def share(self, part: float) -> float:
-        """So much of it [s]."""
+        """A part of the limit [s]."""
         return np.inf if self.limit is None else part * self.limit
 
     @property
     def over(self) -> bool:
-        """Whether it is taken."""
+        """Whether the time is over."""
         return self._end is not None and time.process_time() > self._end
 
     def poll(self) -> None:
-        """Raise `TimeOver` when it is."""
+        """Raise `TimeOver` when the time is over."""
         self.report.again()
         if self._end is not None and time.monotonic() > self._ask:
             if self.over:
@@ -116,7 +116,7 @@ class ResumablePaths:
         *,
         forward: bool,
     ) -> Path:
-        """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
+        """Follow a curve, see `follow`; one of doubled periods up to where it comes to those of half."""
         saved = self._known.get(_key(self._saved_path(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
             checkpoint = None if saved is None else saved.checkpoint
@@ -130,7 +130,7 @@ class ResumablePaths:
         return saved.path
 
     def _followed(self, problem: OrbitProblem, start: FloatArray, whole: Callable[..., Path]) -> Path:
-        """The curve by `follow` with a watch; of motions of twice the periods up to those of one."""
+        """The curve by `follow` with a watch; one of doubled periods up to those of half."""
         self._recorded = 0
         watch = partial(self._watch, problem, float(start[-1]))
         if isinstance(problem, DoubledPeriodProblem):
@@ -156,8 +156,11 @@ class ResumablePaths:
         self.poll()
 
     def _record(self, problem: OrbitProblem, checkpoint: Checkpoint) -> None:
-        """Record the points that are new before their periods are forgotten: then a curve that is stopped is
-        there at once. Many together: after each step it would make the following a tenth slower."""
+        """Record the new points before their periods are forgotten.
+
+        Then a curve that is stopped is there at once. Many together: after each step it would make the
+        following a tenth slower.
+        """
         if problem.full:
             for z in (*checkpoint.kept.before.z[self._recorded :], checkpoint.kept.last[0]):
                 recorded(problem, z)
@@ -177,7 +180,7 @@ class ResumablePaths:
         self._given = {saved.number: saved for saved in saved_paths}
 
     def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> SavedPath | None:
-        """The one with the next number, if it begins there."""
+        """The saved path with the next number, if it begins at the start."""
         saved = self._given.get(self.number)
         known = saved is not None and _key(saved) == _key(self._saved_path(problem))
         return saved if saved is not None and known and _begins_at(saved, problem, start, forward) else None
@@ -192,7 +195,7 @@ class ResumablePaths:
         self._took = self._seen - begin
 
     def paths(self, problem: OrbitProblem) -> list[Path]:
-        """What is saved of the curves of a problem, those that an earlier run came to among them."""
+        """Saved parts of the curves of a problem, including those of an earlier run."""
         held, repeats = kind_of(problem)
         saved_paths = [
             saved for saved in self._known.values() if (saved.held, saved.repeats) == (held, repeats)
@@ -203,7 +206,7 @@ class ResumablePaths:
     def _saved_path(
         self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
     ) -> SavedPath:
-        """The one that is followed now."""
+        """The path that is followed now, as it is saved."""
         return SavedPath(self.number, *kind_of(problem), path, checkpoint)
 
     def _save(self, saved: SavedPath) -> None:
@@ -228,5 +231,5 @@ def _key(saved: SavedPath) -> tuple[int, tuple[int, ...], int]:
 
 
 def kind_of(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
-    """The contacts that are held, and the periods: with others it is another curve."""
+    """The held contacts and the number of periods: curves with others are different."""
     return tuple(one.place for one in problem.scene.held), problem.repeats

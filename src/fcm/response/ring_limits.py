@@ -1,4 +1,4 @@
-"""What a response of a ring's sector cannot know, and what it is asked that needs the whole ring."""
+"""Limits of a response of a ring's sector: what it cannot know, and requests that need the whole ring."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def check_modes(scene: Scene, request: Request) -> None:
 
 
 def unknown(scene: Scene, request: Request) -> list[str]:
-    """Sentences on what is not known of the curves of a scene, for want of modes or of time."""
+    """Sentences on what is unknown of the curves of a scene, for want of modes or of time."""
     found: dict[str, None] = {}
     orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
     if not orders:

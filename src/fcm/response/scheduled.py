@@ -1,4 +1,4 @@
-"""The schedule of a scene simulated, and what is finished of it kept."""
+"""Simulation of the schedule of a scene; finished parts are kept."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
 
 
 def without_sensitivities(curves: Iterable[Curve]) -> None:
-    """Say of curves that they have none, as the run was interrupted."""
+    """Say of curves that they have no sensitivities, as the run was interrupted."""
     for curve in curves:
         curve.complete, curve.reason = False, curve.reason or WITHOUT
         curve.cause = Cause.INTERRUPTED
@@ -71,7 +71,7 @@ def _peak(curve: Curve, scene: Scene, dof: int) -> tuple[int, FloatArray, bool] 
 
 
 def remarks(response: Response, scene: Scene) -> list[str]:
-    """What to know of peaks whose derivatives are not those of a smooth curve."""
+    """Remarks on peaks whose derivatives are not those of a smooth curve."""
     found = []
     for kind, what in REMARKS.items():
         of = [

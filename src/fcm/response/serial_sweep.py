@@ -1,4 +1,4 @@
-"""Curves that are followed one after the other in this process, and what an interruption leaves of them."""
+"""Curves followed one after the other in this process, and the results that an interruption leaves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fcm.run import IN_THIS_PROCESS, Execution, Progress, Results
 
 
 class Tell:
-    """How far one of the curves is; an interruption may come of it.
+    """Reports how far one of the curves is; an interruption may come of it.
 
     How often it is followed again nobody knows. So each time takes half of what is left of its progress.
     """
@@ -22,13 +22,13 @@ class Tell:
         self.text, self.left, self.done = "", 1.0, 0.0
 
     def __call__(self, text: str) -> None:
-        """What is followed now."""
+        """Tell what is followed now."""
         self.left *= 0.5 if text else 1.0
         self.text = text
         self.covered(0.0)
 
     def covered(self, share: float) -> None:
-        """It is followed up to a share of what it spans."""
+        """Tell the share of its span up to which it is followed."""
         self.done = max(self.done, 1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)))
         if self.progress is not None:
             of = f"{self.number} of {self.count} curves{', ' if self.text else ''}{self.text}"
@@ -41,7 +41,7 @@ Task = tuple[Curve, Callable[[Tell], Curve]]  # the curve without points, and wh
 def one_by_one(
     tasks: Sequence[Task], execution: Execution = IN_THIS_PROCESS, mark: bytes = b""
 ) -> list[Curve]:
-    """What each task follows; of those that an interruption leaves out, the curve without points beside it.
+    """The curves of all tasks; of those that an interruption leaves out, the curve without points beside it.
 
     Whole curves are kept, and those that are kept already are not followed again.
 

@@ -34,7 +34,7 @@ from fcm.time_domain.system import System
 
 
 class StepRecord(Frozen):
-    """What there was at one frequency, and what the next one goes on from."""
+    """The motion at one frequency of a sweep, and what the next one continues from."""
 
     number: int  # in the order of the sweeps, from 0
     sample: OrbitRecord | None  # the motion, if it was steady
@@ -49,7 +49,10 @@ STATES = (StepRecord, OrbitRecord, State, Measure, SteadyMotion)  # what is save
 
 
 class SteppedSweep:
-    """Sweeps of one scene; what they have found is there whenever they are interrupted, as by `poll`."""
+    """Sweeps of one scene by steps of the frequency.
+
+    What they have found is there whenever they are interrupted, as by `poll`.
+    """
 
     def __init__(self, scene: Scene, poll: Poll = never_interrupt) -> None:
         self.scene, self.problem, self.poll = scene, OrbitProblem(scene), poll
@@ -81,13 +84,13 @@ class SteppedSweep:
             report((number + 1) / len(visits), f"{sweep}, {with_unit(self.scene, omega)}")
 
     def _note(self, sweep: str) -> None:
-        """The motion at a frequency that was visited, if it is steady."""
+        """Note the motion at a frequency that was visited, if it is steady."""
         if self._sample is not None:
             self.points.append(self._sample)
             self.sweep.append(sweep)
 
     def _go_on(self, saved: Sequence[Any], visits: Sequence[tuple[str, float]]) -> int:
-        """Be where an interrupted run was; the number of visits that it has made."""
+        """Go on where an interrupted run was; returns the number of visits that it has made."""
         by_number = {visit.number: visit for visit in saved if isinstance(visit, StepRecord)}
         made = [by_number[number] for number in takewhile(by_number.__contains__, range(len(visits)))]
         for visit, (sweep, _) in zip(made, visits, strict=False):
@@ -101,7 +104,7 @@ class SteppedSweep:
 
     @property
     def reason(self) -> str:
-        """Which frequencies have no steady motion, or none that can be computed, else ''."""
+        """Sentence on frequencies that have no steady motion, or none that can be computed, else ''."""
         refused = next(iter(self.refused.values()), "")
         if not self.irregular:
             return refused
@@ -116,7 +119,7 @@ class SteppedSweep:
         return f"{restless}; {refused}" if refused else restless
 
     def _step_to(self, omega: float, sweep: str) -> None:
-        """Bring the motion to a frequency."""
+        """Bring the motion to a frequency by one step of the sweep."""
         while self._here is not None and not self._continue(omega):
             lost, before = float(self._here.z[-1]), self._sample
             self._settle(self._here.state, lost + STEPPED.overshoot * (omega - lost))
@@ -133,7 +136,7 @@ class SteppedSweep:
             self.irregular[with_unit(self.scene, omega)] = None
 
     def _begin(self, omega: float) -> None:
-        """Where there is nothing to continue: a stable periodic solution, or the motion from rest."""
+        """Begin where there is nothing to continue: a stable periodic solution, or the motion from rest."""
         try:
             orbit = solution_at(self.scene, omega, self.poll)
         except CycleError as error:

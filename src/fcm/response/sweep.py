@@ -102,7 +102,7 @@ def trace(
 
 
 def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
-    """The curves without what they do not need; where that turns out to be needed, once more with it."""
+    """The curves without what they do not need; once more with it where it turns out to be needed."""
     curves = sweep.scene.each_curve()
     options, tolerance = sweep.request.options.sweep, sweep.request.options.reduction.tolerance
     asked = sweep.request.harmonics or (options.expected_harmonic,)
@@ -132,7 +132,7 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
 
 
 class _Sweep:
-    """One after the other the sweeps of a run, each with less left out; one bar for all of them."""
+    """The sweeps of a run, each with less left out; they share one progress bar."""
 
     def __init__(
         self,
@@ -161,7 +161,7 @@ class _Sweep:
         return response
 
     def _table(self, lighter: ReducedScenes) -> Table | None:
-        """What is looked up at the points of the curves; a table only if a contact needs it."""
+        """The table that is looked up at the points of the curves; None unless a contact needs it."""
         if self.method != "table" or self.table is not None:
             return self.table
         if lighter.idle_table:

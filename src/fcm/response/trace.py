@@ -93,7 +93,7 @@ def traced_curve(
 
 
 def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) -> Curve:
-    """The best curve that there is, with its errors as far as they are told quickly."""
+    """The best curve until now, with its errors as far as they are told quickly."""
     assert so_far.found is not None
     whole = so_far.found
     whole.system.work.poll = int  # which interrupts no more
@@ -116,7 +116,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
 
 
 def _seconds_of_errors(found: UncheckedResponse) -> float:
-    """About what it takes to look at each branch with its reference, where nothing is followed."""
+    """Seconds, about, of comparing each branch with its reference, where nothing is followed."""
     system, probes = found.system, PAIR.probes * len(found.traced.branches.paths)
     count = len(system.harmonics)
     reference = min(max(PAIR.harmonics_factor * count, PAIR.min_harmonic), count + PAIR.max_added)
@@ -167,14 +167,15 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
 
 
 def _reported(response: Refined) -> RefinedResponse:
-    """Of all degrees of freedom."""
+    """The response at all degrees of freedom."""
     return response.every or response.found
 
 
 def _curve(response: Refined, quick: bool = False) -> Curve:
-    """What was traced as a curve: branches one after the other, with a row of NaN between them.
+    """The traced response as a curve: branches one after the other, with a row of NaN between them.
 
-    quick: without what takes further motions to tell."""
+    quick: without what takes further motions to tell.
+    """
     found, parts = _reported(response), response.stable
     system, paths = found.system, found.traced.branches.paths
     told = np.concatenate([np.isfinite(one.amplitude).any(axis=1) for one in found.errors])
@@ -271,8 +272,10 @@ def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatA
 
 
 def _of_greatest(found: RefinedResponse, path: Rows, contact_loads: FloatArray) -> FloatArray:
-    """Errors (contact, 4) of the greatest contact loads of all paths, from `contact_loads`
-    (point, contact, 4); unknown where that of one nearly as great is."""
+    """Errors (contact, 4) of the greatest contact loads of all paths, from `contact_loads`.
+
+    Those are (point, contact, 4); an error is unknown where that of one nearly as great is.
+    """
     heights = np.array([contact_loads[path == k].max(axis=0) for k in range(len(found.errors))])
     errors = np.array([one.greatest for one in found.errors])
     unknown = (np.isnan(errors) & (heights > PAIR.rival_fraction * heights.max(axis=0))).any(axis=0)
@@ -288,8 +291,10 @@ def _peaks(
     stable: FloatArray,
     residual: FloatArray,
 ) -> dict[str, Peak]:
-    """Where each degree of freedom is greatest: at a point, for every peak is one; its errors in amplitude
-    and frequency (2, dof)."""
+    """The peak of each degree of freedom where it is greatest, with its errors.
+
+    It is at a point, for every peak is one; the errors (2, dof) are in amplitude and frequency.
+    """
     highest, amplitude = points.amplitude.argmax(axis=0), points.amplitude
     at_top = stability_at_top(amplitude, stable).tolist()
     digits = _rounding_of_peaks(points, rounding, scene.of_matrices)
@@ -319,7 +324,7 @@ def _rounding_of_peaks(points: PointRecord, rounding: FloatArray, computed: bool
 
 
 def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
-    """Rows of a curve: all in order, but for gaps of NaN or '' where an index is -1."""
+    """Rows of a curve at indices; gaps of NaN or '' where an index is -1."""
     if len(rows) == len(values):  # no gap
         return np.ascontiguousarray(values)
     out = values[rows]

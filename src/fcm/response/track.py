@@ -44,14 +44,14 @@ WHAT = ("folds", "peaks", *ONSETS)
 
 
 class SpanError(ResponseError):
-    """Ends of a span, 0 or 1 and their values, in which nothing can be followed, and why."""
+    """The ends of a span, 0 or 1 and their values, are wrong: nothing can be followed in it."""
 
     def __init__(self, ends: Mapping[int, float], fault: str, digits: int = 6) -> None:
         self.ends, self.fault, self.digits = ends, fault, digits
         super().__init__(f"span {self.named('from', 'to')}")
 
     def named(self, *names: str) -> ResponseError:
-        """The same with a caller's names of the two ends."""
+        """The error with a caller's names of the two ends."""
         ends = " ".join(f"{names[which]} {value:.{self.digits}g}" for which, value in self.ends.items())
         return ResponseError(f"{ends}: {self.fault}")
 
@@ -125,7 +125,7 @@ def track(
 
 
 def _untracked(every: int, tracked: int) -> list[str]:
-    """What is said of outputs whose peaks are not tracked, as they are too many."""
+    """Sentence on outputs whose peaks are not tracked, as they are too many."""
     if tracked == every:
         return []
     which = f"those of {tracked}, at contacts and forces and where modes move most, are tracked"
@@ -139,7 +139,7 @@ def _swept(
     place: Factory,
     progress: Progress | None,
 ) -> Outcome:
-    """What there is of each scene, as far as the run came."""
+    """The results of each scene, as far as the run came."""
     batches, kept = [(replace(one, curves=()),) for one in scenes], Results()
     if checkpoint is not None:
         mark = fingerprint("tracked", work, [replace(one, name="", title="") for (one,) in batches])
@@ -158,7 +158,7 @@ def _fits(count: int, number: int, results: Any) -> bool:
 
 
 def _add(response: Response, scene: Scene, found: TrackedScene | Lost | None) -> None:
-    """What was followed in one scene to that of all."""
+    """Add the curves followed in one scene to the response."""
     assert response.tracking is not None
     if isinstance(found, Lost):
         reason = f"{DEFECT}, {found.reason}" if found.defect else found.reason
@@ -176,7 +176,7 @@ def _add(response: Response, scene: Scene, found: TrackedScene | Lost | None) ->
 
 
 def _short_of(tracking: Tracking, accuracy: float) -> str:
-    """What keeps tracked curves from an accuracy; empty if nothing is known to."""
+    """Sentence on what keeps tracked curves from an accuracy; empty if nothing is known to."""
     told = [(one.relative, curve.number[one.point]) for curve in tracking.curves for one in curve.errors]
     off = [(error, number) for error, number in told if not error <= accuracy]
     if not off:
@@ -215,7 +215,7 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
 
 
 def _at_ends(scene: Scene, number: Number, span: tuple[float, float]) -> list[Scene]:
-    """The first of the curves at both ends of a span."""
+    """Scenes of the first curve with the number at both ends of a span."""
     first = number.freed(scene).each_curve()[0]
     return [number.put(first, value) for value in span]
 

@@ -46,7 +46,7 @@ T = TypeVar("T")
 
 
 class TrackedScene(Frozen):
-    """What there is of one scene."""
+    """The tracked curves of one scene."""
 
     curves: list[TrackedCurve]
     problems: list[str]
@@ -67,7 +67,7 @@ STATES = (
 
 
 class TrackedWork(Frozen):
-    """What is followed in each scene."""
+    """The task of tracking curves in each scene."""
 
     number: Number
     what: str
@@ -104,7 +104,7 @@ class TrackedWork(Frozen):
 
 
 def _lost(scene: Scene, condition: Condition, z: FloatArray) -> str:
-    """What is said of a point at which no curve could be begun."""
+    """Sentence on a point at which no curve could be begun."""
     frequency = float(in_unit(z[-2], scene.frequency_unit))
     return (
         f"at {z[-1]:.6g}: no curve could be begun at the {named(scene, condition)} at "
@@ -113,7 +113,7 @@ def _lost(scene: Scene, condition: Condition, z: FloatArray) -> str:
 
 
 class _SavedSteps:
-    """Steps that are finished are not taken again."""
+    """Steps of a scene whose results are saved: finished ones are not taken again."""
 
     def __init__(self, report: Report) -> None:
         self.report, self.saved = report, deque(report.saved)
@@ -127,7 +127,7 @@ class _SavedSteps:
 
 
 def conditions_of(scene: Scene, what: str) -> list[Condition]:
-    """What is tracked: for peaks, of every degree of freedom; for onsets, of every contact."""
+    """Conditions that are tracked: for peaks, of every degree of freedom; for onsets, of every contact."""
     if what == "folds":
         return [Condition(Kind.FOLD)]
     if what == "peaks":
@@ -137,7 +137,7 @@ def conditions_of(scene: Scene, what: str) -> list[Condition]:
 
 
 def errors(setup: TrackingSetup, one: SpecialPointCurve) -> tuple[TrackedError, ...]:
-    """What the harmonics left out change at a track's ends, turns, least and greatest peak."""
+    """Truncation errors of a track at its ends, turns, least and greatest peak."""
     estimates = []
     for point, place in error_points(one).items():
         by = truncation_error(setup, one, point)
@@ -200,8 +200,10 @@ def _is_unreliable(
 def _along_points(
     setup: TrackingSetup, one: SpecialPointCurve
 ) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
-    """For each reason why points of a track are no steady states which they are (point,); and at how many a
-    contact never slips beside one that may feel it."""
+    """Reasons why points of a track are no steady states, each with a mask (point,); and a count of points.
+
+    The count is of contacts that never slip beside one that may feel them.
+    """
     count, lost = 0, dict[str, npt.NDArray[np.bool_]]()
     for k, point in enumerate(one.points):
         system = for_scene(setup.system, setup.line.scene(setup.system.scene, float(point.z[-1])))
@@ -213,7 +215,7 @@ def _along_points(
 
 
 def _unsteady_ranges(system: System, number: FloatArray, nowhere: Mapping[str, npt.NDArray[np.bool_]]) -> str:
-    """From where to where a track is of no steady states, and why; empty if it is nowhere."""
+    """Sentence on ranges of a track without steady states, and why; empty if there are none."""
     for why, which in nowhere.items():
         if which.any():
             ends = number[which]
@@ -222,7 +224,7 @@ def _unsteady_ranges(system: System, number: FloatArray, nowhere: Mapping[str, n
 
 
 def named(scene: Scene, condition: Condition) -> str:
-    """What a condition is, in words."""
+    """Name of a tracked condition, as "peak of u"."""
     if condition.kind is Kind.PEAK:
         return f"peak of {scene.modal.dofs[condition.which]}"
     if condition.kind is Kind.ONSET:

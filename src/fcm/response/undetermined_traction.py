@@ -15,7 +15,9 @@ from fcm.structure.linear import Linear
 
 
 def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
-    """Of points with states (point, contact): whether a contact never slips beside one that may feel it.
+    """Mask of the points at which a contact never slips beside one that may feel it.
+
+    states (point, contact).
 
     That is one that changes its state, or whose load the residual friction changes: with another residual it
     may slip, open or close. A contact alone sticks in the same motion with every residual that lets it.
@@ -50,7 +52,7 @@ def residual_changes(
     undetermined: npt.NDArray[np.bool_],
     quick: bool = False,
 ) -> FloatArray:
-    """By how much residual friction may change each peak (dof,), see `harmonic_balance.residual_traction`.
+    """Relative changes of each peak by residual friction, see `harmonic_balance.residual_traction`.
 
     z (point, unknown + 1), amplitude (point, dof), states (point, contact) and what `undetermined` says are
     those of a curve; quick: NaN instead of what takes further motions to tell.
@@ -68,7 +70,7 @@ def residual_changes(
 def residual_changes_at_levels(
     system: System, z: FloatArray, level: FloatArray, amplitude: FloatArray, states: npt.NDArray[np.str_]
 ) -> FloatArray:
-    """As `residual_changes`, of points at one frequency, with forces times level (point,).
+    """Changes as `residual_changes`, of points at one frequency, with forces times level (point,).
 
     The frequency is held, and the level that each peak is at.
     """

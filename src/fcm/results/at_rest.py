@@ -1,4 +1,4 @@
-"""What moves by rounding alone is at rest: it has no peak, and no error."""
+"""Degrees of freedom that move by rounding alone are at rest: without a peak and without an error."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
 
 
 def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
-    """Which degrees of freedom (dof,) move by rounding alone, or not at all."""
+    """Mask (dof,) of the degrees of freedom that move by rounding alone, or not at all."""
     peaks = curve.peaks.values()  # between points they may be higher, and a nonlinear mode has none
     size = np.fmax.reduce(curve.amplitude, axis=0, initial=np.nan)
     size = np.fmax(size, [peak.amplitude for peak in peaks])
@@ -79,5 +79,5 @@ def _swept(swept: FrequencySweep, rest: BoolArray) -> FrequencySweep:
 
 
 def _still(values: npt.NDArray[Any], rest: BoolArray) -> npt.NDArray[Any]:
-    """With 0 in some columns (..., dof), where there is a number."""
+    """Values with 0 in the columns (..., dof) at rest; NaN stays."""
     return np.where(np.isnan(values) | ~rest, values, 0.0)

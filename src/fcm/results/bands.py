@@ -14,7 +14,7 @@ from fcm.results.options import RESULTS
 
 
 class ReadCurve(Protocol):
-    """A curve as a file holds it.
+    """Protocol of a curve as a file holds it.
 
     What was swept; frequency (point,), amplitude (point, dof); which points are stable, if that is known.
     """
@@ -30,7 +30,7 @@ class ReadCurve(Protocol):
 
 
 class Band(Frozen):
-    """Of the curves that differ in drawn numbers alone; NaN where none of them reaches."""
+    """Percentile band of the curves that differ only in drawn numbers; NaN where none of them reaches."""
 
     parameters: dict[str, float]  # the swept values that are not drawn
     frequency: FloatArray  # (place,)

@@ -1,4 +1,4 @@
-"""What a mistuned ring does over its sectors: the envelope, the worst blade, its amplification."""
+"""A mistuned ring over its sectors: the envelope, the worst blade and its amplification."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Worst(Frozen):
 
     @property
     def amplification(self) -> FloatArray:
-        """That of the worst blade, of its amplitude in the tuned ring; NaN where that does not move."""
+        """Amplitude of the worst blade over that of the tuned ring; NaN where the latter is zero."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.tuned > 0.0, self.amplitude / self.tuned, np.nan)
 

@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Cause(Enum):
-    """What kept a curve from being complete."""
+    """Reason for which a curve is incomplete."""
 
     CALCULATION = "the calculation could not be completed"
     INTERRUPTED = "the run was interrupted"

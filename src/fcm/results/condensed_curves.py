@@ -1,4 +1,4 @@
-"""What all points of a curve say together, and curves of which little more than that is kept."""
+"""Summaries over all points of a curve, and curves of which little more than a summary is kept."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class CondensedCurve(Frozen):
     highest_on_closed: npt.NDArray[np.bool_]  # (dof,) whether the highest peak is on one of them
 
     def at(self, shown: npt.NDArray[np.bool_]) -> CondensedCurve:
-        """At some of the degrees of freedom."""
+        """The summary restricted to some of the degrees of freedom."""
         lower = self.lower_peaks[shown[self.lower_peaks[:, 0].astype(np.intp)]]
         lower[:, 0] = (np.cumsum(shown) - 1)[lower[:, 0].astype(np.intp)]
         return replace(
@@ -192,8 +192,8 @@ def _is_partial(curve: Curve) -> bool:
 
 
 def _linear(curve: Curve) -> str:
-    """At all points of a curve: "all_stick", "all_open", or where each contact does one of these
-    "all_stick_or_open"."""
+    """Word for contacts that keep their states along a curve: all_stick, all_open or all_stick_or_open; else
+    ''."""
     states = curve.regime[np.isfinite(curve.frequency)]
     if not states.size or not np.isin(states, ("E", "S")).all() or (states != states[0]).any():
         return ""
@@ -202,7 +202,7 @@ def _linear(curve: Curve) -> str:
 
 
 def _unstable(curve: Curve) -> list[Stretch]:
-    """Where no motion that was found is stable, of a curve that has all of its range."""
+    """Frequency stretches of a complete curve in which no stable motion was found."""
     if not curve.complete or _is_partial(curve) or curve.level is not None or curve.mode is not None:
         return []
     there = np.isfinite(curve.frequency)

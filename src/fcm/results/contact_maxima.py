@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Greatest(Frozen):
-    """All (contact, 4): of the greatest normal and friction force of a cycle, slip and energy in it.
+    """Greatest contact loads of a curve, all (contact, 4): normal force, friction force, slip, energy.
 
     value; frequency [rad/s]; error, estimated, relative, NaN where it is not known; stable, 1 where small
     disturbances die out there, 0 where not, NaN where that is not known.
@@ -27,12 +27,15 @@ class Greatest(Frozen):
 
     @staticmethod
     def none(contacts: int) -> Greatest:
-        """Of a curve without points."""
+        """The values for a curve without points: all NaN."""
         return Greatest(*np.full((4, contacts, 4), np.nan))
 
 
 def greatest_of(curve: Curve, error: FloatArray | None = None) -> Greatest:
-    """Of a curve that has all its points; error (contact, 4) is that of the points where it is not given."""
+    """Greatest contact loads of a curve with all its points.
+
+    error (contact, 4) replaces the errors of the points, if given.
+    """
     contacts = curve.cycle.shape[1]
     if not np.isfinite(curve.frequency).any():
         return Greatest.none(contacts)

@@ -81,7 +81,7 @@ def csv_columns(contacts: Sequence[str], planar: Sequence[str], force: str) -> l
 
 
 def csv_values(curve: Curve, point: int, which: Sequence[int]) -> list[str]:
-    """Of a point the amplitudes of friction of some contacts."""
+    """Friction amplitudes of some contacts at a point, as text for CSV."""
     if curve.across is None or curve.across.friction is None:
         return ["nan"] * (2 * len(which))
     return [repr(float(value)) for value in curve.across.friction[point, list(which)].ravel()]

@@ -1,4 +1,4 @@
-"""What contacts do over a cycle, in one word of four."""
+"""States of contacts over a cycle, reduced to one word of four."""
 
 from __future__ import annotations
 

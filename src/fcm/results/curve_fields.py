@@ -19,7 +19,7 @@ from fcm.units import CF_UNIT, in_unit
 
 
 def condensed_fields(response: Response) -> dict[str, Field]:
-    """What is known of all points of each curve, where they are not written."""
+    """Variables that summarise all points of each curve, where the points are not written."""
     condensed_curves = [curve.condensed or condense(curve) for curve in response.curves]
     of_all = {
         "greatest_table_error": (
@@ -44,7 +44,10 @@ def condensed_fields(response: Response) -> dict[str, Field]:
 
 
 def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> dict[str, Field]:
-    """What may be missing in curves, or lacking, which the summary of a file with all points says."""
+    """Variables on what may be missing in curves, or lacking.
+
+    A file with all points has this in its summary.
+    """
     curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
     in_file = {"units": CF_UNIT[unit]}
     if any(curve.undetermined for curve in curves):
@@ -84,7 +87,7 @@ def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> 
 
 
 def curve_fields(response: Response) -> dict[str, Field]:
-    """One value or row for each curve: peaks, folds, whether it is complete."""
+    """Variables with one value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
     cf_unit = CF_UNIT[unit]
     shape = (-1, len(response.dofs), len(Peak._fields))
@@ -146,14 +149,14 @@ _AT_END = {
 
 
 def _peaks_at_end(curves: Sequence[Curve]) -> NDArray[np.int8]:
-    """Of each curve and degree of freedom, 1 where its greatest amplitude is none of its own peaks."""
+    """Flags (curve, dof): 1 where the greatest amplitude is not a peak of the curve."""
     every = [(curve, curve.condensed or condense(curve)) for curve in curves]
     rows = [[at_edge(curve, one, condensed) for one in curve.peaks.values()] for curve, condensed in every]
     return np.array(rows, dtype=np.int8)
 
 
 def _greatest_of_contacts(response: Response) -> dict[str, Field]:
-    """What each contact bears at most along each curve, where, and how wrong that is."""
+    """Variables of each contact's greatest loads along each curve, their frequencies and errors."""
     dims, out, unit = ("curve", "contact"), dict[str, Field](), response.frequency_unit
     found = [one.greatest or Greatest.none(len(response.contacts)) for one in response.curves]
     value, omega, error, stable = (

@@ -106,7 +106,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
 
 
 def _motions_at_level_1(curve: Curve, dofs: Sequence[str]) -> list[dict[str, Any]]:
-    """Each motion at the level 1, which is a point of the curve, the smallest first."""
+    """Motions of the curve at the force level 1, the smallest first."""
     found = [
         {
             "amplitude": dict(zip(dofs, curve.amplitude[i].tolist(), strict=True)),
@@ -179,7 +179,7 @@ def _error_there(curve: Curve, d: int) -> dict[str, float]:
 def _every_peak(
     highest: dict[str, dict[str, Any]], condensed: CondensedCurve, unit: str
 ) -> dict[str, list[dict[str, Any]]]:
-    """All peaks in order of frequency, of the degrees of freedom that have more than the highest."""
+    """All peaks in order of frequency, for the degrees of freedom with more than one."""
     keys = ("amplitude", "frequency", "error", "stable", "at_edge")
     found: dict[str, list[dict[str, Any]]] = {}
     dofs = list(highest)
@@ -244,7 +244,7 @@ def _sensitivity(curve: Curve, found: Sensitivities, unit: str) -> dict[str, Any
 
 
 def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
-    """What only exact motions have."""
+    """Summary entries that only curves of exact motions have."""
     here = np.isfinite(curve.frequency)
     known = np.isfinite(orbits.family_greatest).any(axis=1)
     families = {

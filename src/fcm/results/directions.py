@@ -1,4 +1,4 @@
-"""How a scene names the directions of contacts that slide in a plane, and where it has its contacts."""
+"""Names of the directions of contacts that slide in a plane, and places of contacts, in a scene."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SHOWN = 6  # digits of a weight
 
 
 def directions_of(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """How the scene names the directions of each contact in a plane.
+    """Names, in the scene, of the directions of each contact in a plane.
 
     >>> import fcm
     >>> directions_of(fcm.load_scene("yang1998"))
@@ -41,7 +41,7 @@ def positions_of(scene: Scene) -> dict[str, FloatArray]:
 
 
 def _combination(direction: FloatArray, names: Sequence[str]) -> str:
-    """As "ax - bx", or "0.6 ax + 0.8 ay"."""
+    """A direction in words, as "ax - bx", or "0.6 ax + 0.8 ay"."""
     text = ""
     for i in np.flatnonzero(direction).tolist():
         weight = float(direction[i])

@@ -36,7 +36,7 @@ from fcm.units import CF_UNIT, QUANTITIES, in_unit, unit_of_number
 
 
 def _of_mode(name: str) -> Callable[[Curve], Any]:
-    """What picks an array of a nonlinear mode; none of a curve that was lost."""
+    """Function that picks an array of a nonlinear mode; the frequency for a curve without one."""
     return lambda c: c.frequency if c.mode is None else getattr(c.mode, name)
 
 
@@ -153,7 +153,7 @@ def _point_fields(response: Response) -> dict[str, Field]:
 
 
 def _add_followed(found: _Points) -> None:
-    """In what the curves are followed."""
+    """Adds the variables in which the curves are followed: frequency and force level."""
     unit, excitation = found.unit, "excitation frequency"
     found.add("frequency", lambda c: in_unit(c.frequency, unit), long_name=excitation, units=CF_UNIT[unit])
     if any(c.level is not None for c in found.curves):
@@ -180,7 +180,7 @@ def _add_mode(found: _Points) -> None:
 
 
 def _add_motion(found: _Points) -> None:
-    """The displacements."""
+    """Adds the variables of the displacements."""
     found.add("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
     found.add("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"
@@ -189,7 +189,7 @@ def _add_motion(found: _Points) -> None:
 
 
 def _add_contacts(found: _Points) -> None:
-    """What the contacts do."""
+    """Adds the variables of the contacts: states, loops and loads."""
     states = (
         "states over a cycle: E stick, P and N positive and negative slip (P any slip in a plane), "
         "S separation"
@@ -206,7 +206,7 @@ def _add_contacts(found: _Points) -> None:
 
 
 def _add_trust(found: _Points) -> None:
-    """Errors and stability."""
+    """Adds the variables of errors and stability."""
     shift = (
         "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
     )
@@ -220,7 +220,7 @@ def _add_trust(found: _Points) -> None:
 
 
 def _add_exact(found: _Points) -> None:
-    """What the variables mean of exact motions, and what these have besides."""
+    """Adds the variables of exact motions, and adapts the meaning of the others."""
     for name, meaning in EXACT.items():
         found.out[name].attrs["long_name"] = meaning
     for name, (dims, attrs) in ORBITS.items():

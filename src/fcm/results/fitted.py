@@ -1,4 +1,4 @@
-"""What a fit to measured data yields: numbers with their errors, residuals of the data, and its caveats."""
+"""Result of a fit to measured data: numbers with errors, residuals of the data, and caveats."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def misfit(data: Measured, residual: FloatArray, error: FloatArray) -> float:
 
 
 def _listed(parts: list[str]) -> str:
-    """Parts of a sentence.
+    """Parts of a sentence joined by commas and "and".
 
     >>> _listed(["mu"]), _listed(["mu", "k_u"]), _listed(["mu", "k_u", "n_0"])
     ('mu', 'mu and k_u', 'mu, k_u and n_0')
@@ -79,12 +79,12 @@ class FittedData(Frozen):
 
     @property
     def misfit(self) -> float:
-        """See `misfit`."""
+        """Relative root mean square distance of the data, see the function `misfit`."""
         return misfit(self.measured, self.residual, self.error)
 
     @property
     def damping_misfit(self) -> float:
-        """The same of the damping ratios of a backbone, relative to the greatest; NaN of a response."""
+        """Root mean square distance of a backbone's damping ratios, relative to the greatest; else NaN."""
         if self.measured.damping is None:
             return np.nan
         off = self.residual[:, 1] * self.error[:, 1] / self.measured.damping.max()
@@ -118,7 +118,10 @@ class FittedData(Frozen):
         return float((r**2).sum()), float((np.diff(r, axis=0) ** 2).sum())
 
     def summary(self) -> dict[str, Any]:
-        """For JSON; error: the least and the greatest of the points, relative as the misfit."""
+        """Entries for JSON.
+
+        `error` is the least and the greatest of the points, relative as the misfit.
+        """
         one = self.measured
         size = float((one.amplitude if one.damping is None else one.frequency).max())
         return {
@@ -138,7 +141,7 @@ class FittedData(Frozen):
 
 
 class FittedStart(Frozen):
-    """Where a search began and where it came to."""
+    """Begin and end of a search."""
 
     begin: FloatArray
     end: FloatArray
@@ -173,7 +176,7 @@ class Fitted:
     interrupted: bool = False
 
     def problems(self) -> list[str]:
-        """What keeps a reader from relying on the numbers."""
+        """Sentences on what keeps a reader from relying on the numbers."""
         said = []
         if not self.final:
             said.append("the numbers are the best so far: their standard errors are not those of a minimum")
@@ -229,7 +232,7 @@ class Fitted:
         return f"{100.0 * size:.0f} %" if size < self.many else "many times as large"
 
     def summary(self) -> dict[str, Any]:
-        """For JSON."""
+        """Entries of the fit for JSON."""
         numbers = {
             key: {
                 "value": float(self.values[k]),
@@ -268,5 +271,5 @@ class Fitted:
 
 
 def frequencies(one: Measured, unit: str) -> FloatArray:
-    """Of measured points, in a unit."""
+    """Frequencies of measured points, in a unit."""
     return in_unit(one.frequency, unit)

@@ -17,7 +17,7 @@ UNKNOWN = 0.5  # between unstable, 0, and stable, 1
 
 
 class Jump(Frozen):
-    """Where a slow sweep leaves one stable part of a curve, and what it finds on the next."""
+    """Jump of a slow sweep: the frequency at which it leaves a stable part of a curve, and what follows."""
 
     sweep: str  # 'up' or 'down'
     frequency: float  # [rad/s]
@@ -35,13 +35,13 @@ class UnknownStability(Frozen):
 
 
 class FrequencySweep(Frozen):
-    """What a slow upward, then a slow downward sweep meets."""
+    """Jumps of a slow upward, then a slow downward sweep, and where stability was unknown."""
 
     jumps: list[Jump]
     unknown: list[UnknownStability]
 
     def without_flips(self, options: JumpOptions = RESULTS.jumps) -> FrequencySweep:
-        """Without those at which the period doubles: the motion goes on with hardly another amplitude."""
+        """The sweep without jumps at which the period doubles and the amplitude hardly changes."""
         change = [
             np.abs(one.after - one.before) > options.flip_tolerance * np.maximum(one.before, one.after)
             for one in self.jumps
@@ -52,7 +52,7 @@ class FrequencySweep(Frozen):
         return replace(self, jumps=kept)
 
     def at(self, shown: BoolArray) -> FrequencySweep:
-        """At some of the degrees of freedom."""
+        """The sweep restricted to some of the degrees of freedom."""
         jumps = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
         return FrequencySweep(jumps, [replace(one, before=one.before[shown]) for one in self.unknown])
 
@@ -63,7 +63,7 @@ def swept(
     stable: FloatArray,
     options: JumpOptions = RESULTS.jumps,
 ) -> FrequencySweep:
-    """What slow sweeps meet along a curve; amplitude (point, dof), stable 1, 0, or NaN where it is not known.
+    """Jumps of slow sweeps along a curve; amplitude (point, dof), stable 1, 0, or NaN where unknown.
 
     A sweep begins at the first frequency with a motion that is not known to be unstable, stays on such
     motions, and says where it did not know.
@@ -109,8 +109,10 @@ def _once(
 def _with_branch_points(
     frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, options: JumpOptions
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """With a stable point where a stable branch leaves another one, between two points of that, of which one
-    is stable."""
+    """The curve with a stable point inserted where a stable branch leaves another branch.
+
+    That is between two points of the other branch, one of which is stable.
+    """
     stays = stable == 1.0
     runs = np.diff(np.concatenate(([False], stays, [False])).astype(int))
     ends = np.union1d(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1)
@@ -221,8 +223,10 @@ def _note_unknown(
 
 
 def _others(onwards: FloatArray, usable: BoolArray, at: int) -> npt.NDArray[np.intp]:
-    """Other stable segments that lead on from the same frequency, which grows in the direction of the sweep:
-    the next along the curve first, or without one the last."""
+    """Other stable segments that go on from the same frequency: the next along the curve first.
+
+    Without a later one, the last of the earlier ones is first. Frequencies grow in the sweep's direction.
+    """
     ends = np.sort((onwards[:-1], onwards[1:]), axis=0)
     holds = usable & (ends[0] <= onwards[at]) & (onwards[at] < ends[1])
     holds[max(at - 1, 0) : at + 1] = False

@@ -11,8 +11,10 @@ from fcm.model.scene import FloatArray
 
 
 class LeastPeak(NamedTuple):
-    """Of which curve it is, and whether at an end of what was swept: a lower one may lie beyond, or
-    between it and the next value."""
+    """Curve of a sweep with the least peak, and whether it is at an end of the sweep.
+
+    If so, a lower peak may lie beyond, or between it and the next value.
+    """
 
     curve: int
     at_end_of_sweep: bool

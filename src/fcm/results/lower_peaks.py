@@ -38,7 +38,7 @@ def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> 
 
 
 def rise_beside(frequency: FloatArray, amplitude: FloatArray, k: int) -> float:
-    """By how much polynomials through a local maximum k of points and its neighbours rise above it, relative.
+    """Relative rise, above local maximum k, of polynomials through it and its neighbours.
 
     Only the highest peaks are located on the curve: another may be between two points by about so much. That
     is the greatest of a parabola and of the cubics with one more point on either side.
@@ -77,7 +77,10 @@ def _rise(x: list[float], y: list[float]) -> float:
 
 
 def _prominence(heights: FloatArray, k: int) -> float:
-    """By how much a point is above the deeper of the two ways to what is higher, or to the branch's end."""
+    """Prominence of a point: its height above the higher of the two lowest points on either side.
+
+    A side reaches to a higher point, or to the end of the branch.
+    """
     sides = (heights[k::-1], heights[k:])
     return float(heights[k] - max(_lowest(side) for side in sides))
 

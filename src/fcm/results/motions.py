@@ -53,7 +53,7 @@ class Motions(Frozen):
 
 
 def harmonics_of(motions: Sequence[Motion]) -> list[int]:
-    """All harmonics of some motions."""
+    """All harmonics that occur in some motions, in order."""
     return sorted({h for one in motions for h in one.harmonics})
 
 

@@ -1,4 +1,4 @@
-"""What curves of a nonlinear mode have besides, and the resonances that they foretell."""
+"""Additional quantities of curves of a nonlinear mode, and the resonances that they predict."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcm.units import in_unit
 
 
 class Resonance(NamedTuple):
-    """Of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
+    """Predicted resonance of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
 
     level: float  # of the scene's forces
     frequency: float  # [rad/s] of the forces
@@ -35,7 +35,7 @@ class MotionOfMode(Frozen):
 
 @dataclass
 class NonlinearMode:
-    """What only the points of a nonlinear mode have; `frequency` of the curve is that of the mode."""
+    """Additional quantities at the points of a nonlinear mode; the curve's `frequency` is its own."""
 
     number: int
     amplitude: FloatArray  # (point,) modal amplitude a, of modes of mass 1
@@ -52,7 +52,7 @@ class NonlinearMode:
     def summary(
         self, frequency: FloatArray, unit: str, amplitude: Mapping[str, FloatArray]
     ) -> dict[str, Any]:
-        """As `fcm respond --json` prints it; amplitude (point,) is that of each degree of freedom.
+        """Entries for `fcm respond --json`; amplitude (point,) is that of each degree of freedom.
 
         `displacement` is what a modal amplitude of 1 is of each at the least amplitude that was followed.
         """

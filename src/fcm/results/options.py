@@ -8,17 +8,17 @@ from fcm.frozen import Frozen
 
 
 class JumpOptions(Frozen):
-    """When points of a curve are one, and what is no jump.
+    """Options on jumps: when two points of a curve are the same, and what is no jump.
 
     Attributes
     ----------
     amplitude_tolerance : float
-        Relative difference of amplitudes at one frequency that are one point.
+        Relative difference of amplitudes at one frequency up to which they are the same point.
     frequency_tolerance : float
-        Relative difference of frequencies that are one.
+        Relative difference of frequencies up to which they are the same.
     flip_tolerance : float
-        Relative change of an amplitude, from the last point before the period doubles to the first after it:
-        less is no jump.
+        Relative change of an amplitude, from the last point before the period doubles to the first after it,
+        below which it is no jump.
     """
 
     amplitude_tolerance: float = 1e-6
@@ -27,14 +27,14 @@ class JumpOptions(Frozen):
 
 
 class DrawOptions(Frozen):
-    """What is reported of random draws.
+    """Options on what is reported of random draws.
 
     Attributes
     ----------
     band_frequencies : int
-        Frequencies at which the percentiles of a band are taken.
+        Number of frequencies at which the percentiles of a band are taken.
     frequency_tolerance : float
-        Relative: to this the frequency of a jump is known that may be so much earlier. It is the default
+        Relative error of the frequency of a jump, by which it may be so much earlier. It is the default
         accuracy.
     """
 
@@ -43,14 +43,15 @@ class DrawOptions(Frozen):
 
 
 class FileOptions(Frozen):
-    """How variables are laid out in a netCDF file.
+    """Options on how variables are laid out in a netCDF file.
 
     Attributes
     ----------
     chunk : int
-        [byte] of a variable of many curves that are made and written at a time, about.
+        [byte] Size of the part of a variable of many curves that is made and written at a time, about.
     contiguous : int
-        [byte] of a variable up to which to compress it takes longer than to write it.
+        [byte] Size of a variable up to which it is not compressed: compressing would take longer than
+        writing.
     """
 
     chunk: int = 1 << 20
@@ -58,14 +59,15 @@ class FileOptions(Frozen):
 
 
 class PeakOptions(Frozen):
-    """Which local maxima of a curve are peaks that are listed beside the highest.
+    """Options on which local maxima of a curve are listed as peaks beside the highest.
 
     Attributes
     ----------
     least_share : float
-        Of the highest amplitude of the degree of freedom: lower ones are not listed.
+        Amplitude of a local maximum, relative to the highest of its degree of freedom, below which it is not
+        listed.
     least_prominence : float
-        Relative to its height: what rises by less above the curve on either side is a ripple.
+        Rise above the curve on either side, relative to the height, below which a local maximum is a ripple.
     """
 
     least_share: float = 1e-3
@@ -73,12 +75,12 @@ class PeakOptions(Frozen):
 
 
 class ResultOptions(Frozen):
-    """What is reported of curves.
+    """All options on what is reported of curves.
 
     Attributes
     ----------
     jumps, draws, file, peaks : JumpOptions, DrawOptions, FileOptions, PeakOptions
-        Of the parts.
+        Options of the parts.
     """
 
     jumps: JumpOptions = field(default_factory=JumpOptions)

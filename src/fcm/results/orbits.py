@@ -1,4 +1,4 @@
-"""What curves of exact periodic solutions have besides."""
+"""Additional quantities of curves of exact periodic solutions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Stuck(Frozen):
 
 @dataclass
 class Orbits:
-    """What only the points of an exact curve have; see `fcm.response.exact.trace_exact`."""
+    """Additional quantities at the points of an exact curve, see `fcm.response.exact.trace_exact`."""
 
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
     sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if a sweep came to it, else ''

@@ -29,7 +29,7 @@ LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 
 
 def summary(response: Response) -> dict[str, Any]:
-    """What ``fcm respond --json`` prints; a number that does not exist is None."""
+    """Output of ``fcm respond --json``; NaN becomes None."""
     data = {
         "curves": [curve.summary(response.frequency_unit, response.contacts) for curve in response.curves],
         "method": response.method,
@@ -68,7 +68,7 @@ def summary(response: Response) -> dict[str, Any]:
 
 
 def without_nan(value: Any) -> Any:
-    """The same for JSON: a number that does not exist is None."""
+    """The value with every number that is not finite replaced by None, for JSON."""
     if isinstance(value, dict):
         return {key: without_nan(item) for key, item in value.items()}
     if isinstance(value, list):
@@ -89,7 +89,7 @@ def attributes(response: Response) -> dict[str, str]:
 
 
 def _summary(response: Response) -> dict[str, Any]:
-    """What the file says of itself; of curves without points it has all that in its variables."""
+    """The summary attribute of a file; for curves without points, which are variables, it omits them."""
     if not response.peaks_only:
         curves = [replace(curve, sensitivity=None) for curve in response.curves]
         return summary(replace(response, curves=curves))

@@ -12,7 +12,7 @@ from fcm.results.result import Curve
 
 
 class Padded:
-    """What is picked of each curve, its rows padded with NaN, or '' for text: (curve, row, ...).
+    """Array (curve, row, ...) of what is picked of each curve, rows padded with NaN, or '' for text.
 
     >>> array = Padded([0, 2], lambda count: np.ones((count, 3)), 2)
     >>> array.shape, array.part(1, 2).tolist()
@@ -43,17 +43,17 @@ class Padded:
 
 
 def by_point(curves: Sequence[Curve], pick: Callable[[Curve], npt.NDArray[Any]]) -> Padded:
-    """What is picked of every point of the curves."""
+    """Padded array of what is picked at every point of the curves."""
     return Padded(curves, pick, max((curve.frequency.size for curve in curves), default=0))
 
 
 def by_fold(curves: Sequence[Curve], pick: Callable[[Curve], npt.NDArray[Any]]) -> Padded:
-    """What is picked of a number of places of each curve that is its own."""
+    """Padded array of what is picked of each curve, whose number of rows is its own."""
     return Padded(curves, pick, max((len(pick(curve)) for curve in curves), default=0))
 
 
 class Field(NamedTuple):
-    """One variable of the file."""
+    """One variable of a netCDF file."""
 
     dims: tuple[str, ...]
     values: npt.NDArray[Any] | Padded

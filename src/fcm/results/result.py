@@ -1,4 +1,4 @@
-"""What a calculation yields: curves of points with their regimes and errors, peaks and folds."""
+"""Results of a calculation: curves with regimes, errors, peaks and folds."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class Curve:
     cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """From another process or a file: what is the same in all curves is there once."""
+        """Restores a curve from another process or a file, sharing values equal in all curves."""
         vars(self).update({name: _shared(value) for name, value in state.items()})
 
     @property
@@ -106,7 +106,7 @@ class Curve:
         return np.cumsum(np.isnan(self.frequency))
 
     def swept(self) -> FrequencySweep:
-        """What a slow upward and a slow downward sweep of the frequency meet."""
+        """Jumps of a slow upward and a slow downward sweep of the frequency."""
         if self.orbits is not None and self.orbits.swept is not None:
             return self.orbits.swept
         if self.level is not None or self.mode is not None:
@@ -137,7 +137,7 @@ def _shared(value: Any) -> Any:
 
 
 class Blades(Frozen):
-    """What is known of the sectors of a mistuned ring beside its curves; frequencies in rad/s."""
+    """Data on the sectors of a mistuned ring beside its curves; frequencies in rad/s."""
 
     names: tuple[str, ...]  # degrees of freedom of a sector
     factors: FloatArray  # (curve, sector) of the stiffness
@@ -146,18 +146,18 @@ class Blades(Frozen):
 
     @property
     def sectors(self) -> int:
-        """How many there are."""
+        """Number of sectors."""
         return int(self.factors.shape[1])
 
     def columns(self, dofs: Sequence[str]) -> npt.NDArray[np.intp]:
-        """Where those of the sectors are among all, (dof, sector)."""
+        """Indices (dof, sector) of the sectors' degrees of freedom among all."""
         place = {name: number for number, name in enumerate(dofs)}
         return np.array([[place[of_sector(name, k)] for k in range(self.sectors)] for name in self.names])
 
 
 @dataclass
 class Response:
-    """All curves of a scene."""
+    """Result of a response calculation: all curves of a scene."""
 
     title: str
     dofs: tuple[str, ...]

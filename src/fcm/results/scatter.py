@@ -1,4 +1,4 @@
-"""What random draws make of the results: percentiles of peaks, of their frequencies, and of jumps."""
+"""Scatter of results by random draws: percentiles of peaks, their frequencies, and jumps."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NONE = np.inf  # the frequency of a jump that does not occur
 
 
 class Scatter(Frozen):
-    """Of the curves that differ in drawn numbers alone; incomplete curves do not count.
+    """Percentiles over the complete curves that differ only in drawn numbers.
 
     Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves
     that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is unknown,
@@ -41,7 +41,7 @@ class Scatter(Frozen):
 
 
 def scatter(response: Response) -> list[Scatter]:
-    """One for each combination of the swept values that are not drawn; none where nothing is drawn."""
+    """Scatter for each combination of the swept values that are not drawn; empty where nothing is drawn."""
     curves = response.curves
     return [
         _of(
@@ -100,7 +100,7 @@ def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_toler
 
 
 def percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
-    """Of each column, (percent, column), without what is NaN."""
+    """Percentiles (percent, column) of each column, ignoring NaN."""
     out = np.full((len(PERCENTS), values.shape[1]), np.nan)
     for column, own in enumerate(values.T):
         known = own[np.isfinite(own)]
@@ -110,7 +110,7 @@ def percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
 
 
 def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
-    """As `fcm respond --json` prints it, frequencies in unit."""
+    """Entries for `fcm respond --json`, with frequencies in `unit`."""
 
     def by_percent(values: FloatArray) -> dict[str, float]:
         return {f"{percent:g}": float(value) for percent, value in zip(PERCENTS, values, strict=True)}

@@ -1,4 +1,4 @@
-"""What the results of a scene take, told from its numbers of curves, contacts and outputs beforehand."""
+"""Estimates the size of a scene's results from its numbers of curves, contacts and outputs."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ NUMBER = 8  # bytes
 
 
 class SizeOptions(Frozen):
-    """What is counted."""
+    """Options on the counts of numbers and bytes from which the size of results is estimated."""
 
-    of_curve: int = 3000  # bytes of a curve without points: its names, peaks and arrays
+    of_curve: int = 3000  # bytes of a curve without its points: names, peaks and arrays
     of_point: int = 4  # numbers of a point itself: frequency, stability, two errors
-    of_dof: int = 5  # of each degree of freedom: amplitude, fundamental, phase, mean, error
-    of_contact: int = 12  # of each contact: five of its loop, four of its cycle, and its states
-    kept_of_peaks: int = 6  # points of a curve of which peaks alone are kept, about
-    of_cycle: int = 3  # numbers of a cycle of a schedule, and as many of each degree of freedom
-    matrices: int = 3  # of all unknowns: the derivatives, a copy, its factors
-    few_modes: float = 0.5  # of the ports: with fewer modes the matrices are condensed to these
+    # numbers of each degree of freedom at a point: amplitude, fundamental, phase, mean, error
+    of_dof: int = 5
+    # numbers of each contact at a point: five of its loop, four of its cycle, its states
+    of_contact: int = 12
+    kept_of_peaks: int = 6  # about the points kept of a curve of which only peaks are kept
+    of_cycle: int = 3  # numbers of a cycle of a schedule, and as many for each degree of freedom
+    matrices: int = 3  # matrices (unknown, unknown) of a balance: derivatives, a copy, factors
+    few_modes: float = 0.5  # modes over ports below which the balance's matrices are condensed to the modes
 
 
 def least_points(
@@ -47,7 +49,7 @@ def bytes_of_results(
     options: SizeOptions | None = None,
     curves: int | None = None,
 ) -> float:
-    """What curves and motions take, in memory and as much again in a file, at the least.
+    """Lower bound of the bytes of curves and motions, in memory and as many again in a file.
 
     The curves are those of the scene, or as many where they are not made yet.
 
@@ -71,7 +73,7 @@ def bytes_of_results(
 
 
 def bytes_of_matrices(scene: Scene, harmonics: Sequence[int], options: SizeOptions | None = None) -> float:
-    """What the matrices of the balance take; 0 where they are condensed to the modes.
+    """Bytes of the matrices of the balance; 0 where they are condensed to the modes.
 
     >>> from fcm import load_scene
     >>> bytes_of_matrices(load_scene("yang1998"), (1, 2, 3))

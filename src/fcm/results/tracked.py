@@ -14,7 +14,7 @@ from fcm.units import in_unit
 
 
 class TrackedError(Frozen):
-    """What the harmonics left out would change at a point of a curve, estimated; NaN where it is unknown.
+    """Estimated effect of the harmonics left out at a point of a tracked curve; NaN where unknown.
 
     relative is of the amplitude of a peak, else of the frequency; number, at a turn alone, is by how much
     the number would be another there.
@@ -27,7 +27,7 @@ class TrackedError(Frozen):
 
 
 class TrackedCurve(Frozen):
-    """One curve, points in the order along it; frequencies in rad/s."""
+    """One tracked curve, points in the order along it; frequencies in rad/s."""
 
     parameters: dict[str, float]  # swept values of the curve of the scene that it belongs to
     what: str  # "fold", "peak of u", "slip of shroud", ...
@@ -45,7 +45,7 @@ class TrackedCurve(Frozen):
     undetermined: int = 0  # points at which a contact never slips and another may feel it
 
     def summary(self, unit: str) -> dict[str, Any]:
-        """For JSON."""
+        """Entries of the tracked curve for JSON."""
         return {
             "parameters": self.parameters,
             "what": self.what,
@@ -129,13 +129,15 @@ class Optimal(Frozen):
     higher: tuple[str, float] | None = (
         None  # what of the minimised the response there has higher, not followed
     )
-    end_error: float = 0.0  # of the number at which a higher peak ends, estimated, relative; by trials of a higher peak  # next to it; 0 where there is none
+    # estimated, relative, of the number at which a higher peak ends; by trials, of a higher peak next to the
+    # least. 0 where there is none
+    end_error: float = 0.0
     beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
     leaves_range: float = np.nan  # [rad/s] where that peak, or the least, leaves the range of frequencies
     nearly: NearlyLeast | None = None  # the numbers around it with which the peak is hardly greater
 
     def summary(self, unit: str) -> dict[str, Any]:
-        """For JSON."""
+        """Entries of the optimum for JSON."""
         return {
             "parameters": self.parameters,
             "values": self.values,
@@ -167,7 +169,7 @@ class Optimal(Frozen):
 
 @dataclass
 class Tracking:
-    """All of a run; key is the number that the curves are followed in."""
+    """Result of tracking; `key` is the number over which the curves are followed."""
 
     key: str
     what: str
@@ -188,7 +190,7 @@ class Tracking:
         return followed and not self.problems
 
     def summary(self, unit: str) -> dict[str, Any]:
-        """For JSON."""
+        """Entries of the tracking for JSON."""
         return {
             "what": self.what,
             "over": self.key,

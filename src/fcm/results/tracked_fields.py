@@ -1,4 +1,4 @@
-"""What the variables of tracked curves and optima are: dimensions, values, meanings and units."""
+"""Meanings of the variables of tracked curves and optima: dimensions, values and units."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _unit_of(key: str, response: Response) -> dict[str, str]:
 
 
 def _errors(tracking: Tracking, unit: dict[str, str]) -> dict[str, Field]:
-    """What the harmonics left out would change, where that was looked at."""
+    """Variables of the estimated effect of the harmonics left out, where it was estimated."""
     told = [np.full((3, curve.number.size), np.nan) for curve in tracking.curves]
     for out, curve in zip(told, tracking.curves, strict=True):
         for one in curve.errors:

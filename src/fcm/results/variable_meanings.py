@@ -1,4 +1,4 @@
-"""What the variables of a response file mean: names, meanings, units."""
+"""Meanings of the variables of a response file: names, texts and units."""
 
 from __future__ import annotations
 

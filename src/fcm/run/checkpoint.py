@@ -28,18 +28,18 @@ Fits = Callable[[int, Any], bool]  # whether results can be those of a batch
 
 
 class Results:
-    """Results of batches that are finished, and states of others, by their number; kept nowhere."""
+    """Results of finished batches and states of others, by their number, in memory only."""
 
     def __init__(self) -> None:
         self.finished: dict[int, list[Any]] = {}
         self.states: dict[int, list[Any]] = {}  # of an earlier run, in the order in which they were saved
 
     def add(self, number: int, results: list[Any]) -> None:
-        """A batch is finished."""
+        """Keeps the results of a finished batch."""
         self.finished[number] = results
 
     def save(self, number: int, state: Any) -> None:
-        """A batch has come so far."""
+        """Keeps the state of an unfinished batch; here none is kept."""
 
 
 class Checkpoint:
@@ -77,7 +77,7 @@ class Checkpoint:
             raise OSError(error.errno, error.strerror, str(path)) from None
 
     def results(self, mark: bytes, kinds: tuple[type, ...], fits: Fits) -> Results:
-        """What is finished of the work with this fingerprint, and where more of it goes.
+        """Saved results of the work with a fingerprint; what is finished later is appended to the file.
 
         A file that holds only other work is moved aside, with a warning.
         """
@@ -204,7 +204,7 @@ class _Kept(Results):
 
 
 def unfinished(output: Path) -> Path:
-    """Where the work for an output is kept meanwhile: beside the file itself, whatever links lead to it."""
+    """Path of the file for unfinished work on an output: beside the file itself, links resolved."""
     place = real(output) if output.is_symlink() else output
     return place.with_name(f"{place.name}.unfinished")
 
@@ -218,7 +218,7 @@ def _write(file: int, data: bytes) -> None:
 
 
 def _aside(path: Path, most: int) -> list[Path]:
-    """Where files of its name are moved aside, so many."""
+    """Paths to which files of its name are moved aside, `most` - 1 of them."""
     return [path.with_name(f"{path.name}.{number}") for number in range(1, most)]
 
 

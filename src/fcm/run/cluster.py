@@ -29,7 +29,7 @@ NOISY = r"(distributed|dask|tornado|asyncio)(\.|$)"  # modules
 
 
 class ClusterError(Exception):
-    """There is no cluster to compute on; the message says what is missing."""
+    """Raised when there is no cluster to compute on; the message says what is missing."""
 
 
 @contextmanager
@@ -53,7 +53,7 @@ def connected(address: str, options: RunOptions = RUN) -> Iterator[Factory]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Nothing of what distributed has to say."""
+    """Suppresses warnings and logs of distributed."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
@@ -125,7 +125,7 @@ class Workers:
         return self.options.batches_ahead * sum(self.threads[address] for address in self.good)
 
     def poll(self) -> None:
-        """See who is there, and ask those who are new; `PlaceClosed` if there has been nobody for long."""
+        """Looks for workers, and checks new ones; raises `PlaceClosed` if there has been none for long."""
         if (now := time.monotonic()) - self._looked < self.options.worker_interval:
             return
         self._looked = now
@@ -142,7 +142,7 @@ class Workers:
             )
 
     def look_again(self) -> None:
-        """Somebody is there who was not: see at the next look."""
+        """Makes the next poll look for workers at once, as a new one has come."""
         self._looked = -self.options.worker_interval
 
     def _ask(self, new: list[str]) -> None:

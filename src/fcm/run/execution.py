@@ -1,4 +1,4 @@
-"""How a calculation of many curves is carried out: where, what is kept of it, who is told how far it is."""
+"""Options on how a calculation of many curves is run: where, what is kept of it, and its progress."""
 
 from __future__ import annotations
 
@@ -16,21 +16,22 @@ from fcm.run.work import Progress
 
 
 class Execution(Frozen):
-    """No result depends on it.
+    """Options on how a calculation is run; no result depends on them.
 
     Attributes
     ----------
     jobs : int
         Processes of this machine for groups of curves; 0 for one on each core.
     place : optional
-        Where they are computed instead: `fcm.run.place_of` an executor, or `fcm.run.cluster.connected`.
+        Place where curves are computed instead: `fcm.run.place_of` an executor, or
+        `fcm.run.cluster.connected`.
     keep : Path or Checkpoint, optional
         File for what is finished. Of a path it is there only while the calculation is not finished; a
         checkpoint is the caller's, to be kept until the response is written.
     resume : bool
-        Take from that file what is finished already.
+        Whether what is finished already is taken from the file `keep`.
     progress : optional
-        Called now and then with the finished fraction and a text.
+        Function that is called now and then with the finished fraction and a text.
     """
 
     jobs: int = 1
@@ -41,7 +42,7 @@ class Execution(Frozen):
 
     @property
     def processes(self) -> int:
-        """How many may be used of this machine."""
+        """Number of processes that may be used on this machine."""
         return self.jobs or os.cpu_count() or 1
 
     @contextmanager

@@ -28,7 +28,7 @@ def identity() -> tuple[str, bytes]:
 
 
 def there(compute: Compute, task: bytes, asked_by: tuple[str, bytes]) -> Attempt:
-    """In a process of the executor: compute a batch, with one thread of linear algebra.
+    """Computes a batch in a process of the executor, with one thread of linear algebra.
 
     task : pickled batch and saved states, so that no executor looks into them.
     asked_by : `identity` of the fcm whose results these are to be.
@@ -41,7 +41,7 @@ def there(compute: Compute, task: bytes, asked_by: tuple[str, bytes]) -> Attempt
 
 
 def other_fcm(own: tuple[str, bytes], asked_by: tuple[str, bytes]) -> str:
-    """In what two fcm differ."""
+    """Sentence on how another installation of fcm differs from this one."""
     if own[0] != asked_by[0]:
         return f"it has fcm {own[0]}, and this is fcm {asked_by[0]}"
     return f"its fcm {own[0]} has other sources, another Python, numpy or scipy than this one"

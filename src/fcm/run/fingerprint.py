@@ -1,4 +1,4 @@
-"""What results depend on, in 32 bytes: what was asked for, and the program that answers.
+"""Fingerprint (32 bytes) of all that results depend on: the request, and the program.
 
 On one machine the program is known by the sizes of its files and when they were changed, as Python knows of
 which source its bytecode is. That takes a millisecond; to read them all would take twenty. Between machines
@@ -48,7 +48,7 @@ def installed(folder: Path) -> bytes:
 
 
 def _files(folder: str) -> Iterator[os.DirEntry[str]]:
-    """Those in a folder and below that decide what is computed."""
+    """Yields the files in a folder and below that decide what is computed."""
     for entry in os.scandir(folder):
         if entry.name.endswith((*PROGRAM, TABLE)):
             yield entry

@@ -1,4 +1,4 @@
-"""Run: tolerances and limits."""
+"""Options of runs: limits and waiting times of places, checkpoints and workers."""
 
 from __future__ import annotations
 
@@ -9,18 +9,21 @@ class RunOptions(Frozen):
     """Waiting times and sizes of a sweep in several processes."""
 
     answer_interval: float = 0.05  # [s] between two looks at whether there is an answer
-    max_set_aside: int = 1000  # files moved aside for one output; then it is refused
-    scheduler_answer: float = 10.0  # [s] in which a scheduler has to answer
-    first_worker: float = 30.0  # [s] in which the first worker of a scheduler has to come
-    without_workers: float = 60.0  # [s] for which a scheduler may be without workers in the middle of a run
+    max_set_aside: int = 1000  # most files that are moved aside for one output; with more the run is refused
+    scheduler_answer: float = 10.0  # [s] time within which a scheduler has to answer
+    first_worker: float = 30.0  # [s] time within which the first worker of a scheduler has to come
+    # [s] time for which a scheduler may be without workers in the middle of a run
+    without_workers: float = 60.0
     worker_interval: float = 2.0  # [s] between two looks at how many workers a scheduler has
-    leave_time: float = 5.0  # [s] to part from a scheduler
-    batches_ahead: int = 2  # for each worker: one that it computes, one that waits for it
-    unknown_workers: int = 32  # of an executor that does not say how many it has
-    almost_done: float = 0.999  # of a batch that is not known to be finished
+    leave_time: float = 5.0  # [s] time for parting from a scheduler
+    # number of batches that each worker has: one that it computes, one that waits for it
+    batches_ahead: int = 2
+    unknown_workers: int = 32  # number of workers that is assumed of an executor which does not tell it
+    almost_done: float = 0.999  # greatest share that is shown of a batch which is not known to be finished
     poll: float = 0.1  # [s] between two looks at the progress of others
-    grace_time: float = 0.8  # [s] in which those who are asked to stop may hand over what they have
-    progress_interval: float = 0.1  # [s] between two words of progress
+    # [s] time within which processes that are asked to stop may hand over what they have
+    grace_time: float = 0.8
+    progress_interval: float = 0.1  # [s] time between two reports of progress
 
 
 RUN = RunOptions()

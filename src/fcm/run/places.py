@@ -1,4 +1,4 @@
-"""Where batches are computed: one small contract, and this process or threads of it as the nearest places."""
+"""Places where batches are computed: their interface, and this process or its threads as the nearest ones."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ class Place(ABC):
         """Begin to compute a batch; the report is called now and then, from whatever thread."""
 
     def result(self, future: Future[Attempt]) -> Attempt:
-        """What came of a batch whose future is done; or `WorkerDied`, `NotComputed` or `PlaceClosed`."""
+        """Result of a batch whose future is done; raises `WorkerDied`, `NotComputed` or `PlaceClosed`."""
         return future.result()
 
     def poll(self) -> None:  # noqa: B027
-        """See now and then how it is; or `PlaceClosed`."""
+        """Checks the place now and then; raises `PlaceClosed` when it is gone."""
 
     def stop(self) -> None:  # noqa: B027
         """Ask everybody to stop; their futures then have the part that is finished."""
 
     def close(self) -> None:
-        """Leave nothing running."""
+        """Stops the place, and leaves nothing running."""
         self.stop()
 
 
 class SerialPlace(Place):
-    """This process, one batch after the other."""
+    """Place that computes in this process, one batch after the other."""
 
     def __init__(self, compute: Compute) -> None:
         self.compute = compute

@@ -24,7 +24,7 @@ from fcm.threads import one_each
 
 
 class Processes(Place):
-    """So many processes, each begun when it is first needed."""
+    """Place of several processes, each started when it is first needed."""
 
     def __init__(self, compute: Compute, count: int) -> None:
         self.width = count
@@ -54,7 +54,7 @@ class Processes(Place):
                 worker.release()
 
     def _compute(self, batch: Batch, report: Report) -> Attempt:
-        """In a thread of this process: have one batch computed by a worker."""
+        """Has one batch computed by a worker; runs in a thread of this process."""
         worker = self._taken()
         try:
             done = worker.compute(batch, report)
@@ -110,12 +110,12 @@ class _Worker:
         return None
 
     def end(self) -> None:
-        """Nothing it has is needed."""
+        """Kills the process of the worker."""
         self.process.kill()
         self.process.wait()
 
     def release(self) -> None:
-        """Nobody listens to it any more."""
+        """Closes the streams to and from a worker."""
         for stream in (self.process.stdin, self.process.stdout):
             with suppress(OSError):
                 cast("BinaryIO", stream).close()

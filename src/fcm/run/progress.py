@@ -1,4 +1,4 @@
-"""One bar for a whole run: parts of it, none of which ever goes back."""
+"""Progress bar of a whole run, of parts that never go back."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Bar:
         return show
 
     def finish(self, number: int) -> None:
-        """A batch is finished."""
+        """Marks a batch as finished."""
         self._set(number, 1.0)
         self.text = ""
         self.draw()
 
     def draw(self) -> None:
-        """Show it."""
+        """Shows the progress."""
         if self.progress is not None:
             done = f"{int(self.done)} of {self.total} curves"
             self.progress(min(self.done / self.total, 1.0), f"{done}: {self.text}" if self.text else done)

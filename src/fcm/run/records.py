@@ -33,7 +33,7 @@ class Record(NamedTuple):
 
 
 def packed(record: Record) -> bytes:
-    """The bytes of a record."""
+    """The bytes that a record takes in a file."""
     mark, number, payload = record
     return _HEAD.pack(START, mark, number, len(payload), _seal(record)) + payload
 

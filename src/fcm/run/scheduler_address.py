@@ -75,7 +75,7 @@ def _listens(host: str, port: int, until: float) -> None:
 
 
 def within(call: Callable[[], Any], until: float) -> tuple[Any, BaseException | None]:
-    """What a call in a thread returns, or what it raises; LATE where it has not ended by then.
+    """Result or exception of a call run in a thread; LATE where it has not ended by a time.
 
     The thread is left to itself then, and does not keep the process from its end.
     """

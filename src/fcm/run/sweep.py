@@ -30,12 +30,12 @@ class Outcome:
     lost: str = ""  # why, where it was the place that took nothing any more
 
     def of(self, number: int) -> list[Any]:
-        """What there is of a batch."""
+        """Results of a batch, or the part that there is."""
         return list(self.results.get(number, self.parts.get(number, ())))
 
 
 def place_for(jobs: int, *, threads: bool = False) -> Factory:
-    """Where to compute on so many cores of this machine."""
+    """Factory of the place for a number of cores of this machine."""
     if jobs == 1:
         return lambda compute, _count: SerialPlace(compute)
     from fcm.run.processes import Processes
@@ -58,7 +58,7 @@ def sweep(
     kept: Results | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
-    """Compute all batches.
+    """Computes all batches.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class _Sweep:
         return found
 
     def _saver(self, number: int, at_once: bool) -> Callable[[Any], None]:
-        """What keeps a state of a batch; other threads leave it to this one."""
+        """Function that saves a state of a batch; in other threads it leaves this to the main one."""
         if at_once:
             return lambda state: self.kept.save(number, state)
         return lambda state: self.states.append((number, state))
@@ -212,7 +212,7 @@ class _Stopped(KeyboardInterrupt):
 
 
 def _result(place: Place, future: Future[Attempt]) -> Attempt | None:
-    """What came of a batch; None if its process has died."""
+    """Result of a batch; None if its process has died."""
     try:
         return place.result(future)
     except (WorkerDied, CancelledError):

@@ -1,4 +1,4 @@
-"""One batch computed: whatever fails in it is lost alone, and an interruption gives what there is."""
+"""Computes one batch: a failure loses its item only, and an interruption returns what there is."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Batch = Sequence[Any]
 
 
 class Report:
-    """What a computation says while it runs: how far it is, and from what it could go on.
+    """Progress report of a running computation, and its states from which it can go on.
 
     ``saved`` are the states that the same computation has saved before it was interrupted, in order: it goes
     on from them, to the same result, or leaves them be.
@@ -27,12 +27,12 @@ class Report:
         self._said, self._steps = (0.0, ""), 0
 
     def __call__(self, fraction: float, text: str) -> None:
-        """So much is finished; an interruption is raised from here."""
+        """Reports the finished fraction; raises an interruption, if there is one."""
         self._said, self._steps = (fraction, text), 0
         self.show(fraction, text)
 
     def begins(self, text: str) -> None:
-        """What the next steps are of."""
+        """Names what the next steps are part of."""
         self._said, self._steps = (self._said[0], text), 0
 
     def again(self) -> None:
@@ -59,14 +59,14 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Lost(Frozen):
-    """In the place of a result: why there is none."""
+    """Takes the place of a result that could not be had, with the reason."""
 
     reason: str
     defect: str = ""  # the traceback, if the reason is a defect of the program
 
 
 class Attempt(Frozen):
-    """What came of a batch."""
+    """Outcome of computing a batch."""
 
     results: list[Any]
     interrupted: bool = False  # the results are then a part, or none

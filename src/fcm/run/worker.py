@@ -66,7 +66,7 @@ class _Said:
 
 
 class _Unknown:
-    """In the place of a function that cannot be had."""
+    """Takes the place of a function that cannot be loaded; raises when called."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason

@@ -1,4 +1,4 @@
-"""Where a key path such as "contact.shroud.n_0" is in a scene."""
+"""Finds the place in a scene of a key path such as "contact.shroud.n_0"."""
 
 from __future__ import annotations
 
@@ -52,21 +52,21 @@ class Addresses:
         return ()
 
     def _forces_meant(self) -> str:
-        """Of the level of the forces, of which --level makes a curve: what is swept in its place."""
+        """Hint for the key of the force level, which is not swept: sweep the amplitudes, or use --level."""
         forces = [f"force.{draft['name'] or i}.amplitude" for i, draft in enumerate(self.parts["force"])]
         every = "force.*.amplitude" if len(forces) > 1 else "".join(forces)
         swept = f"; sweep {quoted(every)}, or follow" if forces else "; follow"
         return f"{swept} the level at one frequency by fcm respond --level FROM:TO --at F"
 
     def _other_word(self, key: str) -> str:
-        """Of a number that others name otherwise, as a preload, its key path here; else nothing."""
+        """Hint for a number under another common name (a preload, say) with its key path here; or ''."""
         label, _, field = key.rpartition(".")
         meant = f"{label}.{SYNONYMS.get(field, field)}"
         there = meant != key and (meant in self.numbers or self._members(meant, "", Mistakes("")) is not None)
         return f"; did you mean {quoted(meant)}?" if there else ""
 
     def _contact_meant(self, key: str) -> str:
-        """Of a contact that is not there the name that may be meant, or those that are; else nothing."""
+        """Hint for a contact that does not exist: the likely name, or those that exist; or ''."""
         kind, _, rest = key.partition(".")
         label, _, field = rest.rpartition(".")
         drafts = self.parts["contact"]
@@ -215,7 +215,7 @@ def overlap(one: Address, other: Address) -> bool:
 
 
 def _of_one_table(draft: Mapping[str, Any]) -> tuple[str, str]:
-    """What the contacts of one [[contact]] have in common: its name, and the sector of a mistuned ring."""
+    """What the contacts of one [[contact]] table share: its name, and the sector of a mistuned ring."""
     name: str = draft["name"]
     return draft.get("group", name), name.removeprefix(draft["of"]) if "of" in draft else ""
 
@@ -257,7 +257,7 @@ def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
 
 
 def _named(parts: Mapping[str, Any], kind: str) -> Iterator[tuple[str, int, dict[str, Any]]]:
-    """Each contact or force by its index, then by its name where that is the only one."""
+    """Yields each contact or force under its index, and under its name where that is unique."""
     names = [draft["name"] for draft in parts[kind]]
     for index, draft in enumerate(parts[kind]):
         if "of" not in draft:  # those of sectors are known by their names alone

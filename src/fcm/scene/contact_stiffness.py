@@ -11,7 +11,7 @@ from fcm.scene.options import MESSAGES
 
 
 def notes_of_stiffness(scene: Scene) -> list[str]:
-    """One sentence on contacts far stiffer than the structure where they are; one if all are far softer.
+    """Notes on contacts far stiffer than the structure at them, or if all are far softer.
 
     The measure is k times the flexibility of the elastic modes along the contact's displacement, sum phi^2 /
     (m omega^2). Nothing is said of rings, of stiffnesses that are swept, nor of soft contacts that hold rigid
@@ -43,7 +43,7 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
 
 
 def _stiffness_beside_structure(scene: Scene) -> FloatArray:
-    """Of each contact (contact,), the greater of k_u and k_v times the flexibility along the displacement."""
+    """Ratio (contact,): the greater of k_u and k_v times the flexibility along the displacement."""
     modal = scene.modal
     elastic = modal.frequency > 0.0
     shapes = modal.shapes[elastic] / (np.sqrt(modal.mass) * modal.frequency)[elastic][:, None]

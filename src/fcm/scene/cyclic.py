@@ -31,13 +31,13 @@ class RingNames(Names):
 
     @cached_property
     def own(self) -> Names:
-        """Those of the sector itself."""
+        """Names of the sector itself, without those of the next sector."""
         own = Names(name for name in self if not name.startswith(NEXT))
         own.key = self.key
         return own
 
     def find(self, name: str) -> str:
-        """As `Names.find`, also of "next.40x".
+        """Finds a name as `Names.find` does, also one of the next sector such as "next.40x".
 
         >>> RingNames(("40x", "tip", "next.40x", "next.tip")).find("next.40:1")
         'next.40x'
@@ -110,7 +110,7 @@ def only_own(top: Section, drafts: Mapping[str, list[Part]], dofs: RingNames | N
 
 
 def ring_of(modal: Part, cyclic: Part, unit: float) -> tuple[Modal, Ring]:
-    """What the mean meets, and the whole ring, of what was read; unit is rad/s in one of the frequency."""
+    """The modes for the mean and the whole ring, from what was read; `unit` is rad/s per unit."""
     dofs = tuple(modal["dofs"])
     sectors, order = int(cyclic["sectors"]), int(cyclic["engine_order"])
     diameter = modal["diameter"]
@@ -145,7 +145,7 @@ def check_diameters(curve: Scene, mistakes: Mistakes, where: str) -> bool:
 
 
 def note_of_stability(scene: Scene) -> list[str]:
-    """Which disturbances decide whether the waves of a scene are stable."""
+    """Note on which disturbances decide whether the waves of a scene are stable."""
     rings = {one.ring.engine_order: one.ring for one in scene.each_curve() if one.ring is not None}
     if not rings:
         return []

@@ -1,4 +1,4 @@
-"""What a scene was made of, kept so that any number of it can be given another value."""
+"""The draft of a scene: what it was made of, so that any of its numbers can be changed."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ class Draft(Frozen):
         return replace(scene, parameters=dict(values), **changed)
 
     def values(self, scene: Scene, addresses: tuple[Address, ...]) -> list[Any]:
-        """What stands at addresses in a curve of the scene."""
+        """Values at addresses in a curve of the scene."""
         return [_at(self.fixed(scene).parts, address) for address in addresses]
 
     def fixed(self, scene: Scene) -> Draft:
-        """What a curve of the scene was made of, its swept values in their places."""
+        """The draft of a curve of the scene, with its swept values in place."""
         return Draft(self._with(scene.parameters, {}), ())
 
     def _with(self, values: Mapping[str, float], more: Mapping[Address, float]) -> Parts:
@@ -69,7 +69,7 @@ class Draft(Frozen):
         return parts
 
     def present(self, number: Number) -> list[tuple[float, float]]:
-        """What stands at each address of a number, before any sweep, with its weight."""
+        """Value and weight at each address of a number, before any sweep."""
         weights = number.weights or (1.0,) * len(number.addresses)
         return [
             (float(value), weight)
@@ -78,7 +78,7 @@ class Draft(Frozen):
         ]
 
     def at(self, used: npt.NDArray[np.bool_]) -> Draft:
-        """The same at some of the degrees of freedom."""
+        """The draft restricted to some of the degrees of freedom."""
         modal = self.parts["modal"]
         shapes = modal["shapes"]  # of a sector of a ring on its own, which are the first
         names = tuple(name for name, one in zip(modal["dofs"], used, strict=True) if one)
@@ -105,7 +105,7 @@ class Number(Frozen):
 
     @property
     def rule(self) -> Rule:
-        """What it may be."""
+        """Rule that a value of the number must obey."""
         return RULES[field_of(self.addresses[0])]
 
     def value(self, scene: Scene) -> float:
@@ -114,7 +114,7 @@ class Number(Frozen):
         return values.pop() if len(values) == 1 else np.nan
 
     def each(self, scene: Scene) -> list[tuple[Number, float, float]]:
-        """Those that it stands for, one by one, with their values and weights."""
+        """The single numbers that this one stands for, with their values and weights."""
         found = []
         values = _draft(scene).values(scene, self.addresses)
         weights = self.weights or (1.0,) * len(self.addresses)
@@ -127,7 +127,7 @@ class Number(Frozen):
         return found
 
     def values(self, value: float) -> dict[Address, float]:
-        """What stands at each address for a value."""
+        """Value at each address of the number for a common value."""
         weights = self.weights or (1.0,) * len(self.addresses)
         return {address: value * weight for address, weight in zip(self.addresses, weights, strict=True)}
 
@@ -184,7 +184,7 @@ def number_in(draft: Draft, key: str, path: str, mistakes: Mistakes) -> Number |
 
 
 def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
-    """All amplitudes of forces, and of the base's motion, in proportion."""
+    """Number for the level: all amplitudes of forces, and of the base's motion, in proportion."""
     keys = (("force", "amplitude"), ("base", "acceleration"))
     found = [((kind, i, key), draft[key]) for kind, key in keys for i, draft in enumerate(parts[kind])]
     found = [(address, weight) for address, weight in found if weight]

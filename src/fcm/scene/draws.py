@@ -33,7 +33,7 @@ Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
 
 
 class Draws(Frozen):
-    """How a key is drawn."""
+    """How random values of a key are drawn: its distribution, their count and seed."""
 
     key: str
     form: str  # one of FORMS
@@ -69,7 +69,7 @@ class Draws(Frozen):
         return low + (high - low) * share if self.form == "uniform" else self._quantiles(share)
 
     def seconds(self) -> float:
-        """About how long all draws take, from a few of them; 0 of those that take no time."""
+        """Estimated seconds of all draws, from timing a few; 0 for draws that take no time."""
         if self.quantile is None or self.count <= LIMITS.draws_timed:
             return 0.0
         begin = perf_counter()
@@ -132,7 +132,7 @@ def _pair(table: Section, form: str) -> tuple[float, float]:
 
 
 def _deviation_in_percent(pair: list[Any]) -> str:
-    """What to write for a standard deviation that is given as a percentage of its mean; else ''.
+    """Hint on a standard deviation given as a percentage of its mean; else ''.
 
     >>> _deviation_in_percent([5.0, "20 %"]), _deviation_in_percent([5.0, "20"])
     ('"20 %" is no number: the standard deviation is in the units of the key, as its mean is: write 1', '')
@@ -187,7 +187,10 @@ class _Family(NamedTuple):
 
 
 def _family(name: str, table: Section) -> _Family | None:
-    """That of scipy.stats, which takes long to import; None after a mistake."""
+    """Distribution of scipy.stats with a name; None after a mistake.
+
+    scipy.stats takes long to import.
+    """
     if name == "lognorm":
         return _Family(("s",), True, _lognormal)
     from scipy import stats
@@ -215,13 +218,13 @@ def _lognormal(probability: FloatArray | float, s: float, loc: float, scale: flo
 
 
 class Correlation(Frozen):
-    """Which keys are correlated, and the factor L of their matrix, L L^T."""
+    """Correlated keys, and the factor L of their correlation matrix, L L^T."""
 
     keys: tuple[str, ...]
     factor: FloatArray
 
     def values(self, draws: Mapping[str, Draws]) -> dict[str, FloatArray]:
-        """The draws of the keys."""
+        """Random draws of the correlated keys."""
         scores = self.factor @ np.array([draws[key].scores() for key in self.keys])
         return {key: draws[key].at(own) for key, own in zip(self.keys, scores, strict=True)}
 
@@ -284,7 +287,7 @@ def _shape(rows: Sequence[Any]) -> str:
 
 
 def _fault(matrix: FloatArray) -> str:
-    """What is wrong with a square matrix of correlations; empty if nothing is."""
+    """Fault of a square matrix of correlations as text; empty if there is none."""
     if (matrix.diagonal() != 1.0).any():
         return "must have 1 everywhere on its diagonal"
     if (matrix != matrix.T).any():

@@ -13,7 +13,7 @@ _NUMBER = re.compile(r"[0-9]{1,18}")  # of a node, at the beginning of a name
 
 
 class SceneError(ValueError):
-    """What is wrong with a scene: its file or name, then one line for each mistake.
+    """Raised for a faulty scene: its file or name, then one line for each mistake.
 
     >>> print(SceneError("fan.toml", ["modal.mass[0]: must be greater than 0, is -1"]))
     fan.toml: modal.mass[0]: must be greater than 0, is -1
@@ -44,7 +44,7 @@ class Mistakes:
     """
 
     def __init__(self, source: str, notices: SizeNotices | None = None) -> None:
-        """Of a file; what takes long to read is said at once, where there is someone to say it to."""
+        """Starts the list of mistakes of a file; `notices` hears of what takes long to read."""
         self.source = source
         self.notices = notices or SizeNotices()
         self.count = 0
@@ -103,7 +103,7 @@ def _of_nearest_number(word: str, among: Iterable[str]) -> list[str]:
 
 
 def counted(count: int, what: str) -> str:
-    """A number with its noun.
+    """A number with its noun, in the plural if needed.
 
     >>> counted(1, "mode"), counted(2, "mode")
     ('1 mode', '2 modes')
@@ -163,7 +163,7 @@ def shown(value: object) -> str:
 
 
 def kind(value: object) -> str:
-    """What a value is, in the words of the file: a table, a list, a string, ...
+    """Kind of a value in the words of a scene file: a table, a list, a string, ...
 
     >>> kind({}), kind([1, 2]), kind(None)
     ('a table', 'a list of 2', 'a NoneType')

@@ -1,4 +1,4 @@
-"""What moves or loads a structure beside harmonic forces: its base, and static loads."""
+"""Excitation beside harmonic forces: motion of the base, and static loads."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _direction(section: Section, dofs: Names | None) -> FloatArray | None:
 
 
 def _oblique(section: Section, weights: Mapping[str, Any], dofs: Names | None) -> FloatArray | None:
-    """Of a motion along several axes, as { x = 0.6, y = 0.8 }."""
+    """Displacements of a rigid translation along several axes, given as { x = 0.6, y = 0.8 }."""
     before, path = section.mistakes.count, section.at("direction")
     each = {axis: section.checked(weight, f"{path}.{axis}", ANY) for axis, weight in weights.items()}
     if section.mistakes.count == before and not any(each.values()):
@@ -78,7 +78,7 @@ def _oblique(section: Section, weights: Mapping[str, Any], dofs: Names | None) -
 
 
 def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray | None:
-    """Of a motion by 1 along one axis."""
+    """Displacements of a rigid translation by 1 along one axis."""
     if dofs is None:
         return None
     moved = [along_axis(name, axis) for name in dofs]
@@ -108,7 +108,7 @@ def base_force(draft: dict[str, Any], dofs: tuple[str, ...]) -> Force:
 
 
 def read_loads(top: Section, files: Files, dofs: Names | None, matrices: bool) -> list[dict[str, Any]]:
-    """The static loads as read."""
+    """Reads the static loads."""
     return [_load(section, files, dofs, matrices) for section in top.tables("load")]
 
 

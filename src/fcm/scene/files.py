@@ -24,7 +24,7 @@ class DataFileError(ValueError):
 
 
 class UnreadableError(ValueError):
-    """What is wrong with a file, without its name, in words for its owner."""
+    """Raised for a file that cannot be read; the message, without the file's name, is for its owner."""
 
 
 def reason_of(error: Exception, ending: str) -> str:

@@ -41,7 +41,7 @@ RIGHT = {
 
 
 def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], unit: str) -> Fit | None:
-    """What is to be fitted to which data; None without the table, or after a mistake."""
+    """Reads which numbers are fitted to which data; None without the table, or after a mistake."""
     section = top.table("fit", "") if "fit" in top.data else None
     if section is None:
         return None
@@ -93,7 +93,7 @@ def notes_of_data(fit: Fit | None, ends: tuple[float, float], unit: str) -> list
 
 
 def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[float, float] | None]:
-    """From and to of each number; None for those that have none."""
+    """Bounds [from, to] of each number; None for those without."""
     value = section.data.get("bounds")
     if value is None or not numbers:
         return [None] * len(numbers)
@@ -110,7 +110,7 @@ def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[fl
 def _data(
     section: Section, files: Files, draft: Draft, reported: Sequence[str], unit: float, length: str
 ) -> Measured | None:
-    """One set of measured points."""
+    """Reads one set of measured points."""
     before = section.mistakes.count
     backbone = "backbone" in section.data
     if backbone and "file" in section.data:
@@ -165,7 +165,7 @@ def _data(
 
 
 def _quantity(section: Section, name: str, given: str, power: float) -> str:
-    """What was measured: as a universal file says, which another one given contradicts."""
+    """Measured quantity, as a universal file declares it; another one given in the scene is a mistake."""
     told = next(one for one, its in QUANTITIES.items() if its == power)
     if told != given and "quantity" in section.data:
         section.wrong("quantity", f"is {quoted(given)}, and {quoted(name)} says that it is {quoted(told)}")

@@ -1,4 +1,6 @@
-r"""How much friction can damp each resonance: an estimate by one harmonic, of contacts that stay closed.
+r"""Estimate of the damping that friction can add to each resonance, by one harmonic.
+
+Contacts stay closed.
 
 A Jenkins element in harmonic motion of amplitude X is a stiffness and a damping force in phase with the
 velocity, with cos(theta) = 1 - 2 mu n_0 / (k_u X):
@@ -32,7 +34,7 @@ from fcm.units import UNIT
 
 
 def friction_damping(scene: Scene) -> list[dict[str, Any]]:
-    """Of the first elastic modes: frequencies with the contacts open and stuck, and the damping of friction.
+    """Frequencies of the first elastic modes with contacts open and stuck, and damping by friction.
 
     `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
     in it, `preload` that of each contact which gives it with the forces of the scene: 0 where these do not

@@ -13,7 +13,7 @@ REQUIRED = "required"
 
 
 class Key(Frozen):
-    """One key of a table."""
+    """Description of one key of a table."""
 
     meaning: str
     value: str | Rule  # what it may be
@@ -21,7 +21,7 @@ class Key(Frozen):
 
     @property
     def kind(self) -> str:
-        """What it may be, in words."""
+        """What values the key may have, in words."""
         return self.value if isinstance(self.value, str) else _in_words(self.value)
 
 
@@ -30,7 +30,7 @@ def _in_words(rule: Rule) -> str:
 
 
 def _rule(key: str, more: str) -> str:
-    """What a number may be, and that there may be several of it."""
+    """What values a number may have, in words, and that there may be several."""
     return f"{_in_words(RULES[key])}{more}"
 
 
@@ -231,7 +231,7 @@ LISTS = (
 
 
 def names(table: str) -> tuple[str, ...]:
-    """The keys of a table.
+    """Names of the keys of a table.
 
     >>> names("schedule")
     ('frequency', 'cycles')

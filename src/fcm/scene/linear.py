@@ -114,7 +114,7 @@ def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: t
 def _of_ring(
     top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
 ) -> tuple[Parts, list[str]]:
-    """As `with_modes`, with the modes of every nodal diameter."""
+    """The parts of a ring scene with the modes of every nodal diameter, see `with_modes`."""
     from fcm.scene.reduction import exchanged
     from fcm.scene.ring_reduction import LoadedRing, all_alike, modal_of_ring
     from fcm.structure.eigen import unit_columns

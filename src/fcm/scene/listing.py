@@ -1,4 +1,4 @@
-"""What a scene's structure is before anything is solved: its modes, what moves them, and what is amiss."""
+"""Describes the structure of a scene before anything is solved: modes, excitation, and doubts."""
 
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ def listing(scene: Scene) -> dict[str, Any]:
 
 
 def resonance_doubt(scene: Scene) -> str:
-    """That no resonance is near the range of frequencies: the nearest modes, a usual slip of units; else ''.
+    """Doubt that no resonance is near the frequency range, with the nearest modes and usual slips of units;
+    or ''.
 
     A resonance lies between a mode of the structure alone and that with all contacts stuck: springs only
     raise frequencies, and a contact in motion is softer than its spring (Rayleigh).
@@ -103,7 +104,7 @@ def resonance_doubt(scene: Scene) -> str:
 
 
 def _ranges_of_forces(scene: Scene) -> list[tuple[float, float]]:
-    """Over which frequencies [rad/s] forces act: the range, times each harmonic that a force has."""
+    """Ranges of frequency [rad/s] in which forces act: the scene's range times each force harmonic."""
     low, high = scene.frequency_range
     driven = sorted({force.harmonic for force in scene.forces}) or [1]
     return [(h * low, h * high) for h in driven]
@@ -162,7 +163,7 @@ def closed_stiffness(scene: Scene) -> FloatArray:
 
 
 def sticking_stiffness(scene: Scene) -> FloatArray:
-    """What sticking contacts add to that (mode, mode)."""
+    """Stiffness (mode, mode) that sticking contacts add by friction, in modes of mass 1."""
     along = along_contacts(scene, normal=False)
     k_u = [one.k_u for one in scene.contacts for _ in one.directions[:-1]]
     found: FloatArray = (along * k_u) @ along.T
@@ -221,7 +222,7 @@ def notes_of_modes(scene: Scene) -> list[str]:
 
 
 def _first_far_below(scene: Scene) -> str:
-    """That the first resonance is far below the range, which a slip of units would put into it; else ''.
+    """Sentence that the first resonance is far below the range, which a slip of units could explain; or ''.
 
     Higher modes are in the range then, so that it is not said that none is.
     """
@@ -288,8 +289,10 @@ def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
 
 
 def _read(scene: Scene, frequency: FloatArray) -> list[str]:
-    """What was read as the structure: matrices, rigid bodies, frequencies in both units, and whether these
-    look as if units were mixed."""
+    """Sentences on what was read as the structure: matrices, rigid bodies, frequencies in both units.
+
+    They say whether units may have been mixed.
+    """
     elastic = np.sort(frequency[frequency > 0.0])
     rigid = int((frequency == 0.0).sum())
     bodies = {0: "no rigid-body mode", 1: "1 rigid-body mode"}.get(rigid, f"{rigid} rigid-body modes")
@@ -308,7 +311,7 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
 def _slip_of_units(
     opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str, imperial: bool = False
 ) -> str:
-    """By which usual slip of units the range [rad/s] would have the lowest resonance; else ''."""
+    """The usual slip of units by which the range [rad/s] would contain the lowest resonance; else ''."""
     hertz = 2.0 * np.pi
     slips = {
         1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',

@@ -1,4 +1,4 @@
-"""From a TOML file, a bundled name or a dict to a checked scene."""
+"""Loads a scene from a TOML file, a bundled name or a dict, and checks it."""
 
 from __future__ import annotations
 
@@ -343,7 +343,7 @@ def _parts(
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
-    """What can only be seen of a whole curve: that its forces and contacts move something.
+    """Checks what only a whole curve shows: that its forces and contacts move something.
 
     What is wrong with every curve of a sweep is said once, as the sweep does not make it.
     """
@@ -393,7 +393,7 @@ def _moved(curve: Scene) -> bool:
 
 
 def _moved_by(curve: Scene, harmonic: int) -> bool:
-    """The same of the forces of one harmonic."""
+    """Whether the forces of one harmonic have a component on any mode, beyond rounding."""
     shapes = curve.modal.shapes if curve.ring is None else curve.ring.modes(harmonic)[2]
     forces = [force for force in curve.forces if force.harmonic == harmonic]
     pushes = [shapes @ (force.amplitude * force.direction) for force in forces]
@@ -413,7 +413,7 @@ def _unit(top: Section) -> str:
 
 
 def _there(path_or_name: str | Path) -> Path:
-    """The path of a scene's file."""
+    """Path of a scene's file, which must exist."""
     path, what = Path(path_or_name), no_file(Path(path_or_name))
     if what == NOT_THERE:
         raise SceneError(str(path), [_not_there(str(path))])

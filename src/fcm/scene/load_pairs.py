@@ -19,7 +19,7 @@ from fcm.scene.toml import read_toml
 
 
 class Pairs(Frozen):
-    """Where the pairs of each contact are, what is to be said of them, and the scene's unit of length."""
+    """Node pairs of each contact, with notes on them and the scene's unit of length."""
 
     interfaces: tuple[Interface, ...]
     notes: tuple[str, ...]

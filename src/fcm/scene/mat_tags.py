@@ -24,7 +24,7 @@ HEAD, TAG, SMALL = 128, 8, 4  # bytes
 
 
 class Element(NamedTuple):
-    """One element: its type and its bytes."""
+    """One element of a file: its type and its bytes."""
 
     kind: int
     content: memoryview
@@ -82,7 +82,7 @@ def _check_matrix(one: Element, order: str, wanted: Collection[str] | None) -> N
 
 
 def of_struct(name: str) -> str:
-    """What is wrong with a struct, of which nothing is read."""
+    """Sentence that a variable is a struct, of which nothing is read."""
     shown = f'"{name}"' if name else "a part of an array"
     return f"{shown} is a struct: save its fields as variables of their own, in MATLAB by save -struct"
 

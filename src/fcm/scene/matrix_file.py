@@ -87,7 +87,7 @@ def split_name(name: str) -> tuple[str, str]:
 
 
 def _from_npz(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
-    """All arrays; or the one sparse matrix that `scipy.sparse.save_npz` has written."""
+    """Reads all arrays of an .npz file; or the one sparse matrix saved by `scipy.sparse.save_npz`."""
     arrays = read_npz(path, None, files)
     if "format" in arrays and "shape" in arrays:
         return {"": Labelled(_from_parts(arrays))}
@@ -145,7 +145,7 @@ def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
 
 
 def _from_own(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
-    """By a reader of one's own."""
+    """Reads matrices by an installed reader of the user."""
     every = read_own(path)
     return {name: Labelled(*_matrix_and_rows(name, one)) for name, one in every.items()}
 

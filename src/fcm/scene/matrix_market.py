@@ -37,7 +37,7 @@ Line = tuple[int, str]  # its number in the file, from 1
 
 
 class _Head(NamedTuple):
-    """What a file says of itself, and on which line the sizes are."""
+    """Header of a file: its format, sizes, and the line of the sizes."""
 
     layout: str
     field: str
@@ -49,12 +49,12 @@ class _Head(NamedTuple):
 
     @property
     def indices(self) -> int:
-        """Of an entry: its row and its column, unless they follow from its place."""
+        """Number of indices on the line of an entry: row and column, or none if its place tells them."""
         return 2 if self.layout == "coordinate" else 0
 
     @property
     def words(self) -> int:
-        """On the line of an entry."""
+        """Number of words on the line of an entry."""
         return self.indices + FIELDS[self.field]
 
     @property
@@ -62,7 +62,7 @@ class _Head(NamedTuple):
         return "integer" in self.field
 
     def kind(self, value: type) -> npt.DTypeLike:
-        """Of an entry in memory, its value of a type."""
+        """numpy type of an entry whose values have a given type."""
         names = (("row", np.int64), ("column", np.int64))[: self.indices]
         return [*names, *((f"value{i}", value) for i in range(FIELDS[self.field]))]
 
@@ -187,7 +187,7 @@ def _numbers(path: Path, head: _Head) -> Entries:
 
 
 def _one_by_one(path: Path, head: _Head) -> Entries:
-    """As `_numbers`, slowly, with what is wrong."""
+    """Reads the entries line by line, slower than `_numbers`, and reports what is wrong."""
     found: list[tuple[float, ...]] = []
     faults: list[str] = []
     count = 0

@@ -77,7 +77,7 @@ def read_measured(
 def _chosen(
     heads: Collection[str], wanted: Collection[str], optional: Collection[str], others: Mapping[str, str]
 ) -> dict[str, str]:
-    """Of each column that is read its name in the file; one that has its own name goes before another."""
+    """Name in the file of each column to read; a column's own name goes before another."""
     names = {key: [key, *([others[key]] if key in others else [])] for key in (*wanted, *optional)}
     found = {key: next((one for one in every if one in heads), None) for key, every in names.items()}
     return {key: one for key, one in found.items() if one is not None}
@@ -151,7 +151,7 @@ def _csv(
 
 
 def _name_and_unit(head: str) -> tuple[str, str]:
-    """Of a column.
+    """Name and unit of a column, from its heading.
 
     >>> _name_and_unit("frequency [rad/s]"), _name_and_unit("frequency")
     (('frequency', 'rad/s'), ('frequency', ''))
@@ -166,7 +166,7 @@ def _curves(
     chosen: Mapping[str, int],
     others: Mapping[str, str],
 ) -> list[str]:
-    """What is wrong with a file of ``fcm respond`` that has several curves: they are no one response."""
+    """Fault of a ``fcm respond`` file with several curves, which are not one response; or ''."""
     own = any(heads[i][0] == others.get(key) for key, i in chosen.items())
     places = [i for i, (name, _) in enumerate(heads) if name == "curve"]
     found = len({row[places[0]] for row in rows}) if own and places else 1

@@ -35,7 +35,7 @@ class MistuningError(ValueError):
 
 
 def read_mistuning(section: Section, sectors: float) -> Part | None:
-    """What [cyclic.mistuning] says, apart from what the structure must be known for; None if it is not there.
+    """Reads [cyclic.mistuning], apart from what needs the structure; None if it is not there.
 
     "table" is (draw, sector) the factors of the stiffness, "drawn" how they are drawn, if they are.
     """
@@ -254,7 +254,7 @@ def whole_ring(
 
 
 def _energy_of_modes(top: Section, found: Part, modal: Part, shapes: Any) -> tuple[Any, list[str]]:
-    """As `energy_of_matrices`, of modes that are given; and what is to be said."""
+    """Blade energy of given modes, as `energy_of_matrices` of matrices; with notes."""
     from fcm.structure.mistuned import OPTIONS, energy_of, strains
 
     if found["stiffness"] is not None:
@@ -292,7 +292,7 @@ class _Around:
         self.ahead = [name.startswith(NEXT) for name in dofs]
 
     def direction(self, weights: FloatArray, sector: int) -> FloatArray:
-        """Over the ring's degrees of freedom, from those of a sector and of the next."""
+        """Direction over the ring's degrees of freedom, from weights on a sector's and the next one's."""
         found = np.zeros(self.sectors * self.own + self.hidden)
         hidden = self.sectors * self.own
         for weight, column, ahead in zip(weights.tolist(), self.column, self.ahead, strict=True):

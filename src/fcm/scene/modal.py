@@ -126,7 +126,7 @@ def _dofs(section: Section) -> Names | None:
 def _per_mode(
     section: Section, key: str, modes: int | None, default: float | None = None
 ) -> FloatArray | None:
-    """One number for each mode; a single number stands for all."""
+    """Reads one number for each mode; a single number stands for all."""
     if as_float(section.data.get(key, default)) is not None:
         return np.full(modes or 1, section.number(key, RULES[key], default))
     value = section.data.get(key)

@@ -1,4 +1,4 @@
-"""From the damping of a [structure] table to ratios of its modes, and what the ratios leave out."""
+"""Turns the damping of a [structure] table into modal ratios, with notes on what these leave out."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def damping_of(
     outputs: list[int],
     ends: tuple[float, float],
 ) -> Damping:
-    """That of the modes; the arguments are those of `reduction.modal_of_matrices`."""
+    """Damping of the modes; the arguments are those of `reduction.modal_of_matrices`."""
     stiffness, rigid = found.modes.stiffness, found.rigid
     if matrices.ratio is not None:
         return Damping(np.full(stiffness.size, matrices.ratio), 0.0, _of_floating(matrices.ratio, rigid))
@@ -75,7 +75,7 @@ def damping_of(
 
 
 def _of_floating(ratio: float, rigid: int) -> list[str]:
-    """What a ratio of modes without contacts means where contacts hold rigid bodies."""
+    """Note on what a ratio of modes without contacts means where contacts hold rigid bodies."""
     if not ratio or not rigid:
         return []
     return [
@@ -86,7 +86,7 @@ def _of_floating(ratio: float, rigid: int) -> list[str]:
 
 
 def _left_out(dragged: float, effects: list[float]) -> list[str]:
-    """What is to be said of damping that is left out, from its effects on the linear response, if told."""
+    """Notes on damping that is left out, with its effects on the linear response if known."""
     if not dragged and max(effects, default=0.0) <= MESSAGES.damping_left_out:
         return []
     what = "damping between modes is left out"

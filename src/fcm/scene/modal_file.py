@@ -30,7 +30,7 @@ WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
 
 
 def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, Any]:
-    """What a file of modes holds of dofs, mass, frequency, damping and shapes, and "notes" on it.
+    """Reads the dofs, mass, frequency, damping and shapes of a file of modes, with "notes" on it.
 
     "unused" are the names of its other arrays.
 
@@ -69,7 +69,7 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
 
 
 def note_of_scale(name: str, shapes: Any) -> list[str]:
-    """What is to be said of shapes without modal masses: whether they can be mass-normalised.
+    """Note on shapes without modal masses: whether they can be mass-normalised.
 
     >>> note_of_scale("m.uff", np.array([[0.9, 0.5]]))
     ['modal: m.uff gives no modal masses: the shapes are taken as mass-normalised']

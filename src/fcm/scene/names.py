@@ -26,7 +26,7 @@ class Names(tuple[str, ...]):
 
     @cached_property
     def place(self) -> dict[str, int]:
-        """The place of each name."""
+        """Index of each name."""
         return {name: number for number, name in enumerate(self)}
 
     def find(self, name: str) -> str:
@@ -40,7 +40,7 @@ class Names(tuple[str, ...]):
         return name if name in self.place else self._at_nodes.get(motion_of(name), "")
 
     def of_node(self, number: str) -> str:
-        """What to write in the place of a number that is no name, but that of a node; empty if it is none.
+        """Hint for a number that is no name but a node; empty if it is none.
 
         >>> Names(("36x", "36z", "tip")).of_node("36"), Names(("36x", "tip")).of_node("3")
         ('; a number alone is no name: write "36x" or "36z"', '')
@@ -51,7 +51,7 @@ class Names(tuple[str, ...]):
         return f"; a number alone is no name: write {' or '.join(map(quoted, own[:6]))}" if own else ""
 
     def held(self, name: str) -> str:
-        """What may be so of a name that no row has; empty where nothing is known of it."""
+        """Hint on why a name may have no row; empty where nothing is known of it."""
         return ""
 
 
@@ -70,7 +70,7 @@ class RowNames(Names):
 
 
 def motion_of(name: str) -> str:
-    """As `at_node`; a number alone is that of a row."""
+    """Node and direction of a name as `at_node`; empty for a number alone, which is a row."""
     return "" if name.isdecimal() else at_node(name)
 
 
@@ -107,7 +107,7 @@ def checked_names(section: Section, names: object) -> tuple[str, ...] | None:
 
 
 def unfit_name(name: str) -> str:
-    """What is wrong with a name of a contact or a degree of freedom; empty when nothing is.
+    """Fault of a name of a contact or a degree of freedom; empty if there is none.
 
     >>> unfit_name(""), unfit_name("tip"), unfit_name("x" * 101)
     ('"" is not a name that can be printed', '', 'is too long for a name: 101 bytes, of 100 at most')

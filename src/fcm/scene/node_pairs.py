@@ -129,7 +129,7 @@ def read_direction(section: Section, key: str) -> dict[str, float]:
 
 
 def direction_in(section: Section, value: Any, key: str) -> dict[str, float]:
-    """The same of a value, which stands at a key."""
+    """The direction at a key, such as "x" or { x = 0.6, y = 0.8 }, as weights; empty after a mistake."""
     terms = {value: 1.0} if isinstance(value, str) else value
     if not isinstance(terms, Mapping) or not terms or not set(map(str, terms)) <= set(DIRECTIONS):
         section.wrong(key, f"must be one of {', '.join(DIRECTIONS)}, or a table of weights of them")
@@ -213,7 +213,7 @@ def _of_each(section: Section, key: str, table: PairTable, files: Files) -> list
 
 
 def _as_number(text: str, files: Files) -> list[str]:
-    """What is wrong with a text that was meant as a number; nothing if it is the name of a file."""
+    """Fault of a text that was meant as a number; empty if it is the name of a file."""
     is_file = not text[:1].isdigit() or (files.folder / text).exists()
     return [] if is_file else [f"{fault_of_number(text)}, without quotes and in the units of the scene"]
 
@@ -223,7 +223,7 @@ def _is_list(value: Any) -> bool:
 
 
 def load_key(section: Section, table: PairTable) -> str:
-    """Which of preload and gap the contact is given by, in the scene or in a table of pairs."""
+    """The key, n_0 or gap, that gives the contact's load in the scene or in a table of pairs."""
     given = [key for key in ("n_0", "gap") if key in section.data or key in table.numbers]
     if len(given) == 2:
         section.wrong("", "has both n_0 and gap; give one: gap means n_0 = -k_v * gap")
@@ -233,7 +233,7 @@ def load_key(section: Section, table: PairTable) -> str:
 
 
 def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
-    """Of each pair, its share of each number that is one total for all, by areas; none without areas.
+    """Share of each pair in the numbers that are totals for all pairs, by areas; empty without areas.
 
     k_u, k_v and n_0 are totals; mu and a gap are the same for all.
     """
@@ -260,14 +260,14 @@ def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
 
 
 def _shared(section: Section, table: PairTable, areas: list[float]) -> list[dict[str, float]]:
-    """The same of areas that are known."""
+    """Share of each pair in the numbers that are totals, by known areas."""
     own = _own(section, table)
     parts = np.asarray(areas) / np.sum(areas)
     return [{key: float(part) for key in SHARED if key not in own} for part in parts]
 
 
 def totals_of(section: Section, table: PairTable, numbers: Mapping[str, list[float]]) -> dict[str, float]:
-    """With areas, what those of k_u, k_v and n_0 add up to that are given of each pair.
+    """Sums of those of k_u, k_v and n_0 that are given for each pair, where areas are given.
 
     Another total scales them.
     """
@@ -277,7 +277,7 @@ def totals_of(section: Section, table: PairTable, numbers: Mapping[str, list[flo
 
 
 def _own(section: Section, table: PairTable) -> list[str]:
-    """Those of k_u, k_v and n_0 that are given of each pair: in a list, a file or a column."""
+    """Keys among k_u, k_v and n_0 that are given for each pair: in a list, a file or a column."""
     return [key for key in SHARED if key in table.numbers or not _is_one(section.data.get(key))]
 
 
@@ -286,7 +286,7 @@ def _is_one(value: Any) -> bool:
 
 
 def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
-    """What is said of pairs with one number for all: which are totals, shared by areas, which of each."""
+    """Notes on pairs with one number for all: totals shared by areas, or the same for each pair."""
     groups: dict[str, list[Mapping[str, Any]]] = {}
     for draft in drafts:
         if "group" in draft:
@@ -311,7 +311,7 @@ def _same(pairs: Sequence[Mapping[str, Any]], key: str) -> bool:
 
 
 def _are(keys: list[str], several: str, one: str) -> str:
-    """What some keys are."""
+    """Clause on what some keys are, in singular or plural."""
     if len(keys) < 2:
         return "".join(f"{key} is {one}" for key in keys)
     return f"{', '.join(keys[:-1])} and {keys[-1]} are {several}"

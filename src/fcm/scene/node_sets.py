@@ -232,7 +232,7 @@ def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]] | tupl
 
 
 def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) -> list[str]:
-    """What the fitted normal is, and how flat the pairs lie."""
+    """Note on the fitted normal, and on how flat the pairs lie."""
     if plane is None or section.data.get("normal") != FITTED:
         return []
     near = int(np.abs(plane.normal).argmax())

@@ -35,7 +35,7 @@ def number_in(text: str) -> float | None:
 
 
 def fault_of_number(text: str) -> str:
-    """What is wrong with a text that is not read as a number, and what to write where that is plain.
+    """Fault of a text that is not read as a number, and what to write if that is plain.
 
     >>> fault_of_number("100,5"), fault_of_number("100.5kN")
     ('"100,5" has a decimal comma: write 100.5', '"100.5kN" has "kN" behind the number: write 100.5')

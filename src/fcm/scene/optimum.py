@@ -21,7 +21,7 @@ WHAT = ("peak", "greatest")
 
 
 def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum | None:
-    """What is to be chosen; None without the table, or after a mistake."""
+    """Reads which numbers are optimised for what; None without the table, or after a mistake."""
     section = top.table("optimum", "") if "optimum" in top.data else None
     if section is None:
         return None
@@ -73,7 +73,7 @@ def words_of(section: Section, key: str, right: str) -> list[str]:
 
 
 def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
-    """What is to be least: the greatest of these."""
+    """Aims of the optimum, of which the greatest is minimised."""
     words = words_of(section, "minimise", 'what is to be least, as "peak.u", or a list of such')
     found = []
     for word in words:
@@ -99,7 +99,7 @@ def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
 
 
 def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> list[tuple[float, float]]:
-    """From and to of each number: a list for each, or one for a single number, or a table by the keys."""
+    """Bounds [from, to] of each number, from a list for each, a single list, or a table by keys."""
     value = section.data.get("bounds")
     if not numbers:
         return []
@@ -129,7 +129,7 @@ def _said(value: object) -> str:
 
 
 def pair_of_bounds(section: Section, number: Number, pair: object) -> tuple[float, float]:
-    """Bounds of one number."""
+    """Bounds (from, to) of one number."""
     path = f"bounds of {number.key}"
     ends = [as_float(one) for one in pair] if isinstance(pair, list | tuple) else []
     low, high = ends if len(ends) == 2 else (None, None)
@@ -145,7 +145,7 @@ def pair_of_bounds(section: Section, number: Number, pair: object) -> tuple[floa
 
 
 def _wide(section: Section, number: Number, draft: Draft) -> tuple[float, float]:
-    """Those of the sweep of a number, if there is one; else from 0 to ten times what it is."""
+    """Default bounds of a number: those of its sweep, if there is one; else from 0 to ten times its value."""
     for one in draft.swept:
         if set(one.addresses) <= set(number.addresses) and min(one.values) < max(one.values):
             return (min(one.values), max(one.values))

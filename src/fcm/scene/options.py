@@ -8,122 +8,153 @@ from fcm.frozen import Frozen
 class TomlOptions(Frozen):
     """Limits of the text of a scene, and of what is looked for in a faulty one."""
 
-    patience: float = 2.0  # [s] without a byte from a pipe before that is said
-    # bytes; a larger one is a mistake, or its modes belong in a file of their own
+    # [s] time without a byte from a pipe after which it is said that the scene is awaited
+    patience: float = 2.0
+    # [byte] largest scene: a larger one is a mistake, or its modes belong in a file of their own
     largest_file: int = 10_000_000
-    # parts of a dotted key: the parser takes the square of their number in time and memory
+    # most parts of a dotted key: the parser takes the square of their number in time and memory
     deepest_key: int = 16
-    most_slips: int = 30  # mistakes of writing that are looked for in one file
-    most_read: int = 5_000_000  # characters that are read to try remedies, in all: some seconds
-    longest_mended: int = 2_000  # characters of a line in which a remedy is looked for
-    longest_line: int = 70  # characters that are shown of a line; of a longer one those that change
-    lines_before: int = 3  # lines before the one where reading ends, on which a bracket may be missing
+    most_slips: int = 30  # most mistakes of writing that are looked for in one file
+    most_read: int = 5_000_000  # most characters that are read to try remedies, in all: some seconds
+    longest_mended: int = 2_000  # most characters of a line in which a remedy is looked for
+    longest_line: int = 70  # most characters that are shown of a line; of a longer one those that change
+    # number of lines before the one where reading ends, on which a bracket may be missing
+    lines_before: int = 3
 
 
 class MessageOptions(Frozen):
-    """How much messages about a scene show."""
+    """Options on how much messages about a scene show."""
 
-    mistakes: int = 30  # listed one by one; the rest are counted
-    longest_value: int = 60  # characters of a value shown in a message
-    names_compared: int = 2000  # names that a misspelt one is compared with
-    nearest_number: int = 10  # by which that of a node may be off from the one that is meant
-    entries: int = 3  # of a matrix that a message names
-    longest_path: int = 400  # characters of a path shown in a message
-    known_keys: int = 8  # of a table, which are all said beside one that is not known
-    faults: int = 5  # of a file beside a scene that are said one by one
-    groups: int = 3  # of contacts in one sentence
-    stuck_modes: int = 3  # whose frequencies are said, while all contacts stick
-    damping_left_out: float = 1e-4  # relative change of the response by damping that is left out
-    # [byte] that directions of contacts take in a large structure: from here on it is said
+    mistakes: int = 30  # most mistakes that are listed one by one; the rest are counted
+    longest_value: int = 60  # most characters of a value shown in a message
+    names_compared: int = 2000  # most names that a misspelt one is compared with
+    nearest_number: int = 10  # greatest difference of a node's number from the one that may be meant
+    entries: int = 3  # most entries of a matrix that a message names
+    longest_path: int = 400  # most characters of a path shown in a message
+    known_keys: int = 8  # number of a table's keys up to which all are named beside one that is not known
+    faults: int = 5  # most faults of a file beside a scene that are said one by one
+    groups: int = 3  # most groups of contacts, or of names, in one sentence
+    stuck_modes: int = 3  # most modes whose frequencies are said, while all contacts stick
+    # relative change of the response by damping that is left out, above which it is said
+    damping_left_out: float = 1e-4
+    # [byte] memory that directions of contacts take in a large structure, above which it is said
     memory: float = 2e9
-    seconds_of_draws: float = 5.0  # [s] from which on it is said before numbers are drawn
-    start_rounding: float = 1e-9  # of the limit of the contact's force, by which a start may be off unsaid
-    # times the range's end: modes ought to reach there, or their flexibility be kept
+    seconds_of_draws: float = 5.0  # [s] time of drawing numbers, above which it is said before
+    # relative excess of a start's friction over the limit of its contact, up to which nothing is said
+    start_rounding: float = 1e-9
+    # frequency of the highest mode relative to the range's end, below which it is said that modes are
+    # missing, unless their flexibility is kept
     range_above: float = 2.0
-    # times the structure's flexibility there: stiffnesses of contacts beyond these are asked about
+    # stiffness of a contact relative to the structure's there, above which it is asked about
     stiff_contact: float = 1e6
-    soft_contact: float = 5e-3  # friction then adds no damping ratio beyond about 1e-3
-    # of the range, logarithmic: where a slip of units would put a mode it is so far from the ends
+    # stiffness of all contacts relative to the structure's there, below which it is asked about: friction
+    # then adds no damping ratio beyond about 1e-3
+    soft_contact: float = 5e-3
+    # distance from the ends of the range, relative to it in logarithms, that a mode has to have where a
+    # slip of units would put it
     range_margin: float = 0.05
-    far_below: float = 10.0  # times: a first resonance so far below the range is asked about
-    range_near: float = 2.0  # times the range's ends: a mode within that is near it
+    # ratio of the range's begin to the first resonance, above which it is asked about
+    far_below: float = 10.0
+    # ratio of the range's ends to a mode's frequency, or its inverse, within which the mode is near the
+    # range
+    range_near: float = 2.0
 
 
 class FrictionDampingOptions(Frozen):
     """The estimate of how much friction can damp each resonance."""
 
-    modes: int = 10  # of which it is made
-    angles: int = 48  # values of theta that are tried, from the least up to pi, each so much greater
-    least_angle: float = 1e-2  # [rad]
+    modes: int = 10  # number of modes of which the estimate is made
+    # number of values of theta that are tried, from the least up to pi, in a geometric series
+    angles: int = 48
+    least_angle: float = 1e-2  # [rad] least value of theta that is tried
 
 
 class LimitOptions(Frozen):
-    """What a scene may ask for, and what a number of it may be."""
+    """Limits of what a scene may request, and of the values of its numbers."""
 
-    largest: float = 1e100  # magnitudes beyond this overflow when three of them are multiplied
-    smallest: float = 1e-100  # of numbers that are divided by
+    # largest magnitude of a number: larger ones overflow when three of them are multiplied
+    largest: float = 1e100
+    smallest: float = 1e-100  # least magnitude of a number that is divided by
     harmonics: int = 50  # the greatest harmonic that can be asked for
-    # relative to a curve's extent: it then has a hundred thousand points and more
+    # shortest step relative to a curve's extent: the curve then has a hundred thousand points and more
     shortest_step: float = 1e-5
-    longest_step: float = 0.05  # along a curve, when the scene names none
-    narrowest: float = 1e-10  # relative width of a range: its points are still some 1e5 roundings apart
-    # bytes: "contact.NAME.tangential.NAME" is the name of a variable of a file, 256 at most
+    longest_step: float = 0.05  # longest step relative to a curve's extent, where the scene names none
+    narrowest: float = 1e-10  # least relative width of a range: its points are still some 1e5 roundings apart
+    # [byte] longest name: "contact.NAME.tangential.NAME" is the name of a variable of a file, 256 at most
     longest_name: int = 100
-    fitted: int = 20  # numbers that are fitted together
-    chosen: int = 3  # numbers that are chosen together by [optimum]
-    # times its value in the scene, to which a number may go where no bounds are given
+    fitted: int = 20  # most numbers that are fitted together
+    chosen: int = 3  # most numbers that are chosen together by [optimum]
+    # factor on the value in the scene, up to which a number may be chosen where no bounds are given
     optimum_range: float = 10.0
-    cycles: int = 10_000_000  # of all phases of a schedule, hours of computing
-    curves: int = 1_000_000  # of a sweep
-    bytes_of_curve: float = 1000.0  # of the numbers of one curve of a sweep
-    draws_timed: int = 8  # draws of a number that are timed before all are made
-    draws_seconds: float = 600.0  # [s] longest time of all draws of a number
-    friction: float = 2.0  # coefficient of friction: beyond it more likely a percentage is meant
-    damping_of_all: float = (
-        0.2  # of every mode: from here on no resonance is seen, and a percentage may be meant
-    )
-    damping_ratio: float = 1.0  # from here on a mode does not vibrate, and more likely a percentage is meant
-    reported: int = 50  # degrees of freedom of which all are in the results, where no others are asked for
-    # bytes at each row of matrices that the flexibility along a direction takes, measured
+    cycles: int = 10_000_000  # most cycles of all phases of a schedule, hours of computing
+    curves: int = 1_000_000  # most curves of a sweep
+    bytes_of_curve: float = 1000.0  # [byte] memory of the numbers of one curve of a sweep
+    draws_timed: int = 8  # number of draws of a number that are timed before all are made
+    draws_seconds: float = 600.0  # [s] longest time of all draws of a number; with more they are refused
+    friction: float = 2.0  # coefficient of friction above which more likely a percentage is meant
+    # damping ratio of every mode from which on no resonance is seen, and a percentage may be meant
+    damping_of_all: float = 0.2
+    # damping ratio from which on a mode does not vibrate, and more likely a percentage is meant
+    damping_ratio: float = 1.0
+    # number of degrees of freedom up to which all are in the results, where no others are asked for
+    reported: int = 50
+    # [byte] memory for each row of matrices that the flexibility along a direction takes, measured
     bytes_of_direction: float = 8 * 14
-    of_no_interest: float = 0.01  # of the range's lower end: a frequency far below everything that is traced
-    outputs: int = 30  # degrees of freedom of results whose own flexibility is kept
-    mesh_rows: int = 100  # from which a structure is a mesh, whose highest modes are above any range
+    # frequency relative to the range's lower end, below which it is far below everything that is traced
+    of_no_interest: float = 0.01
+    outputs: int = 30  # most degrees of freedom of results whose own flexibility is kept
+    # number of rows from which on a structure is a mesh, whose highest modes are above any range
+    mesh_rows: int = 100
 
 
 class FileOptions(Frozen):
     """Limits of files beside a scene, and of the process that reads them."""
 
-    # bytes of a file beside a scene, unpacked: what fits in any machine's memory twice
+    # [byte] largest file beside a scene, unpacked: what fits in any machine's memory twice
     largest: int = 1_000_000_000
-    memory: int = 500_000_000  # [byte] for a reader itself
-    copies: int = 3  # of the arrays, while they are read, converted and written
+    memory: int = 500_000_000  # [byte] memory for a reader itself
+    copies: int = 3  # number of copies of the arrays in memory, while they are read, converted and written
 
 
 class ToleranceOptions(Frozen):
     """Relative differences of a scene's numbers that are taken for none."""
 
-    # of a correlation matrix: an eigenvalue that is less below zero is one of zero
+    # negative eigenvalue of a correlation matrix, relative to its size, down to which it is one of zero
     correlation: float = 1e-12
     asymmetry: float = 1e-8  # relative difference of two entries that ought to be equal
-    negligible: float = 1e-12  # of the largest entry of a matrix: differences this small are rounding
-    displacement: float = 1e-12  # a displacement this small, beside the largest, is none
-    cancelled: float = 1e-14  # of the sizes of forces: where no more is left of their sum, it is rounding
-    mass_ratio: float = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
-    floating_mass: float = 1e-3  # masses along axes of a structure that floats, which are the same
-    scaled_shape: float = 1e-6  # how near to 1 the largest value of a shape is that was scaled to it
-    same_direction: float = 1e-9  # directions that differ by no more are one
-    same_modes: float = 1e-9  # frequencies of a ring's diameters that differ by no more are one sector's
+    # difference relative to the largest entry of a matrix, up to which it is rounding
+    negligible: float = 1e-12
+    displacement: float = 1e-12  # displacement relative to the largest, up to which it is none
+    cancelled: float = 1e-14  # sum of forces relative to their sizes, up to which it is rounding
+    # ratio of modal masses above which sums over the modes lose the heavy ones to rounding
+    mass_ratio: float = 1e20
+    # relative difference of the masses along the axes of a floating structure, up to which they are the
+    # same
+    floating_mass: float = 1e-3
+    # difference from 1 of the largest value of a shape, below which shapes were scaled to it
+    scaled_shape: float = 1e-6
+    same_direction: float = 1e-9  # difference of two directions up to which they are the same
+    # relative difference of the frequencies of a ring's diameters, up to which they are those of one sector
+    same_modes: float = 1e-9
     right_angle: float = 0.01  # sine of the angle by which a normal may lean: about half a degree
-    square: float = 1e-6  # cosine of the angle between two directions at right angles, at most
-    # of lengths of directions, and cosine of the angle between them: so far are weights of three digits off
+    # part of a direction, relative to it, by which its projection on a plane may be shorter, up to which it
+    # lies in the plane
+    square: float = 1e-6
+    # relative difference of the lengths of two directions, and cosine between them, up to which they are of
+    # one length and at right angles: weights of three digits are so far off
     written: float = 2e-3
-    placed: float = 0.05  # of the motion of rigid bodies: so far their nodes may be from where a file says
-    undamped: float = 1e-12  # of a frequency without damping: rounding that nobody would notice
-    equal_frequency: float = 1e-6  # of frequencies that are one
-    rotated: float = 1e-8  # of ring shapes that are real but for a factor: what is left of the imaginary part
-    same_mode: float = 1e-6  # of what two datasets write of one mode
-    collinear: float = 1e-4  # of a shape: what may be left when it is turned to be real
+    # distance of a node from its place, relative to the extent of the places, or part of rigid-body motions
+    # that does not fit: above it nodes are not where a file says
+    placed: float = 0.05
+    # square of a frequency, and relative change of one without damping, up to which it is rounding
+    undamped: float = 1e-12
+    equal_frequency: float = 1e-6  # relative difference of frequencies up to which they are the same
+    # imaginary part of a ring's shape, relative to it, up to which it is real but for a factor
+    rotated: float = 1e-8
+    # relative difference of what two datasets write, up to which they mean the same mode
+    same_mode: float = 1e-6
+    # imaginary part of a shape that is turned to be real, relative to the shape, up to which it is real
+    collinear: float = 1e-4
 
 
 TOML = TomlOptions()

@@ -167,14 +167,14 @@ def _harmonic(section: Section) -> int:
 
 
 def force_of(draft: dict[str, Any]) -> Force:
-    """The force of what was read."""
+    """The `Force` made from a draft that was read."""
     draft["dof"].flags.writeable = False
     numbers = {key: draft[key] for key in ("amplitude", "phase", "power", "harmonic")}
     return Force(direction=draft["dof"], **numbers)
 
 
 def note_of_harmonics(forces: Sequence[Force]) -> list[str]:
-    """That there are forces at other harmonics than 1, and what follows from it.
+    """Note that there are forces at other harmonics than 1, and what follows from it.
 
     >>> import numpy as np
     >>> note_of_harmonics([Force(np.ones(1), 1.0, 0.0, harmonic=3)])

@@ -77,7 +77,7 @@ def check_plane(contact: Contact, dofs: Sequence[str], mistakes: Mistakes, where
 
 
 def notes_of_planes(scene: Scene) -> list[str]:
-    """One sentence on contacts whose two directions weigh the same displacements, and not at right angles."""
+    """Notes on contacts whose two tangential directions share degrees of freedom, not at right angles."""
     oblique = [one.name for one in scene.contacts if _oblique(one)]
     if not oblique:
         return []

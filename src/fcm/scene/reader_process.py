@@ -76,7 +76,7 @@ def child(arguments: list[str]) -> None:
 
 
 def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
-    """Variables of a MATLAB file."""
+    """Reads variables of a MATLAB file."""
     from scipy.io import loadmat, whosmat
 
     content = path.read_bytes()
@@ -115,7 +115,7 @@ def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
 
 
 def _hdf5(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
-    """Variables of an HDF5 file."""
+    """Reads variables of an HDF5 file."""
     from fcm.scene.formats.hdf5 import read_hdf5
 
     found, held = read_hdf5(path, wanted, largest)
@@ -123,7 +123,7 @@ def _hdf5(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
 
 
 def _unusable(path: Path, error: Exception) -> DataFileError:
-    """What is wrong with a package pyyeti that is there and cannot be imported."""
+    """Fault of an installed pyyeti package that cannot be imported."""
     why = str(error).partition("\n")[0]
     return DataFileError(
         f"{quoted(path.name)} needs the package pyyeti, which is installed and cannot be imported "

@@ -20,7 +20,7 @@ GROUP = "fcm.readers"
 
 
 def own_reader(ending: str) -> EntryPoint | None:
-    """That of files with an ending, such as ".blade"; None if there is none."""
+    """Installed reader of files with an ending, such as ".blade"; None if there is none."""
     return installed_readers().get(ending.lower().removeprefix(".")) if ending else None
 
 
@@ -35,7 +35,7 @@ def installed_readers() -> dict[str, EntryPoint]:
 
 
 def read_own(path: Path) -> dict[str, Any]:
-    """What the reader of its ending finds in a file.
+    """What the installed reader for its ending finds in a file.
 
     Raises
     ------

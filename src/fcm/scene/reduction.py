@@ -1,4 +1,4 @@
-"""From the matrices of a [structure] table to the modal table that the rest of a scene is read against."""
+"""Turns the matrices of a [structure] table into a modal table, against which the rest of a scene is read."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _same(matrices: Matrices) -> bool:
 
 
 def _exchanged_mesh(matrices: Matrices, ends: tuple[float, float]) -> float:
-    """As `exchanged` of a mesh, before its modes are sought: all of them would be kept, which takes long.
+    """Detects exchanged matrices of a mesh, as `exchanged`, before its modes are computed.
 
     By Rayleigh's quotient the highest mode is not below that of any row alone. So of matrices that are in
     their places the diagonals tell enough.
@@ -117,7 +117,7 @@ def exchanged(matrices: Matrices, kept: FloatArray, ends: tuple[float, float]) -
 
 
 def in_each_others_place(mode: float) -> str:
-    """What is said of such matrices, and of a mode [rad/s] that they have when they are exchanged."""
+    """Sentence on exchanged matrices, with a mode [rad/s] that they have in the right places."""
     return (
         "all its modes are far below the range of frequencies. Stiffness and mass are in each other's place: "
         f"exchanged, they have a mode at {mode / (2.0 * np.pi):.6g} Hz, which is {mode:.6g} rad/s"
@@ -131,7 +131,7 @@ def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]
 
 
 def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
-    """What is to be said of outputs whose own flexibility is not kept, where some is."""
+    """Note on outputs whose own flexibility is not kept, where some is."""
     if not (count > LIMITS.outputs and any(aside)):
         return []
     most = lost + aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
@@ -143,7 +143,7 @@ def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: fl
 
 
 def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
-    """What is to be said of frequencies that rounding moves: at resonance the response changes by more."""
+    """Notes on frequencies that rounding moves: at resonance the response changes by more."""
     off, digits = max(one.rounding for one in parts), next((one.digits for one in parts if one.digits), None)
     said = []
     if unclear := max(one.unclear for one in parts):
@@ -163,7 +163,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
 
 
 def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
-    """What is kept of the structure, and how far it is off."""
+    """Note on what is kept of the structure, and on its error."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
     verb = "is" if found.kept == 1 else "are"
     text = (
@@ -184,7 +184,7 @@ def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
 
 
 def how_far_off(matrices: Matrices, bound: float, damping: float, lost: float) -> str:
-    """By how much receptances may err and, with one damping ratio for all modes, heights of resonances.
+    """Clause on the error of receptances and, with one damping ratio for all modes, of resonance heights.
 
     lost is the part that the damping of rigid-body modes has in it (`modal_damping.Damping`), which is told
     as what it is.

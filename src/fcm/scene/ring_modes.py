@@ -90,7 +90,10 @@ def travelling(section: Section, draft: Part, sectors: float) -> Part:
 def _firsts(
     section: Section, diameter: Any, frequency: FloatArray, sectors: int
 ) -> list[tuple[int, bool]] | None:
-    """Where each pair begins, and whether it is one: those of 0 and half of the sectors are single."""
+    """Index of the first mode of each pair, and whether it is a pair.
+
+    Modes of diameter 0 and half of the sectors are single.
+    """
     found, i = [], 0
     while i < diameter.size:
         single = diameter[i] == 0 or 2 * diameter[i] == sectors

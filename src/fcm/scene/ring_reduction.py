@@ -1,4 +1,4 @@
-"""From the matrices of a ring's sector to the modes of every nodal diameter."""
+"""Turns the matrices of a ring's sector into the modes of every nodal diameter."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _modes(
 
 
 def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, float]) -> list[str]:
-    """What is kept of the structure, how far it is off, and what is amiss."""
+    """Notes on what is kept of the structure, on its error, and on what is amiss."""
     all_found = [one.found for one in diameters]
     kept = sorted({one.kept for one in all_found})
     count = counted(kept[0], "mode") if len(kept) == 1 else f"{kept[0]} to {kept[-1]} modes"

@@ -1,4 +1,4 @@
-"""What each number of a scene may be: the same for the file and for a sweep."""
+"""Rules for the numbers of a scene, the same for the file and for a sweep."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Rule(Frozen):
     )
 
     def fault(self, value: float) -> str:
-        """What is wrong with the value; empty when nothing is."""
+        """Fault of a value as text; empty if there is none."""
         if not isfinite(value):
             return f"must be finite, is {shown(value)}"
         right = self.low <= value <= self.high and (value or self.zero)
@@ -74,7 +74,7 @@ FRACTION = Rule("greater than 0 and at most 1", low=0.0, high=1.0, zero=False)
 
 
 def step_fault(step: float) -> str:
-    """What is wrong with the longest step along a curve; empty when nothing is."""
+    """Fault of the longest step along a curve as text; empty if there is none."""
     if (fault := FRACTION.fault(step)) or step >= LIMITS.shortest_step:
         return fault
     return (
@@ -84,7 +84,7 @@ def step_fault(step: float) -> str:
 
 
 def harmonics_fault(harmonics: Sequence[int]) -> str:
-    """What is wrong with the harmonics of a balance; empty if nothing is."""
+    """Fault of the harmonics of a balance as text; empty if there is none."""
     whole = all(
         isinstance(h, int) and not isinstance(h, bool) and 1 <= h <= LIMITS.harmonics for h in harmonics
     )

@@ -78,7 +78,7 @@ def _without_schedule(section: Section) -> None:
 
 
 def _vector(section: Section, key: str, count: int | None, each: str) -> FloatArray:
-    """One number for each mode or contact, zeros by default."""
+    """Reads one number for each mode or contact, zeros by default."""
     zeros = np.zeros(count or 0)
     given = section.vector(key, ANY) if key in section.data else zeros
     if given is not None and count is not None and len(given) != count:
@@ -89,7 +89,7 @@ def _vector(section: Section, key: str, count: int | None, each: str) -> FloatAr
 
 
 def note_of_start(scene: Scene) -> list[str]:
-    """One sentence for each contact whose friction in [start] is beyond its limit there, in any curve."""
+    """Notes on contacts whose friction in [start] exceeds their limit there, in any curve."""
     return [_sentence(scene, place, beyond) for place, beyond in _beyond(scene).items()]
 
 

@@ -41,7 +41,7 @@ class Section:
         return f"{self.path}.{key}" if self.path else key
 
     def wrong(self, key: str, what: str, word: str = "", among: Iterable[str] = ()) -> None:
-        """Note a mistake at a key."""
+        """Adds a mistake at a key."""
         self.mistakes.add(self.at(key) if key else self.path, what, word, among)
 
     def only(self, *known: str) -> None:
@@ -161,7 +161,7 @@ class Section:
         return self.weights_in(self.data[key], key, dofs)
 
     def weights_in(self, value: object, key: str, dofs: Names | None) -> FloatArray | None:
-        """The same of a value, which stands at a key."""
+        """Weights over the dofs from a value at a key: a name or a table; None after a mistake."""
         if not isinstance(value, str | Mapping):
             self.wrong(key, f"must be a degree of freedom or a table of weights, is {described(value)}")
             return None
@@ -212,7 +212,7 @@ def _combination(dofs: Names | None) -> str:
 
 
 def written_as(value: object) -> str:
-    """What to write in the place of a string that is a number, or nearly one.
+    """Hint on what to write in place of a string that is a number, or nearly one.
 
     >>> written_as("0.4"), written_as("0,4"), written_as("x")
     ('; write 0.4', '; it has a decimal comma: write 0.4', '')

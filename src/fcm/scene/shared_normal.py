@@ -1,4 +1,4 @@
-"""What is said of the normals of contacts: several along one, and slopes along which slip presses."""
+"""Notes on the normals of contacts: shared normals, and slopes along which slip presses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fcm.scene.plane import axis_key
 
 
 def note_of_shared_normals(scene: Scene) -> list[str]:
-    """One sentence on contacts with the same normal displacement and different tangential ones.
+    """Notes on contacts with the same normal displacement and different tangential ones.
 
     Up to sign and scale: each then carries its whole preload and normal stiffness, and the place all of them
     together. Nothing is said where at most one of them has a preload or a normal stiffness, nor where the
@@ -71,9 +71,11 @@ def as_written(direction: FloatArray, dofs: Sequence[str]) -> str:
 
 
 def notes_of_slopes(scene: Scene) -> list[str]:
-    """One sentence on contacts whose slip moves them along their normal, as on the slope of a wedge: often a
-    name written twice, or a wrong angle. Nothing is said of a constant normal load (k_v = 0), nor without
-    friction."""
+    """Notes on contacts whose slip moves them along their normal, as on the slope of a wedge.
+
+    Often that is a name written twice, or a wrong angle. There is none for a constant normal load (k_v = 0),
+    nor without friction.
+    """
     rubbing = (one for one in scene.contacts if one.k_v * one.k_u * one.mu != 0.0)
     sloping = [(one.name, angle) for one in rubbing if (angle := _slope(one)) > 0.0]
     own = [name for name, angle in sloping if angle == 90.0]

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 def _ignored(*_: object) -> None:
-    """Nobody hears of it."""
+    """Ignores a notice."""
 
 
 class SizeNotices(Frozen):
-    """What hears of a scene while it is read.
+    """Callbacks that are told about the size of a scene while it is read.
 
     Attributes
     ----------

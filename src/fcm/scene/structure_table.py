@@ -24,7 +24,7 @@ from fcm.structure.eigen import StructureError, system_of
 
 
 class Matrices(Frozen):
-    """What a [structure] table says."""
+    """Contents of a [structure] table."""
 
     dofs: Names
     K: Any  # scipy sparse, (row, row), symmetric
@@ -89,7 +89,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
 
 
 def said_of(value: Any, key: str, matrix: Any, off: float, given: Labelled | None) -> str:
-    """What was read as a matrix, in a sentence; off is the greatest difference across its diagonal.
+    """Sentence on what was read as a matrix; `off` is the greatest difference across its diagonal.
 
     >>> said_of("K.mtx", "stiffness", scipy.sparse.csc_array([[2.0, -1.0], [-1.0, 2.0]]), 0.0, None)
     'stiffness: K.mtx: 2 rows, 4 entries that are not 0, symmetric'
@@ -192,7 +192,7 @@ def _from_rows(section: Section, key: str, value: Any) -> Any:
 
 
 def _damping(section: Section, files: Files, rows: int | None, dofs: Names | None) -> dict[str, Any]:
-    """What the damping is: a ratio, proportional, a matrix, a loss factor."""
+    """Reads the damping: a ratio, proportional, a matrix, or a loss factor."""
     found: dict[str, Any] = {"ratio": None, "by_mass": 0.0, "by_stiffness": 0.0, "C": None, "hysteretic": 0.0}
     right = 'a ratio, { mass = , stiffness = }, { loss_factor = } or a file such as "C.npz"'
     if section.missing("damping", right):

@@ -45,7 +45,7 @@ FORMS = (
 
 
 class SweptKey(Frozen):
-    """One key of a sweep; keys of one group go in step."""
+    """One key of a sweep; keys of one group change together."""
 
     key: str
     addresses: tuple[Address, ...]

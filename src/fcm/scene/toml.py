@@ -43,7 +43,7 @@ def _deep_key(parts: int) -> re.Pattern[str]:
 
 
 def _from_pipe(path: Path, source: str, options: TomlOptions) -> bytes:
-    """What is written to a pipe; that nothing is, which may be so for ever, is said."""
+    """Bytes written to a pipe; warns while nothing is written, which may last for ever."""
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as pipe:
         if not select.select([pipe], [], [], options.patience)[0]:
             warnings.warn(f"{source} is a pipe: waiting until something is written to it", stacklevel=2)
@@ -53,7 +53,7 @@ def _from_pipe(path: Path, source: str, options: TomlOptions) -> bytes:
 
 
 def _text(path: Path, source: str, options: TomlOptions) -> str:
-    """The text of a file."""
+    """Reads the text of a file."""
     try:
         if not source:
             raise SceneError("SCENE", ["is empty; name a TOML file, or a bundled scene"])

@@ -50,7 +50,7 @@ Remedy = Callable[[str], str]  # of a line: the line as it ought to be, or the s
 
 
 class _Fault(Frozen):
-    """Where reading ends, and why."""
+    """Place and reason of the failure of the TOML parser."""
 
     line: int | None  # from 0; None at the end of the document
     column: int
@@ -58,7 +58,7 @@ class _Fault(Frozen):
 
 
 def slips(text: str) -> list[str]:
-    """What is wrong with a text that is no TOML, a sentence for each slip; empty for one that is.
+    """Sentences on the slips in a text that is no TOML; empty for valid TOML.
 
     >>> slips("mu = .3\\nname = shroud")
     ['line 1, mu = .3: a number begins with a digit: write mu = 0.3', 'line 2, name = shroud: a word needs quotes: write name = "shroud"']
@@ -110,7 +110,7 @@ def _fault(lines: list[str]) -> _Fault | None:
 
 
 def _mended(lines: list[str], fault: _Fault, tries: Iterator[int]) -> tuple[_Slip, list[str]] | None:
-    """What to say of a slip, and the lines without it."""
+    """Sentence on a slip, and the lines with the slip mended; None if no remedy helps."""
     last = min(len(lines) - 1 if fault.line is None else fault.line, len(lines) - 1)
     before = [at for at in range(last, -1, -1) if lines[at].strip()][: TOML.lines_before + 1]
     before = [at for at in before if len(lines[at]) <= TOML.longest_mended]
@@ -159,7 +159,7 @@ def _plain(line: str) -> str:
 
 
 def _unmended(lines: list[str], fault: _Fault) -> str:
-    """What is said where no remedy helps."""
+    """Sentence on a fault for which no remedy helps."""
     what = next((said for word, said in _REASONS.items() if word in fault.why), "it is not TOML")
     if fault.line is None:
         return f"at its end: {what}"
@@ -249,7 +249,7 @@ def _substituted(pattern: str, by: str) -> Remedy:
 
 
 def _of_code(pattern: str, by: str) -> Remedy:
-    """Of a line without its comment as a whole."""
+    """Remedy that replaces a pattern in a line, apart from its comment."""
     found = re.compile(pattern)
 
     def remedy(line: str) -> str:
@@ -355,7 +355,7 @@ def _calculated(part: str) -> str:
 
 
 def _statements(line: str) -> str:
-    """Two keys with their values, each on a line of its own."""
+    """Puts two keys with their values, written on one line, on a line each."""
     return re.sub(rf"(=\s*\S.*?)[\s,;]+({_KEY}\s*=(?!=))", r"\1" + "\n" + r"\2", line, count=1)
 
 

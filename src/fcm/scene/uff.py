@@ -99,7 +99,7 @@ def _intact(one: Dataset, number: int, faults: list[str]) -> _Mode:
 
 
 class _DamagedError(ValueError):
-    """What is wrong with a mode."""
+    """Raised for a faulty mode; the message says what is wrong."""
 
 
 class _Rows:
@@ -110,7 +110,7 @@ class _Rows:
         self.left = [at for at in range(begin, len(one.lines)) if one.lines[at].strip()][::-1]
 
     def next(self, what: str) -> int:
-        """The next line."""
+        """Index of the next line."""
         if not self.left:
             raise _DamagedError(f"there is no line of {what}")
         return self.left.pop()
@@ -123,7 +123,7 @@ class _Rows:
         return found
 
     def reals(self, count: int, what: str, fewer: int = PER_LINE) -> list[float]:
-        """As many numbers as are wanted, from full lines but for the last: of six, or fewer."""
+        """Reads `count` numbers from full lines, but for the last; a line has six, or `fewer`."""
         found: list[float] = []
         per_line = PER_LINE
         while len(found) < count and len(found) % per_line == 0:
@@ -192,7 +192,7 @@ def _real(mode: _Mode, dofs: list[str], number: int, faults: list[str]) -> list[
 
 
 def _unlike(modes: list[_Mode], dofs: list[str], name: str) -> list[str]:
-    """Which modes have no values where others have: they are taken not to move there."""
+    """Notes on modes without values where others have them; these count as zero."""
     said = []
     for number, mode in enumerate(modes, 1):
         lacking = [dof for dof in dofs if dof not in mode.values]
@@ -203,7 +203,7 @@ def _unlike(modes: list[_Mode], dofs: list[str], name: str) -> list[str]:
 
 
 def _twice(frequency: npt.NDArray[np.float64], shapes: npt.NDArray[np.float64]) -> list[str]:
-    """Which modes are there twice, as in a file that has them in datasets of both kinds."""
+    """Sentences on modes that occur twice, as in a file with datasets of both kinds."""
     said = []
     for one, other in combinations(range(frequency.size), 2):
         near = abs(frequency[one] - frequency[other]) <= TOLERANCES.same_mode * frequency[other]
@@ -246,7 +246,7 @@ FUNCTIONS = {
 
 
 def contents(datasets: Iterable[Dataset]) -> str:
-    """What the datasets are, those of a kind together.
+    """Sentence on what the datasets of a file are, with those of a kind counted together.
 
     >>> contents([Dataset("151", (), 3), Dataset("15", (), 6), Dataset("15", (), 9)])
     'it holds 151 ×1: header; 15 ×2: nodes'
@@ -267,7 +267,7 @@ def units(datasets: Iterable[Dataset]) -> list[str]:
 
 
 def _what(one: Dataset) -> str:
-    """One dataset in words."""
+    """Describes one dataset in words."""
     number = one.kind.rstrip("b")[:6].strip()
     if number == "58":
         return FUNCTIONS.get(_first(one, 5), "functions")

@@ -31,7 +31,7 @@ _NOTHING = b" \t\r\n\x00\x1a"  # between datasets, and as some programs fill up 
 
 
 class Dataset(NamedTuple):
-    """One dataset: its number as "55" or "58b", the lines behind that, and the number of the first of them.
+    """One dataset: its number as "55" or "58b", its lines, and the number of the first of them.
 
     Of a binary one the lines are those before its bytes, the payload.
     """
@@ -84,7 +84,7 @@ class _Text:
         return self.at < len(self.content)
 
     def peeked(self) -> bytes:
-        """The next line."""
+        """The next line, without moving on."""
         end = self.content.find(b"\n", self.at)
         return self.content[self.at : end if end >= 0 else len(self.content)]
 
@@ -95,7 +95,7 @@ class _Text:
         return found
 
     def to(self, place: int) -> None:
-        """Go on at a place."""
+        """Moves on to a place."""
         self.number += self.content.count(b"\n", self.at, place)
         self.at = place
 
@@ -110,7 +110,7 @@ class _Text:
 
 
 def read_datasets(path: Path) -> list[Dataset]:
-    """All datasets of a file.
+    """Reads all datasets of a file.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def _dataset(text: _Text, path: Path) -> Dataset:
 
 
 def _past_bytes(text: _Text, *sizes: int) -> int:
-    """Where the mark behind the bytes of a binary dataset ends; 0 where there is none.
+    """Place behind the end mark of a binary dataset; 0 where there is no mark.
 
     The bytes are as many as the file says, or as its points take where that is wrong. A file that has gone
     through a conversion of its line ends has others: it is then searched for the mark.

@@ -17,16 +17,16 @@ Indices = npt.NDArray[np.intp]
 
 
 class InterpolationOptions(Frozen):
-    """How a peak between two points of a path is found, by polynomials through solutions of the balance.
+    """Options for finding a peak between two points of a path, by polynomials through solutions.
 
     Attributes
     ----------
     degree : int
-        Of the polynomials.
+        Degree of the polynomials through solutions between two points.
     tolerance : float
-        Part of an amplitude: where the last coefficients of its polynomial are more, the way is halved.
+        Last coefficients of an amplitude's polynomial, relative to it, above which the interval is halved.
     max_halvings : int
-        Of the way, one within the other, at most.
+        Greatest number of nested halvings of an interval; beyond it the polynomial is taken as it is.
     samples : int
         Places at which the greatest value of a polynomial is looked for.
     max_steps : int
@@ -62,7 +62,7 @@ def tops_between(
 
 
 class _Way:
-    """From a point of a path to the next, for some degrees of freedom."""
+    """The curve from a point of a path to the next, for some degrees of freedom."""
 
     def __init__(
         self, system: System, path: Path, first: int, dofs: Indices, options: InterpolationOptions
@@ -76,13 +76,13 @@ class _Way:
         self.dofs, self.between = dofs, Segment(self.system.new_balance(), path, first)
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
-        """Put what is higher on the way, and where, in the place of heights (dof,) and frequencies."""
+        """Raises heights (dof,) and their frequencies to greater ones found on the way."""
         self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, self.options.max_halvings)
 
     def _part(
         self, low: float, high: float, which: Indices, height: FloatArray, omega: FloatArray, halvings: int
     ) -> None:
-        """The same of a part of the way, for some of its degrees of freedom."""
+        """Searches a part of the curve for greater peaks, for some of its degrees of freedom."""
         degree = self.options.degree
         x = chebyshev.chebpts2(degree + 1)
         points = [self._at(low + 0.5 * (1.0 + one) * (high - low)) for one in x]
@@ -112,7 +112,7 @@ class _Way:
 
 
 def _highest(polynomial: FloatArray, options: InterpolationOptions) -> float:
-    """Where in [-1, 1] a Chebyshev series is greatest."""
+    """Place in [-1, 1] at which a Chebyshev series is greatest."""
     places = np.linspace(-1.0, 1.0, options.samples)
     at = float(places[chebyshev.chebval(places, polynomial).argmax()])
     slope, bend = chebyshev.chebder(polynomial), chebyshev.chebder(polynomial, 2)

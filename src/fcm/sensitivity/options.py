@@ -6,26 +6,29 @@ from fcm.frozen import Frozen
 
 
 class SensitivityOptions(Frozen):
-    """How derivatives of peaks are found. Lengths are along the curve, in the scale of its unknowns.
+    """Options on how derivatives of peaks are found.
+
+    Lengths are along the curve, in the scale of its unknowns.
 
     Attributes
     ----------
     step : float
-        Of a difference: part of a number, and length along the curve.
+        Step of a difference quotient: relative to a number, and as a length along the curve.
     side_distance : float
-        Length to both sides of a peak, where its slope has the one sign and the other.
+        Length to either side of a peak at which its slope has the one sign and the other.
     flat_slope : float
-        Slope over size at that length, below which a peak is smooth.
+        Slope of the amplitude at that length, relative to the amplitude, below which a peak is smooth; above
+        it is a corner.
     max_iterations : int
-        Of Newton's method from where a peak is said to be to where it is, at most.
+        Most Newton steps from where a peak is said to be to where it is.
     tolerance : float
-        Length of the last of them.
+        Length of a Newton step below which it is the last.
     corner, corner_tolerance : float
-        Lengths within which a corner moves with the number, and to which it is found.
+        Length within which a corner moves with the number, and error to which the corner is found.
     number : float
-        Step of a difference of the structure's arrays, relative to the number.
+        Step of the difference quotients of the structure's arrays, relative to the number.
     friction : float
-        Coefficient in the place of none, whose forces give the derivative by it.
+        Coefficient of friction that stands for none: the derivative by it is taken from its forces.
     """
 
     step: float = 1e-4

@@ -53,7 +53,7 @@ class Rates(Frozen):
         return self.here(balance, z)
 
     def here(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
-        """As `at`, where the balance was evaluated last."""
+        """Rates of residual and displacements as of `at`, where the balance was evaluated last."""
         if self._of_forces:
             return self._at_forces(balance, z[-1])
         layout = balance.layout
@@ -92,7 +92,7 @@ class Rates(Frozen):
         return not self.contact.any() and not any(other.any() for other in others)
 
     def _at_forces(self, balance: Balance, omega: float) -> tuple[FloatArray, ComplexArray]:
-        """As `at` of such a number: what the structure answers to the rates of its forces."""
+        """Rates as of `at` for a number of the forces alone: response to the rates of the forces."""
         structure, receptance = self.system.linear, balance.receptance
         residual = np.zeros(balance.unknowns)
         displacements = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)

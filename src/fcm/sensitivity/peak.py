@@ -1,4 +1,4 @@
-"""One peak of a curve: the point, whether it is smooth or a corner, and its derivatives by a number."""
+"""One peak of a curve: its point, whether it is smooth or a corner, and its derivatives by a number."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ONE_SIDED = ((0, -25.0 / 12.0), (1, 4.0), (2, -3.0), (3, 4.0 / 3.0), (4, -0.25))
 
 
 class Kind(Enum):
-    """What a peak is, on which its derivatives depend."""
+    """Kind of a peak, which decides how its derivatives are computed."""
 
     SMOOTH = "smooth"
     CORNER = "corner"
@@ -56,7 +56,7 @@ def moved_by(
 
 
 class Peak:
-    """One peak: the point, the direction of the curve, and what it is."""
+    """One peak: its point, the direction of the curve there, and its kind."""
 
     def __init__(
         self, system: System, dof: int, z: FloatArray, edge: bool, options: SensitivityOptions = SENSITIVITY
@@ -154,7 +154,7 @@ class Peak:
         return total
 
     def derivatives(self, rates: Rates, moved: ParameterStencil) -> tuple[float, float]:
-        """Of the height and the frequency of the peak by a number."""
+        """Derivatives of the height and the frequency of the peak by a number."""
         if self.kind is Kind.UNKNOWN:
             return np.nan, np.nan
         if self.solved(self.newton, self.z) is None:

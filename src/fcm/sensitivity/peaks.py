@@ -30,7 +30,7 @@ from fcm.sensitivity.peak import Kind, Peak, moved_by
 
 
 class Sensitivities(Frozen):
-    """Of the peaks of one curve; NaN where they are unknown."""
+    """Derivatives of the peaks of one curve by numbers; NaN where they are unknown."""
 
     numbers: tuple[str, ...]  # key paths
     values: FloatArray  # (number,)
@@ -64,7 +64,7 @@ def numbers_of(scene: Scene) -> list[Number]:
 
 
 def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Of forces or loads, as in key paths: by number where a name is not the only one."""
+    """Names of forces or loads as in key paths: the index where a name is not unique."""
     names = [draft["name"] for draft in drafts]
     return [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
 

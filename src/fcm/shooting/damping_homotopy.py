@@ -14,7 +14,7 @@ from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 
 
 def more_damped(scene: Scene, options: ShootingOptions = SHOOTING) -> tuple[Scene, float] | None:
-    """The scene with all damping larger, and by what factor; None if it has enough, or none at all."""
+    """The scene with all damping raised, and the factor; None if it has enough damping, or none at all."""
     least = float(scene.modal.damping.min())
     if not 0.0 < least < options.damping.damping_ratio:
         return None
@@ -46,7 +46,7 @@ def less_damped(
 
 
 def _guesses(points: list[tuple[float, FloatArray]], at: float) -> Iterator[FloatArray]:
-    """Along the chord through the last two points, and the last one."""
+    """Guesses for the next damping: along the chord through the last two points, and the last one."""
     if len(points) > 1:
         (before, one), (last, other) = points
         yield other + (other - one) * (at - last) / (last - before)

@@ -16,7 +16,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Floquet:
-    """`multipliers` of motions of a scene at any frequency; a workspace."""
+    """Computes Floquet `multipliers` of motions of a scene at any frequency; a workspace."""
 
     def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
         scene, unit = system.scene, 1.0 / np.sqrt(system.scene.modal.mass)
@@ -49,7 +49,7 @@ class Floquet:
 
 
 def floquet_of(system: System) -> Floquet:
-    """The workspace of a system, one for all frequencies."""
+    """The `Floquet` workspace of a system, one for all frequencies."""
     if "floquet" not in system.made:
         system.made["floquet"] = Floquet(system)
     found: Floquet = system.made["floquet"]

@@ -47,13 +47,13 @@ class LevelProblem(OrbitProblem):
             return None
 
     def measure(self, z: FloatArray) -> int:
-        """See `OrbitProblem`."""
+        """Fill the units of lengths at z, see `OrbitProblem.measure`; the level by itself."""
         super().measure(z)
         self._scale[-1] = max(abs(float(z[-1])), self.options.level.level_floor)
         return 0
 
     def report(self, z: FloatArray, direction: FloatArray) -> int:
-        """Nothing: only what the level passes matters."""
+        """Report nothing: only what the level passes matters."""
         return 0
 
 
@@ -83,8 +83,11 @@ Find = Callable[..., "LevelMotions"]
 
 
 class LevelMotions(Frozen):
-    """The motions (unknown + 1,) that the level leads to from a frequency [rad/s], the frequency last, and
-    whether it was followed to its end; if not, whether because the time for that was over."""
+    """Motions (unknown + 1,) that the level leads to from a frequency, which is last in them.
+
+    omega: that frequency [rad/s]; complete: whether the level was followed to its end; out_of_time: whether
+    it was not because its time was over.
+    """
 
     omega: float
     motions: tuple[FloatArray, ...]
@@ -95,8 +98,10 @@ class LevelMotions(Frozen):
 def level_motions(
     scene: Scene, known: Known, bounded: BranchBudget, find: Find | None = None
 ) -> Iterator[LevelMotions]:
-    """What the level leads to from each frequency at which it is followed, in an equal share of the time; and
-    once more, to the end, where that was too short and others leave more than it.
+    """Motions that the level leads to from each frequency at which it is followed.
+
+    Each has an equal share of the time. Where that was too short, and others leave more than it, the level is
+    followed once more, to the end.
 
     known : the motions (unknown + 1,) that are known at a frequency. find : as `level_motions_at`, otherwise.
     """
@@ -125,8 +130,10 @@ def level_motions_at(
     bounded: BranchBudget,
     along: Follow = follow,
 ) -> LevelMotions:
-    """The same at one frequency; one is the balance of one harmonic. What was found is there, too, where look
-    raises `WorkLimitError`. Curves are followed by `along`."""
+    """Motions that the level leads to at one frequency; one is the balance of one harmonic.
+
+    What was found is there, too, where look raises `WorkLimitError`. Curves are followed by `along`.
+    """
     from fcm.harmonic_balance.work_budget import WorkLimitError
 
     found = list[FloatArray]()
@@ -147,7 +154,7 @@ def _followed(
     found: list[FloatArray],
     follow: Follow,
 ) -> bool:
-    """Whether the level was followed to its end; what it leads to is added to what is found."""
+    """Follow the level and add what it leads to; whether it was followed to its end."""
     from fcm.branches.level_folds import level_folds
     from fcm.branches.linear_limits import lowest_linear_limit
     from fcm.branches.options import LEVEL_CURVE
@@ -177,7 +184,7 @@ def _followed(
 
 
 class _InterruptibleFollow(Frozen):
-    """As follow; passes is told of the path also where poll raises `WorkLimitError`."""
+    """Follows a curve as `follow`, and hands over its path also where poll raises `WorkLimitError`."""
 
     poll: Poll
     passes: Callable[[Path], None]
@@ -222,7 +229,7 @@ def _from_rest(
 def _beyond_level_folds(
     scene: Scene, turns: Sequence[LevelFold], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[FloatArray]:
-    """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
+    """Stable motions (unknown + 1,) beside folds of the level below 1, at frequencies within the range."""
     from fcm.branches.level_folds import reaches_level_one, solutions_past_fold
 
     problem, (low, high) = ProblemAtLevel(scene, options=options), scene.frequency_range
@@ -250,7 +257,7 @@ def _linear_starts(problem: LevelProblem, linear: float) -> Iterator[FloatArray]
 
 
 def _highest_level(one: System, omega: float, options: ShootingOptions = SHOOTING) -> float:
-    """Up to which level the curve is followed: as that of a few harmonics comes back."""
+    """Level up to which the curve is followed, told by that of a few harmonics."""
     from fcm.branches.force_level import solutions
     from fcm.branches.linear_limits import highest_linear_limit
     from fcm.branches.options import LEVEL_CURVE

@@ -1,4 +1,4 @@
-"""Branches of the exact motion beside others: what branches of the balance over the range lead to."""
+"""Branches of the exact motion beside others, from branches of the balance over the range."""
 
 from __future__ import annotations
 
@@ -79,8 +79,10 @@ def states_of_branches(
 def _tops(
     path: Path, amplitude: FloatArray, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
-    """Where degrees of freedom are highest, of points inside the range with an even number of real
-    multipliers above 1; and which points (point,) have that.
+    """Points where degrees of freedom are highest, and the points they are chosen from.
+
+    Those are the points with an even number of real multipliers above 1, as a mask (point,); tops are inside
+    the range, too.
     """
     even = path.parity > 0.0
     inside = (path.parameter > path.parameter.min()) & (path.parameter < path.parameter.max())
@@ -106,7 +108,7 @@ def _guesses_at(
     points: Iterator[FloatArray],
     options: ShootingOptions = SHOOTING,
 ) -> Iterator[Place]:
-    """Guesses from points of a balance."""
+    """Guesses for exact motions from points of a balance."""
     for z in points:
         yield float(z[-1]), computed_state(scene, harmonics, z, options)
 
@@ -130,8 +132,11 @@ def converged_balance(
 
 
 def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
-    """The response of the balance with as many harmonics as it takes, those among them by which symmetric
-    motions lose their symmetry, and every branch; of many contacts with one harmonic."""
+    """The response of the balance with every branch, and as many harmonics as it takes.
+
+    Those by which symmetric motions lose their symmetry are among them; with many contacts it has one
+    harmonic.
+    """
     from fcm.accuracy.further_levels import with_levels_below_peaks
     from fcm.accuracy.refinement import refined_response, retrace
     from fcm.accuracy.unchecked_response import unchecked_response
@@ -185,7 +190,7 @@ def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
 
 
 def _single_harmonic(whole: Scene, poll: Poll, options: ShootingOptions) -> System:
-    """The balance of one harmonic."""
+    """The system that is balanced with one harmonic."""
     from fcm.harmonic_balance.system import System
 
     one = System(whole, (1,), other_options=options.balance.others)

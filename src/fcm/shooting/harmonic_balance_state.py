@@ -93,7 +93,10 @@ def balance_solutions(
     poll: Callable[[], None] | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> tuple[list[State], bool]:
-    """The same, and whether the level of the forces was followed to its end, so that there are no more."""
+    """Guesses from the scene's balance at a frequency, and whether there are no more.
+
+    There are no more if the level of the forces was followed to its end.
+    """
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
         return [], True
@@ -112,7 +115,10 @@ def balance_solutions(
 def computed_state(
     scene: Scene, harmonics: tuple[int, ...], z: FloatArray, options: ShootingOptions = SHOOTING
 ) -> State:
-    """The same as `state_of` of the whole scene's balance, without the friction of contacts that are held."""
+    """The state of a point of the whole scene's balance, without the friction of contacts that are held.
+
+    Otherwise as `state_of`.
+    """
     state = state_of(scene.whole(), harmonics, z, options)
     return replace(state, friction=state.friction[scene.computed()])
 
@@ -150,7 +156,7 @@ def state_of(
 def _modal(
     system: System, wave: npt.NDArray[np.complex128], steady: FloatArray, friction: FloatArray
 ) -> State:
-    """The modes' answer to harmonic and steady modal forces, at the angle 0."""
+    """State of the modes at the angle 0 under harmonic and steady modal forces."""
     modal, omega = system.scene.modal, system.omega
     stiffness = modal.frequency**2
     dynamic = (modal.frequency - omega) * (modal.frequency + omega) + (
@@ -168,7 +174,7 @@ def _modal(
 def _forces(
     contact: Contact, u: complex, v: complex, u_mean: float, v_mean: float
 ) -> tuple[tuple[complex, complex], tuple[float, float], float]:
-    """Balanced friction and normal force: their fundamentals, their means; the friction at the angle 0."""
+    """Balanced friction and normal force of a contact: fundamentals, means, and friction at the angle 0."""
     law = SingleHarmonicLaw(ClosedForm(), contact.mu, contact.k_u, contact.k_v, contact.n_0)
     x = np.array([u_mean, v_mean, u.real, u.imag, v.real, v.imag])
     law.evaluate(x, 0)
@@ -184,7 +190,7 @@ def _forces(
 
 
 def _stuck(law: SingleHarmonicLaw, x: FloatArray) -> bool:
-    """Whether the contact never slips nor opens."""
+    """Whether the contact never slips nor opens in the motion x."""
     law.bound(x, 0)
     return bool(law.rests())
 

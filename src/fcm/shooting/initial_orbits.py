@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class InitialOrbits(NamedTuple):
-    """What there is to begin with."""
+    """Points from which branches are followed, and why there are none where there are none."""
 
     points: list[FloatArray]  # z, from which branches are followed
     missed: dict[float, str]  # of ends of the range why there is none
@@ -83,10 +83,11 @@ def find_initial_orbits(problem: OrbitProblem, poll: Poll = never_interrupt) -> 
 
 
 class BalanceOrbits(NamedTuple):
-    """What the branches of a balance lead to: points, and whether each is as high as the balance there.
+    """Points that the branches of a balance lead to, and whether each is as high as the balance there.
 
     unreached: frequencies [rad/s] and heights of tops at which the balance is stable, but no orbit as high
-    was found."""
+    was found.
+    """
 
     points: list[FloatArray]
     near_balance: bool
@@ -125,7 +126,7 @@ def height_of(problem: OrbitProblem, z: FloatArray) -> float:
 
 
 def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatArray]:
-    """The motion near a guess."""
+    """The motion near a guess, as a point of a curve."""
     omega, guess = place
     for orbit in _shot(problem.scene, omega, [guess], poll, problem.options):
         with suppress(SimulationError):
@@ -247,7 +248,7 @@ def _from_rest(
     poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> list[Orbit]:
-    """The motion that one from rest comes to; none if there are others and this cannot be had."""
+    """The motion that a simulation from rest comes to; none if it comes to none and there are others."""
     try:
         return [approached(System(scene, omega), poll, options)]
     except SimulationError:

@@ -50,7 +50,7 @@ def _landed(
 def _at(
     problem: OrbitProblem, newton: Newton, one: OrbitRecord, other: OrbitRecord, omega: float
 ) -> OrbitRecord | None:
-    """The point of the curve at a frequency between those of two neighbours; None if it is not found."""
+    """The point of the curve at a frequency between two neighbours; None if it is not found."""
     share = (omega - one.frequency) / (other.frequency - one.frequency)
     guess = one.z + share * (other.z - one.z)
     guess[-1] = omega

@@ -55,7 +55,7 @@ def linear_motions(
 
 
 def started_states(scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> list[State]:
-    """Guesses from those motions whose contacts rest where the scene starts."""
+    """Guesses from linear motions whose contacts rest where the scene starts."""
     computed = scene.computed()
     found = linear_motions(scene, omega, as_started=True, options=options)
     return [replace(one.state, friction=one.state.friction[computed]) for one in found]
@@ -83,7 +83,7 @@ def _motion(
     as_started: bool,
     options: ShootingOptions = SHOOTING,
 ) -> LinearOrbit | None:
-    """The motion with these contacts closed, if any residual friction admits it."""
+    """The linear motion with some contacts closed; None if no residual friction admits it."""
     stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(system.scene.contacts[j])]
     if not stuck:
         return None
@@ -132,7 +132,7 @@ def _limits(
     mean: FloatArray,
     by_residual: FloatArray,
 ) -> Iterator[tuple[FloatArray, float]]:
-    """What keeps every contact as it is: rows of which row @ residual is to be no less than a number."""
+    """Conditions that keep every contact in its state: rows, and least values of row @ residual."""
     for j, contact in enumerate(system.scene.contacts):
         if j not in stuck:
             press, sign = contact.k_v * system.normal[j], 1.0 if closed[j] else -1.0
@@ -152,7 +152,10 @@ def sticking(
     mean: FloatArray,
     by_residual: FloatArray,
 ) -> Iterator[tuple[FloatArray, float]]:
-    """What keeps contact j from slipping either way; own: which of the residual friction is its own."""
+    """Conditions that keep contact j from slipping either way, as `_limits`.
+
+    own: which of the residual friction is its own.
+    """
     contact = system.scene.contacts[j]
     press, pull = contact.k_v * system.normal[j], contact.k_u * system.tangential[j]
     load = press @ by_residual, contact.n_0 + press @ mean, wave @ press
@@ -163,7 +166,7 @@ def sticking(
 
 
 def _greatest_descent(system: System, swing: npt.NDArray[np.complex128]) -> float:
-    """How far below zero Im(sum_h swing_h exp(i h theta)) comes, swing (driven,)."""
+    """Depth below zero of the least value of Im(sum_h swing_h exp(i h theta)), swing (driven,)."""
     if swing.size == 1:
         return float(abs(swing[0]))
     return float(greatest(1j * swing[None, :, None], np.array(system.harmonics))[0, 0])
@@ -176,7 +179,7 @@ def _nearest_inside(
     just_that: bool,
     options: ShootingOptions = SHOOTING,
 ) -> FloatArray | None:
-    """The residual friction nearest to what is wanted with rows @ residual >= least, if there is any."""
+    """The residual friction nearest to what is wanted with rows @ residual >= least, or None."""
     size = float(np.abs(least).max()) or 1.0
     if (rows @ wanted >= least + options.linear.min_limit_distance * size).all():
         return wanted
@@ -191,7 +194,7 @@ def _nearest_inside(
 
 
 def _nearest_number(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
-    """The same of a single contact that sticks."""
+    """The nearest residual friction, as `_nearest_inside`, of a single contact that sticks."""
     row = rows[:, 0]
     if (least[row == 0.0] > 0.0).any():
         return None
@@ -201,7 +204,7 @@ def _nearest_number(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> 
 
 
 def _nearest(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
-    """By the sum of the distances, which are unknowns besides."""
+    """The nearest residual friction by the sum of the distances, which are unknowns of a linear program."""
     with undisturbed():  # a library that is interrupted while it is loaded cannot be loaded again
         from scipy.optimize import linprog  # takes a tenth of a second to load
 

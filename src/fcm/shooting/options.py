@@ -11,19 +11,19 @@ from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class ClosureOptions(Frozen):
-    """Newton's method on the closure of a period.
+    """Newton's method on the closure of a period, x(T) - x(0) = 0.
 
     Attributes
     ----------
     tolerance : float
-        Of the closure, relative to the size of the motion.
+        Closure of the period, relative to the size of the motion, up to which it counts as periodic.
     max_iterations : int
-        At most.
+        Most Newton steps.
     min_step : float
-        Part of a step; a shorter one counts as divergence.
+        Factor on a Newton step down to which it is shortened; below it the method has diverged.
     rank_tolerance : float
-        Relative singular value, below which nothing changes along a direction, as where a contact never
-        slips.
+        Singular value, relative to the greatest, below which nothing changes along a direction, as where a
+        contact never slips.
     min_return : float
         Distance of a multiplier from 1, below which the forces may not decide what the motion is.
     """
@@ -41,11 +41,12 @@ class ApproachOptions(Frozen):
     Attributes
     ----------
     cycles : tuple of int
-        Simulated before each attempt to close the period.
+        Numbers of cycles that are simulated in turn, each before an attempt to close the period.
     max_drift : float
-        Part of the range of cycle amplitudes, by which their mean may differ from half to half.
+        Difference of the mean cycle amplitude between two halves, relative to the range of amplitudes, above
+        which the motion grows or decays.
     settled_fraction : float
-        Part of a disturbance that damping leaves of it, when it has settled.
+        Part that damping leaves of a disturbance which counts as settled.
     """
 
     cycles: tuple[int, ...] = (10, 20, 40, 80, 160)
@@ -59,19 +60,24 @@ class SteadyOptions(Frozen):
     Attributes
     ----------
     cycles : tuple of int
-        Simulated before each look whether it is.
+        Numbers of cycles that are simulated in turn; after each the motion is tested for being periodic.
     ranging_cycles : int
-        Looks at so many cycles tell together how far a motion ranges, as it may linger and burst out.
+        Number of cycles of such a turn from which on its amplitudes count for the range of a motion that
+        never repeats, as it may linger and burst out.
     max_periods : int
-        Of the force, after which a steady motion may repeat, at most.
+        Most periods of the force after which a steady motion may repeat.
     max_distance : float
-        Distance of a simulated state from the steady one that it belongs to, relative to the motion.
+        Distance of a simulated state from the steady motion found near it, relative to the motion, above
+        which it belongs to another one.
     return_ratio : float
-        Part of its distance after fewer periods, to which the motion comes back after more.
+        Distance of the state after some periods, relative to the least after fewer, below which the motion
+        may repeat after them.
     min_spread_ratio : float
-        Part of the spread of cycle amplitudes in one window, of which the next has less if it decays.
+        Spread of cycle amplitudes in one window, relative to the window before, below which the motion
+        decays.
     distinct_distance : float
-        Distance from a motion, relative to it, at which a motion of twice its periods is another.
+        Distance of a motion of twice the periods from the other, relative to it, from which on it is not
+        taken for the one that leaves it.
     """
 
     cycles: tuple[int, ...] = (20, 40, 80, 160, 320, 640, 640, 640)
@@ -84,18 +90,18 @@ class SteadyOptions(Frozen):
 
 
 class PeriodDoublingOptions(Frozen):
-    """Motions of twice the periods of others.
+    """Motions with twice the period of other motions.
 
     Attributes
     ----------
     distances : tuple of float
-        From a motion, relative to it, at which one of twice its periods is sought.
+        Distances from a motion, relative to it, at which one of twice its period is looked for, in turn.
     max_points : int
-        To either side of a flip from which it is sought; further ones are beyond bends.
+        Most points to either side of a flip from which that is done; further ones lie beyond bends.
     max_distance : float
-        Distance of the last point of a curve from the flip at which it ends, at most.
+        Scaled distance of the last point of a curve from a flip, below which the curve ends at that flip.
     closure_tolerance : float
-        Relative to the motion; one that closes better after fewer periods repeats after these.
+        Closure after fewer periods, relative to the motion, below which the motion repeats after these.
     """
 
     distances: tuple[float, ...] = (0.03, 0.1, 0.3)
@@ -105,16 +111,16 @@ class PeriodDoublingOptions(Frozen):
 
 
 class OrbitOptions(Frozen):
-    """The points of a curve.
+    """Options on how the points of a curve of periodic solutions are recorded.
 
     Attributes
     ----------
     max_cached : int
-        Numbers of computed periods that are kept at most, as a place is asked for more than once.
+        Most numbers of computed periods that are kept, as a place is asked for more than once.
     min_duration : float
-        Part of a period; a state of a contact that lasts less is none.
+        Duration of a contact's state, relative to the period, below which it is left out.
     min_amplitude : float
-        Part of the greatest amplitude; what moves less is not reported.
+        Amplitude, relative to the greatest, up to which a displacement is not reported.
     """
 
     max_cached: int = 1_000_000
@@ -128,20 +134,22 @@ class StartOptions(Frozen):
     Attributes
     ----------
     max_guesses : int
-        About a peak of the balance, of whose motions the highest is followed.
+        Most guesses about a peak of the balance; the highest motion found from them is followed.
     min_height : float
-        Part of that of the peak; the first motion as high is taken, as the balance of one harmonic may be
-        off.
+        Height of a motion, relative to the peak, from which on no further guess is tried; the balance of one
+        harmonic may be off.
     frequencies : int
-        Of the range, between which more harmonics are tried where nothing else was found.
+        Number of intervals of the range at whose ends starts from more harmonics are tried, where nothing
+        else was found.
     damped_frequencies : int
-        The same with more damping, where nothing was found so either.
+        Number of intervals of the range at whose ends starts with more damping are tried, where still nothing
+        was found.
     harmonics : tuple of int
-        That are looked for.
+        Harmonics of the balance from which these starts come.
     corrected_harmonics : tuple of int
-        Harmonics with which these are corrected.
+        Harmonics of the balance that corrects the starts.
     distinct_distance : float
-        Relative distance; solutions further apart are different.
+        Scaled distance of two solutions above which they are different.
     """
 
     max_guesses: int = 16
@@ -154,25 +162,25 @@ class StartOptions(Frozen):
 
 
 class BalanceOptions(Frozen):
-    """The harmonic balance that exact motions begin near.
+    """The harmonic balance that gives the guesses of exact motions.
 
     Attributes
     ----------
     accuracy : float
-        Of it, relative.
+        Relative accuracy that is asked of it.
     peak_spacing : int
-        Points of a path, within which one peak stands for those of other degrees of freedom.
+        Number of points of a path within which one peak stands for those of other degrees of freedom.
     peak_offsets : tuple of int
-        Points from a peak, from which motions are sought.
+        Numbers of points from a peak to those from which motions are looked for, in turn.
     harmonics : tuple of int
-        Of the branches that are looked for; with three a closed branch may be as far off as another one
-        is.
+        Harmonics of the balance whose branches are looked for; with three a closed branch may be as far off
+        as another one is.
     guess_harmonics : tuple of int
-        Harmonics of a guess.
+        Harmonics of a guess, where contacts are few.
     many_contacts : int
-        From so many on a guess has one harmonic.
+        Number of contacts from which on a guess has one harmonic.
     force_harmonics : int
-        Times the highest harmonic of a guess, up to which its forces have harmonics.
+        Highest harmonic of the forces of a guess, relative to the highest harmonic of its motion.
     others : tuple
         Options of its branches, of the classes of `fcm.branches.options`; the others are the default.
     """
@@ -193,11 +201,12 @@ class DampingHomotopyOptions(Frozen):
     Attributes
     ----------
     damping_ratio : float
-        Of the least damped mode, from which motions are found from afar.
+        Damping ratio of the least damped mode with which motions are found from afar; the damping is raised
+        to it.
     first_factor, min_factor : float
-        Factors of the damping in the first step, and in the largest.
+        Factor on the damping in the first step, and in the largest step.
     max_factor : float
-        Factor; a step nearer to 1 leads no further.
+        Factor on the damping from which on a step is too short: the homotopy has failed.
     """
 
     damping_ratio: float = 0.03
@@ -212,13 +221,13 @@ class ForceLevelOptions(Frozen):
     Attributes
     ----------
     max_step : float
-        Longest, along the curve.
+        Longest step along the curve, in its scaled unknowns.
     retry_fraction : float
-        Part of it, with which the curve is followed once more.
+        Longest step of a second attempt, relative to the first.
     linear_fraction : float
-        Part of the level up to which contacts are linear; curves are followed down to it.
+        Lowest level of a curve, relative to the level up to which contacts are linear.
     level_floor : float
-        Unit of lower levels; higher ones are measured by themselves.
+        Least unit of the level along the curve: above it the level is measured by itself.
     """
 
     max_step: float = 0.2
@@ -233,11 +242,12 @@ class LinearOrbitOptions(Frozen):
     Attributes
     ----------
     max_combined : int
-        Contacts, up to which all combinations of closed and open are tried; of more, all closed.
+        Number of contacts up to which all combinations of closed and open are tried; of more, all closed.
     limit_distance : float
-        Part of the forces, by which a motion keeps away from its limits if it can.
+        Distance of a motion from its limits of slip, relative to the forces, that is tried first.
     min_limit_distance : float
-        Part of them, by which it does so at least; one on its limit belongs to others.
+        Distance of a motion from its limits of slip, relative to the forces, that is tried last; a motion on
+        its limit belongs to others.
     """
 
     max_combined: int = 3
@@ -251,17 +261,19 @@ class PartlyStickingOptions(Frozen):
     Attributes
     ----------
     limit_distances : tuple of float
-        Parts of the forces, by which residual friction keeps away from two limits at a time.
+        Distances of the residual friction from two limits at a time, relative to the forces, in turn.
     min_distance : float
-        Part of the largest distance; residual friction nearer to another is not tried.
+        Distance of one residual friction from another, relative to the largest distance, up to which it is
+        not tried.
     max_tries : int
-        For the same contacts, at most.
+        Most residual frictions that are tried for the same contacts.
     amplitude_tolerance : float
-        Relative difference of amplitudes, up to which a motion is within an extent.
+        Relative difference of an amplitude from a family's range, up to which the motion lies within it.
     closure_tolerance : float
-        Of a motion found with fixed contacts, once these are free.
+        Closure of a motion found with held contacts, relative to it, below which it is accepted once they are
+        free.
     cycles : tuple of int
-        Simulated before each look whether the motion has become periodic.
+        Numbers of cycles that are simulated in turn, each before an attempt to close the period.
     """
 
     limit_distances: tuple[float, ...] = (0.01, 1.0)
@@ -278,13 +290,14 @@ class PeakOptions(Frozen):
     Attributes
     ----------
     windows : tuple of float
-        Parts of the frequency to either side of a guess; the next where one has nothing.
+        Widths to either side of a guess, relative to its frequency, in which it is looked for, in turn.
     max_distance : float
-        Of the curve from a guess, in its own size; one further away is another.
+        Scaled distance of the curve from a guess, from which on it is another curve.
     min_growth : float
-        Growth of an amplitude, over its size, along a unit of arc; paths take no notice of less.
+        Slope of an amplitude by scaled length, relative to the amplitude, up to which it counts as none:
+        paths take no notice of less.
     peak_tolerance : float
-        Part of the frequency or of the amplitude, by which what is found twice differs.
+        Relative difference of two frequencies or amplitudes, up to which they are the same.
     """
 
     windows: tuple[float, ...] = (0.005, 0.02, 0.08)
@@ -294,10 +307,15 @@ class PeakOptions(Frozen):
 
 
 class ResidualFrictionOptions(Frozen):
-    """The friction force of a contact that always sticks.
+    """The residual friction force of a contact that sticks all the time.
 
-    margin: distance from its limit, relative to the forces. rounding: part of that; a contact this near to
-    what is wanted has it, whatever its limits.
+    Attributes
+    ----------
+    margin : float
+        Distance from the limit of slip, relative to the forces, that the residual friction keeps.
+    rounding : float
+        Difference from the wanted residual friction, relative to that distance, up to which it counts as
+        reached, whatever the limits are.
     """
 
     margin: float = 1e-9
@@ -310,32 +328,36 @@ class FamilyOptions(Frozen):
     Attributes
     ----------
     steps : int
-        From one limit of slip to the other.
+        Number of steps from one limit of slip to the other.
     min_step : float
-        Part of a step; below it the family has an end of its own.
+        Length of a step, relative to the longest before, down to which it is shortened; below it the family
+        has an end of its own.
     max_iterations : int
-        Of Newton's method; with more a shorter step is found later.
+        Most Newton steps for a motion: with more, a shorter step along the family finds it sooner.
     min_fraction : float
-        Of one of these steps, the smallest that is tried.
+        Factor on a Newton step down to which it is shortened.
     max_factor : float
-        Of a step to the next, at most.
+        Greatest ratio of a step along the family to the one before.
     max_distance : float
-        Times the first distance between the limits; a contact that its own residual friction presses
-        together has no end.
+        Residual friction, relative to the first distance between its limits, beyond which the family counts
+        as endless: such a contact is pressed together by its own residual friction.
     zero_distance : float
-        Part of that distance.
+        Least change of the distance from the limits in a step, relative to the greatest distance, that the
+        next step is computed from.
     max_combined : int
-        Contacts, up to which all combinations of directions are followed.
+        Number of contacts up to which all combinations of directions are followed.
     bound_tolerance : tuple[float, float]
-        Part of bounds, by which a motion may be beyond, of one contact, and of several by lines.
+        Distance of a motion beyond the range of a family, relative to that range, up to which it belongs to
+        the family: of one contact, and of several.
     halvings_to_stable : int
-        Of the way between two motions of which one is stable.
+        Number of bisections between two motions of which one is stable.
     halvings_to_extreme : int
-        Of the way about the motion with the greatest or the least amplitude.
+        Number of bisections about the motion with the greatest or the least amplitude.
     amplitude_tolerance : float
-        Relative range of amplitudes that are one.
+        Range of an amplitude over a family, relative to the amplitude, up to which it is constant.
     max_motions : int
-        Motions, at most, as some contacts have hundreds of sets of those that stick.
+        Most motions of a family that are computed, as some contacts have hundreds of sets of those that
+        stick.
     """
 
     steps: int = 8
@@ -354,22 +376,23 @@ class FamilyOptions(Frozen):
 
 
 class StabilityChangeOptions(Frozen):
-    """Where stability changes along a curve.
+    """Options on where stability changes along a curve.
 
     Attributes
     ----------
     max_evaluations : int
-        At places between two points, at most.
+        Most motions that are computed to locate one change.
     certain_fraction : float
-        Part of the excess of a multiplier over 1 up to which a motion is stable, by which it may differ
-        from that where stability changes.
+        Distance of the greatest multiplier from the limit of stability, relative to the tolerance of growth,
+        up to which the change is located.
     max_divisions : int
-        Divisions of the way between two points in search of a window of stability.
+        Most divisions of the way between two points in search of a window of stability.
     safe_growth : float
-        Logarithm of the greatest multiplier of both; below it no window is looked for.
+        Logarithm of the greatest multiplier, at both of two points, below which no window is looked for
+        between them.
     max_ranges : int
-        Of the frequency without a stable motion, in whose middle the motion is simulated, the widest
-        first.
+        Most frequency ranges without a stable motion, the widest first, in whose middle the motion is
+        simulated.
     sign_change : SignChangeOptions
         How a change is bracketed.
     """
@@ -388,14 +411,14 @@ class BranchSearchOptions(Frozen):
     Attributes
     ----------
     compared_motions : int
-        Of a branch that are looked for on the others.
+        Number of motions of a branch that are looked for on other branches, to tell whether it is new.
     max_broken : int
-        Branches that break off, after which no others are looked for: where contacts rattle, with ten
-        impacts a period and more, unstable motions are countless.
+        Number of branches that break off, from which on no others are looked for: where contacts rattle, with
+        ten impacts a period and more, unstable motions are countless.
     poll_interval : float
-        [s] between two looks at the processor time, which takes long to tell on some machines.
+        [s] Time between two readings of the processor time, which takes long to read on some machines.
     rounding_frequency : float
-        Times the frequency of the highest mode, from where what a period does is near to rounding.
+        Frequency relative to that of the highest mode, above which what a period does is near to rounding.
     """
 
     compared_motions: int = 7
@@ -405,7 +428,7 @@ class BranchSearchOptions(Frozen):
 
 
 class ShootingOptions(Frozen):
-    """All of the package, by what they are for: see the class of each field.
+    """All options of shooting, grouped by purpose; see the class of each field.
 
     Examples
     --------

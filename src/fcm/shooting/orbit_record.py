@@ -1,4 +1,4 @@
-"""What is kept of a periodic solution on a curve: everything that is reported, without its motion in time."""
+"""Records of periodic solutions on a curve: everything that is reported, without the motion in time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from fcm.units import spoken
 
 
 class OrbitRecord(Frozen):
-    """A periodic solution, and where on its curve it is."""
+    """A periodic solution as it is reported, with its place on a curve."""
 
     frequency: float  # [rad/s]
     state: State  # at the forces' angle 0
@@ -49,13 +49,15 @@ class OrbitRecord(Frozen):
 
 
 def recorded_point(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> OrbitRecord:
-    """What is kept of a point."""
+    """The record of a point of a curve, with its direction and mark."""
     return replace(recorded(problem, z), direction=direction, mark=mark)
 
 
 def recorded(problem: OrbitProblem, z: FloatArray) -> OrbitRecord:
-    """The same without its place on a curve, found once for each z: while its period is still known, if it is
-    asked for when the curve comes there."""
+    """The record of a solution without its place on a curve, made once for each z.
+
+    It is made while its period is still known, if it is asked for when the curve comes there.
+    """
     key = z.tobytes()
     if key not in problem.samples:
         problem.samples[key] = _record_of(_shot(problem, z), z, problem.options)
@@ -63,7 +65,7 @@ def recorded(problem: OrbitProblem, z: FloatArray) -> OrbitRecord:
 
 
 def _record_of(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -> OrbitRecord:
-    """What is kept of a period from z."""
+    """The record of a period that begins at z."""
     multipliers, found = shot.multipliers, shot.scanned
     return OrbitRecord(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
@@ -74,13 +76,13 @@ def _record_of(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -
 
 
 def _held_distances(shot: Shot) -> FloatArray:
-    """What each contact that is held keeps of its limit or gap; its greatest normal and friction force."""
+    """Distances of held contacts from their limit or gap, and greatest forces, (held, 3)."""
     least, greatest = (one.reshape(2, -1) for one in shot.scanned.part(shot.system.parts.held))
     return np.column_stack((shot.held_distances, greatest[0], np.maximum(greatest[1], -least[1])))
 
 
 def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
-    """The period from a point of a curve."""
+    """The period from a point of a curve; SimulationError if it cannot be computed."""
     shot = problem.shot(z)
     if shot is None:
         raise SimulationError(
@@ -90,7 +92,7 @@ def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
 
 
 def recorded_steady(omega: float, motion: SteadyMotion) -> OrbitRecord:
-    """What is kept of a motion that a simulation has come to."""
+    """The record of a motion that a simulation has come to."""
     none = np.zeros(0)
     return OrbitRecord(
         omega, motion.state, motion.states, motion.measure, motion.contact_loads, motion.multipliers,
@@ -120,7 +122,7 @@ def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Orb
 
 
 def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[OrbitRecord]) -> list[OrbitRecord]:
-    """A point of its own for each change of stability, but where that is at one already."""
+    """Records with a point for each change of stability, but where it is at a point already."""
     out = list(points[:1])
     for k, point in enumerate(points[1:]):
         before = points[k]

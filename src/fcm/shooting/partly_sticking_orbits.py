@@ -75,7 +75,7 @@ def partly_stuck_motions(
 def partly_stuck_as_started(
     scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> list[State]:
-    """Guesses from those motions whose contacts rest where the scene starts."""
+    """Guesses from partly sticking motions whose contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
     system = System(whole, omega)
     wanted = system.k_u * resting(whole)
@@ -88,7 +88,7 @@ def partly_stuck_as_started(
 
 
 def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[int, ...]]:
-    """The contacts that may stick while others do not."""
+    """Sets of contacts that may stick while others do not."""
     rough = [j for j, contact in enumerate(scene.contacts) if has_friction(contact)]
     count = len(scene.contacts)
     for size in range(1, count if count <= options.linear.max_combined else 1):
@@ -98,7 +98,7 @@ def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[i
 def _residual_guesses(
     system: System, poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
-    """Contacts, and residual friction of them with which they may stick."""
+    """Sets of contacts, and residual friction with which they may stick."""
     for stuck in _sets(system.scene, options):
         poll()
         for residual in _spread_out(_choices(system, stuck, options=options), options):
@@ -111,7 +111,7 @@ def _choices(
     just: FloatArray | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> Choices:
-    """Residual friction that keeps contacts stuck whatever the others do, as far as that is linear."""
+    """Residual friction that keeps contacts stuck, whatever the others do, as far as that is linear."""
     scene, found = system.scene, Choices()
     others = [j for j in range(len(scene.contacts)) if j not in stuck]
     for letters in product("EFS", repeat=len(others)):  # stuck, without friction, open
@@ -133,7 +133,7 @@ def _choices(
 
 
 def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOOTING) -> Choices:
-    """Places near the corners of where rows @ x >= least, and the middle of them."""
+    """Points near the corners of the region rows @ x >= least, and the middle of them."""
     size, count, found = float(np.abs(least).max()) or 1.0, rows.shape[1], Choices()
     for kept in options.partly_sticking.limit_distances:
         beyond = least + kept * size
@@ -147,7 +147,7 @@ def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOO
 
 
 def _spread_out(choices: Choices, options: ShootingOptions = SHOOTING) -> Choices:
-    """Some of them, not near to one another, those first that came first."""
+    """Some of the choices that are not near to one another; the first come first."""
     kept, size = Choices(), float(np.ptp(choices, axis=0).max(initial=0.0)) if choices else 0.0
     for one in choices:
         if all(np.abs(one - other).max() > options.partly_sticking.min_distance * size for other in kept):
@@ -190,7 +190,7 @@ def _with_held(
 
 
 def _approached(system: System, poll: Poll, options: ShootingOptions = SHOOTING) -> Orbit | None:
-    """The stable motion that one from no displacement comes to soon."""
+    """The stable motion that a simulation from no displacement comes to soon; None without any."""
     state = State.unloaded(system.scene)
     for count in options.partly_sticking.cycles:
         for _, end in cycles_from(system, count, state):
@@ -205,7 +205,7 @@ def _approached(system: System, poll: Poll, options: ShootingOptions = SHOOTING)
 def _released(
     system: System, state: State, rest: dict[int, float], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Orbit | None:
-    """The same motion with no contact held, if those stick all through it."""
+    """The motion with no contact held, if those stick all through it; else None."""
     contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
     friction = np.zeros(len(contacts))
     friction[[j for j in range(friction.size) if j not in rest]] = state.friction

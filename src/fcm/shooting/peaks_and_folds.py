@@ -21,7 +21,7 @@ PeakDofs = npt.NDArray[np.bool_]  # (dof,)
 
 
 class Guess(Frozen):
-    """Somewhere near a peak or a fold, with the direction of the curve there as a second state nearby."""
+    """A state near a peak or a fold, with a second state nearby for the direction of the curve."""
 
     frequency: float  # [rad/s]
     state: State
@@ -122,7 +122,10 @@ def _peak_at_start(
 
 
 def _peak_dofs(problem: OrbitProblem, path: Path, k: int) -> PeakDofs:
-    """Whose amplitude is no less than at the points beside it: a mark does not say whose peak it is."""
+    """Mask (dof,) of amplitudes no less than at the points beside point k.
+
+    A mark does not say whose peak it is.
+    """
     here, *sides = (_amplitudes(problem, path, i) for i in (k, k - 1, k + 1) if 0 <= i < len(path.z))
     highest: PeakDofs = np.logical_and.reduce([here > 0.0, *(here >= side for side in sides)])
     return highest
@@ -136,7 +139,7 @@ def _amplitudes(problem: OrbitProblem, path: Path, k: int) -> FloatArray:
 def _with_stable_side(
     problem: OrbitProblem, z: FloatArray, direction: FloatArray, k: int, here: OrbitRecord
 ) -> OrbitRecord:
-    """A fold belongs to the stable side, if it has one."""
+    """The record of a fold, counted as stable if one side of it is."""
     if not here.mark & Mark.FOLD or here.stable:
         return here
     sides = [i for i in (k - 1, k + 1) if 0 <= i < len(z)]
@@ -157,7 +160,7 @@ def _differ(one: OrbitRecord, other: OrbitRecord, options: ShootingOptions = SHO
 
 
 def _distance_from_guess(one: OrbitRecord, guess: Guess) -> float:
-    """How little it is what was sought: the highest is the peak, the nearest the fold."""
+    """A measure of how far a point is from what was looked for: the highest peak, or the nearest fold."""
     if guess.dof is not None:
         return -float(one.measure.amplitude[guess.dof])
     return abs(one.frequency - guess.frequency)

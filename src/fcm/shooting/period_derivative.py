@@ -12,14 +12,14 @@ from fcm.time_domain.system import System
 
 
 class InstantDerivative(NamedTuple):
-    """The derivative at an instant."""
+    """The derivative of the state at an instant of a motion."""
 
     columns: FloatArray  # (unknown + 2, d): by each of x = (q, q', f), by the parameter; last the state
     rate: FloatArray  # (d,) of the state [1/s]
 
 
 def derivative_at(system: System, segments: Segments, last: int, position: float) -> InstantDerivative:
-    """The derivative at a position (in steps) in a segment."""
+    """The derivative of the state at a position (in steps) in a segment."""
     kernel = system.derivative()
     kernel.begins(segments, system.by_level)
     while (missing := kernel.go(segments, last, position)) >= 0:

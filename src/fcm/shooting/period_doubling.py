@@ -26,18 +26,24 @@ from fcm.time_domain.state import State
 
 
 class DoubledPeriodProblem(OrbitProblem):
-    """Motions of twice the periods of others; a curve of them has ended where it comes to those."""
+    """Problem of motions with twice the periods of others.
+
+    A curve of them has ended where it comes to those.
+    """
 
     def __init__(self, once: OrbitProblem) -> None:
         super().__init__(once.scene, 2 * once.repeats, once.options)
         self.once, self._way = once, np.zeros(0)
 
     def reset_flips(self) -> None:
-        """To be called before another curve is followed."""
+        """Forget what flips were passed, before another curve is followed."""
         self._way = np.zeros(0)
 
     def has_passed_flip(self, z: FloatArray) -> bool:
-        """Whether the curve has passed a flip since it was asked before: what half the periods lack turns."""
+        """Whether the curve has passed a flip since the last call.
+
+        There what half the periods lack turns round.
+        """
         shot = self.once.shot(z)
         if shot is None:
             return False
@@ -47,7 +53,7 @@ class DoubledPeriodProblem(OrbitProblem):
         )
 
     def half_period_later(self, z: FloatArray) -> FloatArray:
-        """The same motion, begun after half of its periods."""
+        """The unknowns of the same motion, begun after half of its periods."""
         shot = self.once.shot(z)
         return z if shot is None else z + np.append(shot.closure[self.free], 0.0)
 
@@ -104,7 +110,7 @@ def bifurcations(points: list[OrbitRecord]) -> Iterator[tuple[int, Bifurcation]]
 
 
 def flips(points: list[OrbitRecord]) -> Iterator[int]:
-    """The flips, where the period doubles."""
+    """The places k in a branch where the period doubles."""
     return (k for k, kind in bifurcations(points) if kind is Bifurcation.PERIOD_DOUBLING)
 
 
@@ -155,7 +161,7 @@ def _near_flip(
 
 
 def _doubled(problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot) -> Iterator[FloatArray]:
-    """The motion in the direction in which a disturbance changes its sign after each period."""
+    """Motions in the direction in which a disturbance changes its sign after each period."""
     for reach in problem.options.doubling.distances:
         try:
             guess = Shot(once.system, _disturbed(once, reach), problem.shooting.resting, problem.repeats)
@@ -169,7 +175,7 @@ def _doubled(problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot) -> I
 def _approached(
     problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot, poll: Poll
 ) -> Iterator[FloatArray]:
-    """The motion that a simulation comes to from a disturbed one."""
+    """The motion that a simulation comes to from a disturbed motion."""
     x, system = _disturbed(once, problem.options.doubling.distances[0]), once.system
     found = steady(system, State(x[system.q], x[system.p], x[system.f]), poll, problem.options)
     if isinstance(found, SteadyMotion) and found.periods == problem.repeats:
@@ -181,7 +187,7 @@ def _approached(
 
 
 def _disturbed(once: Shot, reach: float) -> FloatArray:
-    """The start of a motion, moved by reach, relative to it, on the way that turns with each period."""
+    """Start of a motion, moved by reach, relative to it, along the disturbance that changes its sign."""
     values, vectors = np.linalg.eig(once.derivative * (once.scale / once.scale[:, None]))
     way = vectors[:, values.real.argmin()].real
     x: FloatArray = once.x + reach * way / np.abs(way).max() * once.scale
@@ -191,7 +197,7 @@ def _disturbed(once: Shot, reach: float) -> FloatArray:
 def _repeating_solution(
     problem: DoubledPeriodProblem, point: OrbitRecord, shot: Shot
 ) -> Iterator[FloatArray]:
-    """The solution of the problem that a motion is, unless that repeats before."""
+    """The solution of the doubled problem that a motion gives, unless it repeats before."""
     if (
         Shot(shot.system, shot.x, periods=problem.once.repeats).residual
         < problem.options.doubling.closure_tolerance

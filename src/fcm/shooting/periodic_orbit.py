@@ -47,17 +47,17 @@ class Orbit(Frozen):
 
     @property
     def states(self) -> tuple[str, ...]:
-        """For each contact the sequence of its states over the period, such as 'EPEN'."""
+        """The sequence of states of each contact over the period, such as 'EPEN'."""
         return self.cycle.states
 
     @cached_property
     def measure(self) -> Measure:
-        """Amplitudes (half the peak-to-peak, and the fundamental), phase and mean."""
+        """Amplitudes (half the peak-to-peak, and the fundamental), phase and mean of the orbit."""
         return measure(self.cycle)
 
     @property
     def motion(self) -> Motion:
-        """The period as a motion."""
+        """The orbit as a motion of one period."""
         return Motion(self.scene, (self.cycle,), self.state)
 
 
@@ -148,7 +148,7 @@ def approached(system: System, poll: Poll = never_interrupt, options: ShootingOp
 
 
 def _description(system: System, amplitude: FloatArray, options: ShootingOptions = SHOOTING) -> str:
-    """What a motion does that has not become periodic, by the greatest amplitudes of its last cycles."""
+    """Sentence on a motion that has not become periodic, by the amplitudes of its last cycles."""
     first, second = np.array_split(amplitude, 2)
     if abs(second.mean() - first.mean()) > options.approach.max_drift * np.ptp(amplitude):
         return "It may grow without end, repeat only after several periods, or need a guess"
@@ -166,7 +166,7 @@ def _description(system: System, amplitude: FloatArray, options: ShootingOptions
 def shoot(
     system: System, guess: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit | None:
-    """Newton's method from a state at the forces' angle 0; None when it does not converge."""
+    """The orbit by Newton's method from a state at the forces' angle 0; None when it does not converge."""
     x = np.concatenate((guess.q, guess.velocity, guess.friction))
     found = converged(Shot(system, x), poll=poll, options=options)
     return None if found is None else closed(*found)
@@ -227,7 +227,7 @@ def closed(shot: Shot, iterations: int = 0) -> Orbit:
 
 
 def _step(shot: Shot, options: ShootingOptions = SHOOTING) -> FloatArray:
-    """Newton's step; along directions in which nothing changes, none."""
+    """Newton's step of a shot; along directions in which nothing changes, none."""
     matrix = shot.by_state * shot.scale / shot.scale[:, None]
     solution = np.linalg.lstsq(matrix, -shot.closure / shot.scale, rcond=options.closure.rank_tolerance)[0]
     with np.errstate(over="ignore"):  # what is not finite is refused when it is tried

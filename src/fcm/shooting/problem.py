@@ -84,7 +84,7 @@ class OrbitProblem(Problem):
         return np.append(self.shooting.unknowns(state), omega)
 
     def shot(self, z: FloatArray) -> Shot | None:
-        """The period from z; None where there is none."""
+        """The period that begins at z, computed once; None where there is none."""
         z = np.asarray(z)
         key = z.tobytes()
         shot = self._shots.get(key)
@@ -98,11 +98,11 @@ class OrbitProblem(Problem):
 
     @property
     def full(self) -> bool:
-        """Whether so much is remembered that it may be forgotten with the next step."""
+        """Whether so many periods are kept that they may be forgotten with the next step."""
         return 2 * self._numbers > self.options.orbit.max_cached
 
     def forget(self) -> None:
-        """Forget all periods."""
+        """Forget all periods that are kept."""
         self._shots, self._numbers = {}, 0
 
     def _made(self, z: FloatArray) -> Shot | None:
@@ -113,7 +113,10 @@ class OrbitProblem(Problem):
             return None
 
     def evaluate(self, z: FloatArray) -> int:
-        """See `Problem`; not a number where there is no motion, so that no solution is sought there."""
+        """Fill residual and Jacobian at z, see `Problem`.
+
+        They are nan where there is no motion, so that no solution is looked for there.
+        """
         shot, jacobian = self.shot(z), self._jacobian
         if shot is None:
             jacobian[:] = self._residual[:] = np.nan
@@ -129,13 +132,15 @@ class OrbitProblem(Problem):
         return 0
 
     def probe(self, z: FloatArray) -> int:
-        """See `Problem`."""
+        """Fill the residual alone at z, see `Problem`."""
         shot = self.shot(z)
         self._residual[:] = np.nan if shot is None else shot.closure[self.free]
         return 0
 
     def measure(self, z: FloatArray) -> int:
-        """The size of the motion; velocities are displacements times the modes' own frequencies.
+        """Fill the units of lengths at z: the size of the motion.
+
+        Those of velocities are displacements times the modes' own frequencies.
 
         So the higher harmonics count by their displacements.
         """
@@ -150,14 +155,17 @@ class OrbitProblem(Problem):
         return 0
 
     def bound(self, z: FloatArray) -> int:
-        """See the class; as they were where there is no motion."""
+        """Fill the margin with the label of the states, see the class; it stays where there is no motion."""
         shot = self.shot(z)
         if shot is not None:
             self.margin[0] = _label(shot, self.options)
         return 0
 
     def report(self, z: FloatArray, direction: FloatArray) -> int:
-        """Half the peak-to-peak of the degrees of freedom: an extreme grows as the motion at its instant."""
+        """Fill the amplitudes, half the peak-to-peak, and their growth.
+
+        An extreme grows as the motion at its instant.
+        """
         shot = self.shot(z)
         output, growth = self._output, self._growth
         output[:] = growth[:] = 0.0

@@ -1,4 +1,4 @@
-"""Shooting: how the motion over one period fails to close, with the derivatives of that."""
+"""Shooting: the closure of the motion over one period, and its derivatives."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fcm.time_domain.system import System
 
 
 class Shot:
-    """The motion over some periods from x = (q, q', f), and how it fails to close.
+    """The motion over some periods from x = (q, q', f), and its closure.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Shot:
             self._choose(resting)
 
     def _choose(self, resting: FloatArray) -> None:
-        """Let the gap of the contacts that always stick be that of their slip motions."""
+        """Let the closure of contacts that always stick be the distance from their chosen slip motions."""
         first, seen = self.system.f.start, self.segments.seen()
         self.chosen = choices(self.system, self.segments, resting, stuck_of(self.system, seen))
         for choice in self.chosen:
@@ -54,7 +54,7 @@ class Shot:
 
     @cached_property
     def scale(self) -> FloatArray:
-        """The size of x: (unknown,)."""
+        """Size of each number of x: (unknown,)."""
         scale: FloatArray = self.segments.scale(self.system.per_unit, self.system.tuned())
         return scale
 
@@ -65,18 +65,18 @@ class Shot:
 
     @property
     def state(self) -> State:
-        """The state at its start."""
+        """State at the start of the motion."""
         system = self.system
         return State(self.x[system.q], self.x[system.p], self.x[system.f])
 
     @property
     def cycle(self) -> Cycle:
-        """The motion over the periods."""
+        """The motion over the periods as one cycle."""
         return Cycle(self.system, 0.0, self.duration, 0.0, self.segments)
 
     @cached_property
     def sequence(self) -> bytes:
-        """The states of the contacts from segment to segment: while it stays, the gap is smooth."""
+        """States of the contacts from segment to segment: while they stay, the closure is smooth."""
         return np.asarray(self.segments.states).tobytes()
 
     @property
@@ -86,16 +86,16 @@ class Shot:
 
     @property
     def by_state(self) -> FloatArray:
-        """Derivative of the gap by x: (unknown, unknown)."""
+        """Derivative of the closure by x: (unknown, unknown)."""
         return self._differentiated()[1]
 
     @property
     def by_parameter(self) -> FloatArray:
-        """Derivative of the gap by the frequency or by the level of the forces: (unknown,)."""
+        """Derivative of the closure by the frequency or by the level of the forces: (unknown,)."""
         return self._differentiated()[2]
 
     def _differentiated(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The derivatives, which are computed once."""
+        """Derivatives of the end of the motion, of the closure, and by the parameter; computed once."""
         if self._derivatives is None:
             end, rate = period_derivative(self.system, self.segments, self.duration)
             gap, first = end.copy(), self.system.f.start
@@ -107,23 +107,26 @@ class Shot:
 
     @cached_property
     def scanned(self) -> Scanned:
-        """The extremes of all that is reported."""
+        """Extremes of all that is reported of the motion."""
         return scanned(self.system, self.segments)
 
     @cached_property
     def extremes(self) -> Displaced:
-        """The least and the greatest displacement of each degree of freedom."""
+        """Least and greatest displacement of each degree of freedom."""
         return displaced(self.system, self.segments)
 
     @property
     def amplitude(self) -> FloatArray:
-        """Half the peak-to-peak of each degree of freedom: (dof,)."""
+        """Amplitude of each degree of freedom, half the peak-to-peak: (dof,)."""
         half: FloatArray = 0.5 * (self.extremes.greatest - self.extremes.least)
         return half
 
     @cached_property
     def held_distances(self) -> FloatArray:
-        """What each contact that is held keeps of its limit, or of its gap: (held,); negative, nothing."""
+        """Relative distance of each held contact from its limit, or from closing: (held,).
+
+        Negative if it passes that.
+        """
         least, greatest = self.scanned.part(self.system.parts.limits)
         most = greatest[::3]
         share: FloatArray = least.reshape(-1, 3).min(axis=1) / np.where(most > 0.0, most, 1.0)
@@ -138,7 +141,10 @@ class Shot:
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
-        """Floquet's, the greatest first; 1 for each contact that always sticks, or stays closed smooth."""
+        """Floquet multipliers, the greatest first.
+
+        1 for each contact that always sticks, or stays closed smooth.
+        """
         values = np.zeros(self.x.size, dtype=np.complex128)
         ones = sum(states == 1 << STICKING for states in self.segments.seen())
         values[: self.other_multipliers.size] = self.other_multipliers
@@ -174,7 +180,7 @@ class Shooting:
         self._system: System | None = None
 
     def system(self, omega: float) -> System:
-        """The scene at a frequency [rad/s]."""
+        """The system of the scene at a frequency [rad/s]."""
         if self._system is None or self._system.omega != omega:
             self._system = System(self.scene, omega) if self._system is None else self._system.at(omega)
         return self._system
@@ -187,7 +193,7 @@ class Shooting:
     def residual(
         self, unknowns: FloatArray, omega: float, level: float = 1.0, by_level: bool = False
     ) -> Shot:
-        """The period from a state at a frequency and a level of the forces, which may be the parameter.
+        """The shot from a state at a frequency and a level of the forces, which may be the parameter.
 
         Raises
         ------

@@ -27,7 +27,7 @@ BOTH_SIGNS = (
 
 
 class Choice(NamedTuple):
-    """How far a stuck contact's friction force is from the one that is chosen."""
+    """The difference of a stuck contact's friction force from the one that is chosen for it."""
 
     contact: int
     gap: float  # to be added to the force
@@ -62,7 +62,7 @@ def always_stuck(system: System, segments: Segments) -> list[int]:
 
 
 def stuck_of(system: System, seen: list[int]) -> list[int]:
-    """The same of what each contact has been in: see `Segments.seen`."""
+    """Contacts that stick all the time, by the states that each has been in: see `Segments.seen`."""
     return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
 
 
@@ -73,7 +73,10 @@ def choices(
     stuck: list[int],
     options: ResidualFrictionOptions = SHOOTING.traction,
 ) -> list[Choice]:
-    """The choices for the contacts that stick all through the segments; wanted: the w of all, (contact,)."""
+    """Choices of the friction for the contacts that stick all through the segments.
+
+    wanted: the w of all, (contact,).
+    """
     if not stuck:
         return []
     y = np.asarray(segments.y)[0]
@@ -94,7 +97,7 @@ def choices(
 def _choice(
     system: System, segments: Segments, of: tuple[int, float, float], above: Extreme, below: Extreme
 ) -> Choice:
-    """The force for the w that is wanted, or the nearest to it that keeps |f| <= mu n for all of the period.
+    """Choice of the force for the w that is wanted, or the nearest with |f| <= mu n all through the period.
 
     Of a contact, with the gap to what is wanted; it keeps a margin away from the limit, so that rounding does
     not decide between stick and slip. Above and below are the least of mu n - f and of mu n + f.
@@ -140,7 +143,7 @@ def one_sided_slips(
 def limit_distances(
     system: System, segments: Segments, contacts: list[int]
 ) -> dict[int, tuple[Extreme, Extreme]]:
-    """Of each contact the least of mu n - f and of mu n + f over the segments."""
+    """Least values of mu n - f and of mu n + f over the segments, for each contact."""
     found, _ = extremes_by(system.limits, system, segments)
     return {j: (found[2 * j], found[2 * j + 1]) for j in contacts}
 

@@ -1,4 +1,4 @@
-"""Where stability changes between two points of an exact curve.
+"""Changes of stability between two points of an exact curve.
 
 While the sequence of states stays, the multipliers change smoothly; where it changes they may jump, as where
 a contact begins to slip. A contact that always sticks has a multiplier 1 on either side and tells nothing.
@@ -52,7 +52,10 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> CrossingPoint | N
 
 
 def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> CrossingPoint:
-    """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
+    """The place between two points with its excess.
+
+    The excess is counted from half of what is sure below the limit, so that what is there is stable.
+    """
     shot = problem.shot(z)
     others = np.zeros(0) if shot is None else np.abs(shot.other_multipliers)
     excess = problem.options.floquet.classification.growth_tolerance

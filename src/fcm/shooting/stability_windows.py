@@ -36,7 +36,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Point(Protocol):
-    """What is known of a point of a path."""
+    """A point of a path with its multipliers and states."""
 
     @property
     def multipliers(self) -> ComplexArray: ...
@@ -47,7 +47,7 @@ class Point(Protocol):
 
 
 class Window(NamedTuple):
-    """A place at which stability is another than at the two points that it lies between."""
+    """A place between two points at which stability differs from both."""
 
     first: int  # of these
     z: FloatArray
@@ -56,7 +56,7 @@ class Window(NamedTuple):
 
 
 class _PathSamples(NamedTuple):
-    """What is known of the points of a path, (point,) each: see `MultiplierSample`."""
+    """Functions of the multipliers of all points of a path, (point,) each: see `MultiplierSample`."""
 
     length: FloatArray
     stable: npt.NDArray[np.bool_]
@@ -65,12 +65,15 @@ class _PathSamples(NamedTuple):
     pair: FloatArray
 
     def places(self, first: int, end: int) -> list[MultiplierSample]:
-        """Those from the first to before the end."""
+        """Samples of the points from the first to before the end."""
         rows = zip(*(values[first:end].tolist() for values in self), strict=True)
         return [MultiplierSample(*row) for row in rows]
 
     def suspected(self, jumps: npt.NDArray[np.bool_], options: ShootingOptions) -> list[int]:
-        """The points after which there may be a window: where a dip is foretold, or multipliers may jump."""
+        """Mask of the points after which there may be a window.
+
+        There a dip is foretold, or multipliers may jump.
+        """
         low, high = self.stable[:-1], self.stable[1:]
         dips = np.where(
             low,
@@ -82,7 +85,7 @@ class _PathSamples(NamedTuple):
         return found
 
     def _predicted_minima(self, options: StabilityOptions, *functions: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether a dip of any of them is foretold after each point but the last."""
+        """Whether a minimum of any of the functions is predicted after each point but the last."""
         s, before = self.length, self.stable[:-2] == self.stable[1:-1]
         alike = before & (self.stable[1:-1] == self.stable[2:])
         found = np.zeros(max(s.size - 1, 0), dtype=bool)
@@ -124,7 +127,7 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
 
 
 def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jumps: bool) -> Window | None:
-    """A place in a window between a point and the next, if what is known of the points tells of one.
+    """A place in a window between a point and the next, if samples of the points predict one; else None.
 
     jumps : whether multipliers may jump there.
     """
@@ -138,7 +141,7 @@ def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jump
         after: Sequence[MultiplierSample],
         times: int,
     ) -> bool:
-        """Whether one is found, the way divided so often already; `between` is there then."""
+        """Whether a window is found, the way divided so often already; `between` is then there."""
         nonlocal between
         alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
         again = times < problem.options.stability.max_divisions
@@ -170,7 +173,10 @@ def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jump
 def _multiplier_sample(
     length: float, multipliers: ComplexArray, stable: bool, options: StabilityOptions
 ) -> MultiplierSample:
-    """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
+    """The sample of a point by its multipliers.
+
+    Of contacts that always stick, or stay closed smooth, these are 1 and tell nothing.
+    """
     values = tuple(multipliers[multipliers != 1.0].tolist()[: options.windows.max_multipliers])
     growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
     classified = Classification(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values)
@@ -178,7 +184,7 @@ def _multiplier_sample(
 
 
 def _path_samples(path: Path, points: Sequence[Point], options: StabilityOptions) -> _PathSamples:
-    """The points of a path, all at once."""
+    """Samples of all points of a path at once."""
     values = np.array([point.multipliers for point in points])
     kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= options.windows.max_multipliers)
     growth = np.log(np.where(kept, np.abs(values), 0.0).max(axis=1, initial=0.0) + MIN_LOGARITHM)
@@ -188,7 +194,7 @@ def _path_samples(path: Path, points: Sequence[Point], options: StabilityOptions
 
 
 def _lengths(path: Path) -> FloatArray:
-    """Way along the path up to each point, in the greatest sizes of its unknowns."""
+    """Length along the path up to each point, in the greatest sizes of its unknowns."""
     size = np.maximum(np.abs(path.z).max(axis=0), np.finfo(float).tiny)
     steps = np.linalg.norm(np.diff(path.z, axis=0) / size, axis=1)
     return np.concatenate(([0.0], np.cumsum(steps)))

@@ -47,7 +47,7 @@ class SteadyMotion(NamedTuple):
 def steady(
     system: System, state: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> SteadyMotion | State:
-    """The steady motion that a simulation from a state comes to; where there is none, the state at its end.
+    """The steady motion that a simulation from a state comes to; without any, the state at its end.
 
     poll is called after every cycle.
 
@@ -113,12 +113,12 @@ def _repeating(
 
 
 def multi_period_motion(shot: Shot) -> SteadyMotion | None:
-    """How a motion of several periods, stable or not, ranges over them; None of one."""
+    """A motion of several periods, stable or not, as a steady motion; None of one period."""
     return _of_shot(shot) if shot.periods > 1 else None
 
 
 def _of_shot(shot: Shot) -> SteadyMotion:
-    """A motion that closes after its periods."""
+    """The steady motion of a shot that closes after its periods."""
     parts = [measure(cycle) for cycle, _ in cycles_from(shot.system, shot.periods, shot.state)]
     amplitude = np.array([part.amplitude for part in parts])
     return SteadyMotion(
@@ -131,7 +131,10 @@ def _of_shot(shot: Shot) -> SteadyMotion:
 def _closed(
     system: System, x: FloatArray, member: FloatArray, periods: int, options: ShootingOptions = SHOOTING
 ) -> Shot | None:
-    """The motion of so many periods near x; contacts that never slip rest where they do in the member."""
+    """The shot of so many periods near x that closes; None without any.
+
+    Contacts that never slip rest where they do in member.
+    """
     try:
         found = converged(Shot(system, x, resting_at(system, member), periods), options=options)
     except SimulationError:
@@ -140,7 +143,7 @@ def _closed(
 
 
 def _shorter(shot: Shot, options: ShootingOptions = SHOOTING) -> Shot | None:
-    """The same motion over fewer periods, if it repeats before."""
+    """The motion over fewer periods, if it repeats before; else None."""
     for k in range(1, shot.periods):
         if shot.periods % k == 0:
             part = Shot(shot.system, shot.x, periods=k)
@@ -150,7 +153,7 @@ def _shorter(shot: Shot, options: ShootingOptions = SHOOTING) -> Shot | None:
 
 
 def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions = SHOOTING) -> Shot | None:
-    """The motion of twice the periods of another, which a simulated state at x is leaving by turns.
+    """The motion of twice the periods of another that a simulated state at x is leaving by turns.
 
     Just beyond a flip the simulation leaves so slowly that Newton's method goes back; from further off on the
     same way it does not.
@@ -170,8 +173,10 @@ def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions =
 
 
 def _ranging(windows: Sequence[list[Cycle]], options: ShootingOptions = SHOOTING) -> SteadyMotion | None:
-    """The motion over windows of cycles that do not repeat; over the last one alone, by its halves, if the
-    amplitudes grow or decay over all. None if they do so within that, too."""
+    """The motion over windows of cycles that do not repeat; None if its amplitudes grow or decay.
+
+    If they do over all windows, it is that over the last one alone, judged by its halves.
+    """
     measures = [[measure(cycle) for cycle in window] for window in windows]
     amplitudes = [np.array([one.amplitude for one in window]) for window in measures]
     if grows_or_decays(amplitudes, options):

@@ -30,7 +30,7 @@ COMPLETE_STATUS = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
 
 @dataclass
 class Branch:
-    """Periodic solutions along one curve."""
+    """Periodic solutions along one curve, with the way in which it ended."""
 
     orbits: list[OrbitRecord] = field(default_factory=list)  # in the order along the curve
     status: Status = Status.COMPLETE
@@ -106,8 +106,9 @@ def explore(
     most: float = np.inf,
     uncertain: UncertainFrequencies | None = None,
 ) -> tuple[list[Path], str]:
-    """All branches of a scene as paths, and what is missing, else ''; uncertain takes those of the balance
-    that leads to them.
+    """All branches of a scene as paths, and a sentence on what is missing, else ''.
+
+    uncertain takes the frequencies of the balance that leads to them.
 
     That is why there is no solution at an end of the range, and why the search for further branches was given
     up: what leads to them may take so many seconds of processor time.
@@ -142,7 +143,7 @@ def explore(
 
 
 def _by_cause(reasons: Sequence[str]) -> list[str]:
-    """Reasons with the same cause behind a colon as one.
+    """Reasons with the same cause behind a colon merged into one.
 
     >>> _by_cause(["none at 1 Hz: no damping", "none at 2 Hz: no damping", "none at 3 Hz"])
     ['none at 1 Hz and none at 2 Hz: no damping', 'none at 3 Hz']
@@ -155,7 +156,7 @@ def _by_cause(reasons: Sequence[str]) -> list[str]:
 
 
 def _reaches_height(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
-    """Whether a path has motions as high as that beside a frequency [rad/s], which is the balance's."""
+    """Whether a path has motions as high as the balance beside a frequency [rad/s]."""
     for path in paths:
         near = path.z[np.abs(path.parameter / omega - 1.0) < problem.options.balance.accuracy]
         if any(height_of(problem, z) >= problem.options.start.min_height * height for z in near):
@@ -165,8 +166,10 @@ def _reaches_height(problem: OrbitProblem, paths: Sequence[Path], omega: float, 
 
 @dataclass
 class _BranchSearch:
-    """The search for further branches of a problem; unreached: frequencies [rad/s] and amplitudes of the
-    balance, from where it led to no motion as high."""
+    """Search for further branches of a problem.
+
+    unreached: frequencies [rad/s] and amplitudes of the balance, from where it led to no motion as high.
+    """
 
     problem: OrbitProblem
     branches: Callable[..., Branches]
@@ -175,7 +178,7 @@ class _BranchSearch:
     unreached: list[tuple[float, float]] = field(default_factory=list)
 
     def with_others(self, paths: tuple[Path, ...], apart: bool) -> tuple[Path, ...]:
-        """Paths, and those of others that the converged balance and the level of the forces lead to.
+        """Paths with those that the converged balance and the level of the forces lead to.
 
         The level is not followed where each end and peak of that balance leads to a motion as high. What led
         to none is added to `unreached`, see `BalanceOrbits`. apart as of `converged_balance`.
@@ -209,7 +212,7 @@ class _BranchSearch:
         return paths
 
     def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:
-        """Paths, and those through motions that none of them passes, unless too many break off."""
+        """Paths with those through motions that none of them passes, unless too many break off."""
         problem = self.problem
         for z in motions:  # what is passed already is known without being followed again
             if self.too_many_broken(paths):
@@ -242,13 +245,13 @@ def distinct_motions(path: Path, options: ShootingOptions = SHOOTING) -> list[Fl
 
 
 def branch_of(problem: OrbitProblem, path: Path) -> Branch:
-    """The solutions of a path."""
+    """The branch of the solutions on a path."""
     orbits = samples(problem, path)
     return Branch(orbits, path.status, problem.periods)
 
 
 def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
-    """Why the curve of these paths is not complete, else ''."""
+    """Reasons why the curve of some paths is not complete, else ''."""
     broken = [path for path in paths if path.status not in COMPLETE_STATUS]
     reasons = dict.fromkeys(
         f"stopped at {with_unit(scene, path.parameter[-1])}: {path.status.value}" for path in broken
@@ -267,7 +270,7 @@ def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
 
 
 def with_unit(scene: Scene, omega: float) -> str:
-    """A frequency [rad/s] in the scene's unit."""
+    """A frequency [rad/s] as text in the scene's unit."""
     return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"
 
 

@@ -58,20 +58,22 @@ class TractionPath:
         self.ended |= self.beyond is not None
 
     def _growth(self, new: Shot) -> float:
-        """Factor from a step to the next: most of it moves the structure where that is softer than the
-        contact."""
+        """Ratio of the next step to the last one.
+
+        Most of a step moves the structure where that is softer than the contact.
+        """
         before, self.room = self.room, self._limit_distances(new)
         self.reach = np.maximum(self.reach, before.sum(axis=1))
         used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)
         return 1.0 / (self.options.family.steps * max(float(used.max()), self.options.family.zero_distance))
 
     def _limit_distances(self, shot: Shot) -> FloatArray:
-        """How far each contact's force is from its limits, (contact, 2)."""
+        """Distances of each contact's force from its limits, (contact, 2)."""
         found = limit_distances(self.system, shot.segments, self.contacts)
         return np.array([(found[j][0].value, found[j][1].value) for j in self.contacts])
 
     def _next_motion(self, share: float) -> Shot | None:
-        """The motion when the contacts are stressed a little more."""
+        """The motion when the contacts are stressed by one more step; None without any."""
         guess = None if self.slope is None else self.last.x + share * self.slope
         new = with_traction(
             self.last, -(residual_of(self.last) + share * self.push), guess, self.poll, self.options

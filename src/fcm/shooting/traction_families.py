@@ -35,7 +35,7 @@ from fcm.units import spoken
 
 
 class Family(Frozen):
-    """The extent of the periodic motions at one frequency."""
+    """The range of the periodic motions at one frequency over the residual friction of stuck contacts."""
 
     contacts: tuple[int, ...]  # that always stick
     friction: FloatArray  # (contact, 2) least and greatest friction force k_u w from which they are reached
@@ -45,7 +45,7 @@ class Family(Frozen):
 
     @property
     def spread(self) -> FloatArray:
-        """By how much the amplitude is not determined, relative to its greatest value: (dof,)."""
+        """Range of each amplitude in the family, relative to its greatest value: (dof,)."""
         size = np.where(self.greatest > 0.0, self.greatest, 1.0)
         return (self.greatest - self.least) / size
 
@@ -138,7 +138,7 @@ def members(
 
 
 class _VisitedTractions:
-    """What has been followed with the same contacts that stick, by their residual friction."""
+    """The residual friction of motions already followed with the same contacts that stick."""
 
     def __init__(self, contacts: list[int], residual: FloatArray, options: ShootingOptions) -> None:
         self.options = options
@@ -146,7 +146,10 @@ class _VisitedTractions:
         self.low, self.high = residual[:, contacts].min(axis=0), residual[:, contacts].max(axis=0)
 
     def contains(self, contacts: list[int], shot: Shot) -> bool:
-        """Whether a motion lies within; another part may be beyond a gap in which other contacts stick."""
+        """Whether a motion lies within the range visited; another part may be beyond a gap.
+
+        In that other contacts stick.
+        """
         if contacts != self.contacts:
             return False
         residual, within = residual_of(shot)[contacts], self.options.family.bound_tolerance[len(contacts) > 1]
@@ -155,7 +158,7 @@ class _VisitedTractions:
 
 
 def _refined(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
-    """More motions beside those, within a line, at which an amplitude is greatest or least.
+    """Further motions beside those, within a line, at which an amplitude is greatest or least.
 
     Where it is so at an end, it may be more so beside that.
     """
@@ -176,26 +179,26 @@ def _refined(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) 
 
 
 class _MidpointCache:
-    """The motions between two, each looked for once: several amplitudes are often extreme together."""
+    """Motions between two others, each computed once: several amplitudes are often extreme together."""
 
     def __init__(self, poll: Poll, options: ShootingOptions) -> None:
         self.poll, self.options = poll, options
         self.known: dict[tuple[int, int], tuple[Shot, Shot, Shot | None]] = {}
 
     def of(self, one: Shot, other: Shot) -> Shot | None:
-        """That of two; None where it is not found."""
+        """The motion between two; None where it is not found."""
         key = min(id(one), id(other)), max(id(one), id(other))
         if key not in self.known:  # which keeps both, and with them their numbers
             self.known[key] = one, other, midpoint(one, other, self.poll, self.options)
         return self.known[key][2]
 
     def found(self) -> list[Shot]:
-        """All."""
+        """All motions that were found."""
         return [middle for _, _, middle in self.known.values() if middle is not None]
 
 
 def _last_stable(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
-    """Motions ever nearer to where, within a line, stability is lost; those behind that are left out."""
+    """Motions ever nearer to where, within a line, stability is lost: the last stable ones."""
     added = list[Shot]()
     for pair in pairwise(line):
         if _stable(pair[0], options) == _stable(pair[1], options):

@@ -1,4 +1,4 @@
-"""The search for what leads to further branches, within the time that it may take."""
+"""Time limit of the search for what leads to further branches."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class UncertainFrequencies:
     folds: list[float] = field(default_factory=list)
 
     def replace_with(self, found: Traced) -> None:
-        """Those of a traced balance, in the place of others."""
+        """Take the uncertain frequencies of a traced balance, in the place of others."""
         self.levels[:] = [one.omega for one in found.found if not one.complete]
         self.folds[:] = found.folds_lost
 
 
 class BranchBudget:
-    """What leads to further branches, found in no more than so many seconds of processor time together.
+    """Limit of the processor time of the search for what leads to further branches.
 
     outside : called now and then, all the while; `poll` is to be called while it is sought.
     given_up : why there may be more branches than those, empty if all was sought.
@@ -54,7 +54,7 @@ class BranchBudget:
         self._end, self._left = np.inf, most
 
     def poll(self) -> None:
-        """Raise `WorkLimitError` when it has taken as much."""
+        """Raise `WorkLimitError` when the search has taken its time."""
         from fcm.harmonic_balance.work_budget import WorkLimitError
 
         self.outside()
@@ -64,7 +64,7 @@ class BranchBudget:
             self._ask = time.monotonic() + self.options.search.poll_interval
 
     def each(self, finds: Iterator[Found]) -> Iterator[Found]:
-        """One after the other; what is done with them between takes nothing of their time."""
+        """Results one after the other; what is done with them in between takes nothing of their time."""
         from fcm.harmonic_balance.work_budget import WorkLimitError
 
         while True:
@@ -81,11 +81,11 @@ class BranchBudget:
             yield found
 
     def share(self, count: int) -> float:
-        """An equal share [s] of what is left, which the next of so many is to be found in."""
+        """An equal share [s] of the time that is left, for the next of so many searches."""
         found = self._left / count
         self._end = self._begin + found
         return found
 
     def add_reason(self, why: str) -> None:
-        """Add the reason why the search is not whole."""
+        """Add a reason why the search is not complete."""
         self.given_up.append(f"the search for further branches was given up: {why}")

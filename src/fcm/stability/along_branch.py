@@ -1,4 +1,4 @@
-"""What multipliers say of places of a path: of points, by their numbers, and of places between these.
+"""Classifications along a path: of points, by their numbers, and of places between these.
 
 A place between is the number of the point that it follows, and the part of the way to the next.
 """
@@ -29,7 +29,7 @@ EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 
 
 class PathClassification:
-    """The classifications of places, those between the points of the path, and how many were calculated.
+    """Classifications of the points of a path, of places between them, and how many were computed.
 
     without_neighbour (point,): beside which no solution with more harmonics is near. to_confirm (point,): of
     which it is enough that the finer motion says that they are stable. rotation (point,) [rad]: by how much
@@ -63,20 +63,23 @@ class PathClassification:
 
     @cached_property
     def length(self) -> FloatArray:
-        """Way along the path up to each point, which only where a window may be hidden is asked for."""
+        """Length along the path up to each point (point,).
+
+        It is asked for only where a window may be hidden.
+        """
         return path_lengths(self.path.z)
 
     def __getitem__(self, t: float) -> Classification:
         return self._classified[t]
 
     def at(self, i: int) -> Classification:
-        """The classification of a point, which is kept."""
+        """The classification of a point, computed once."""
         if i not in self._classified:
             self.classify_points((i,))
         return self._classified[i]
 
     def classify_points(self, points: Sequence[int], sufficient: Sequence[float] = ()) -> None:
-        """Classify several points and keep that; `sufficient` as of `Multipliers.classify`."""
+        """Classify several points and keep the results; `sufficient` as of `Multipliers.classify`."""
         new = [i for i in points if i not in self._classified]
         to_confirm = [i for i in new if self.to_confirm[i]]
         for some, accepted in (
@@ -133,12 +136,14 @@ class PathClassification:
         return not math.isnan(self._classified[t].stable)
 
     def grows(self, t: float) -> bool:
-        """Whether a disturbance does at a place with a classification."""
+        """Whether a disturbance grows at a place with a classification."""
         return self._classified[t].growth > 0.0
 
     def sufficient_between(self, *places: float) -> Sequence[float]:
-        """What is enough to find where growth changes sign between places: EITHER, if the finer motion alone
-        says the same of these as their classifications."""
+        """The `sufficient` of `Multipliers.classify` for finding where growth changes sign between places.
+
+        EITHER, if the finer motion alone says the same of these as their classifications.
+        """
         for t in places:
             fine = self.classify(self._z(t), EITHER)
             if fine.rebalanced or (fine.growth > 0.0) != self.grows(t):
@@ -149,7 +154,7 @@ class PathClassification:
         return self.between[t].z if t in self.between else self.path.z[int(t)]
 
     def multiplier_sample(self, t: float) -> MultiplierSample:
-        """What is known of a place with a classification."""
+        """The `MultiplierSample` of a place with a classification."""
         if t not in self._multiplier_sample:
             k, part = int(t), t - int(t)
             length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
@@ -157,17 +162,17 @@ class PathClassification:
         return self._multiplier_sample[t]
 
     def meeting_angle(self, t: float) -> float:
-        """[rad] by which multipliers at a place with a classification have to turn until two of them meet."""
+        """Angle [rad] by which multipliers at a place have to turn until two of them meet."""
         if t not in self._meeting_angles:
             self._meeting_angles[t] = meeting_angle(self._classified[t], self.options)
         return self._meeting_angles[t]
 
     def rotation_between(self, a: float, b: float) -> float:
-        """[rad] by how much multipliers turn, about, between points around two places."""
+        """Angle [rad] by which multipliers turn, about, between points around two places."""
         return float(self.rotation[math.ceil(b)] - self.rotation[int(a)])
 
     def curve(self, k: int) -> Segment:
-        """The curve from a point to the next."""
+        """The segment of the curve from a point to the next."""
         return Segment(self._system.reset_balance(), self.path, k)
 
     def find(self, length: float, sufficient: Sequence[float] = ()) -> float | None:

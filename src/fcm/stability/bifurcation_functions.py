@@ -1,4 +1,4 @@
-r"""Where stability may change and change back between two places of a curve that were looked at.
+r"""Functions that tell where stability may change and change back between two places of a curve.
 
 The growth of a disturbance is no guide there: a pair of multipliers l keeps its size until it meets another,
 or the real axis, and leaves at once. But multipliers leave where these products vanish, which vary smoothly
@@ -27,7 +27,7 @@ MIN_LOGARITHM = 1e-300  # a product, or a length
 
 
 class MultiplierSample(NamedTuple):
-    """A place that was looked at."""
+    """Functions of the multipliers at a place of a curve."""
 
     length: float  # along the curve
     stable: float
@@ -39,7 +39,10 @@ class MultiplierSample(NamedTuple):
 def multiplier_sample(
     length: float, classified: Classification, options: StabilityOptions = STABILITY
 ) -> MultiplierSample:
-    """A place with its classification; of the products where it is stable, otherwise they are of no use."""
+    """The sample of a place with its classification.
+
+    The products are computed where it is stable: otherwise they are of no use.
+    """
     if classified.stable != 1.0:
         return MultiplierSample(length, classified.stable, classified.growth, 0.0, 0.0)
     values = np.array(

@@ -34,7 +34,10 @@ __all__ = ["Bifurcation", "InsertedPoint", "MultiplierCrossing", "Stability", "s
 
 
 class Stability(Frozen):
-    """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it is unknown."""
+    """Stability of the points of a path, and where it changes.
+
+    stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it is unknown.
+    """
 
     stable: FloatArray
     crossings: tuple[MultiplierCrossing, ...]
@@ -117,7 +120,7 @@ class _BifurcationSearch:
         return even
 
     def _judge(self, first: int, last: int) -> None:
-        """Enough points of a run."""
+        """Classify enough points of a run to see whether stability changes in it."""
         angle = self.classified.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / self.options.sampling.max_phase)
         some = self.spaced.nodes(first, last, self.step_span)
@@ -200,7 +203,7 @@ class _BifurcationSearch:
         )
 
     def _inserted_points(self, stable: FloatArray) -> Iterator[InsertedPoint]:
-        """The places between points that are stable where both neighbours are not, or the other way round."""
+        """Places between points that are stable where both neighbours are not, or the other way round."""
         for t, one in self.classified.between.items():
             before, after = stable[int(t) : int(t) + 2].tolist()
             if before == after != one.stable and not math.isnan(one.stable):
@@ -290,5 +293,5 @@ class _BifurcationSearch:
 
 
 def _nearest_index(at: IntArray, first: int, last: int) -> IntArray:
-    """Index in at of the number nearest to each from first to last; at holds both."""
+    """Index in at of the number nearest to each one from first to last; at holds both."""
     return np.rint(np.interp(np.arange(first, last + 1), at, np.arange(at.size))).astype(np.intp)

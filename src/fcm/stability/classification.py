@@ -1,4 +1,4 @@
-"""What Floquet multipliers say of the stability of a solution, given the parity of those above +1."""
+"""Classifies the stability of a solution by its Floquet multipliers, given the parity of those above +1."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class Bifurcation(Enum):
-    """How stability changes, besides at a fold: where multipliers leave the unit circle."""
+    """Ways in which multipliers leave the unit circle, so that stability changes other than at a fold."""
 
     PERIOD_DOUBLING = "period doubling"  # one at -1
     NEIMARK_SACKER = "Neimark-Sacker"  # a complex pair
@@ -19,7 +19,7 @@ class Bifurcation(Enum):
 
 
 class Classification(NamedTuple):
-    """The classification of one solution."""
+    """Stability of one solution, by its multipliers."""
 
     stable: float  # 1, 0, or nan where it is unknown
     growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
@@ -36,7 +36,7 @@ UNKNOWN = Classification(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
 
 
 class MultiplierSpectrum:
-    """All multipliers of a solution sorted by how stability is lost through them; logarithms of their sizes.
+    """Multipliers of a solution, sorted by how stability is lost through them; logarithms of their sizes.
 
     nearest: of the real multiplier above 0 that is nearest to 1, nan if there is none; odd: whether the
     number of those above 1 is odd.
@@ -73,7 +73,7 @@ class MultiplierSpectrum:
         self.other = math.log(self.other) if self.other > 0.0 else -math.inf
 
     def add_positive(self, size: float) -> None:
-        """Take a real multiplier above 0."""
+        """Take the logarithm of a real multiplier above 0."""
         farther = size
         if not abs(size) >= abs(self.nearest):
             farther, self.nearest = self.nearest, size
@@ -84,7 +84,10 @@ class MultiplierSpectrum:
             self.real = max(self.real, size)
 
     def classify(self, without_nearest: bool = False) -> Classification:
-        """By all multipliers but the real ones between 0 and 1, and if wanted the nearest to that."""
+        """The classification by all multipliers but the real ones between 0 and 1.
+
+        without_nearest: whether the one nearest to 1 is left out, too.
+        """
         most = self.real_but_nearest if without_nearest else self.real
         kind = self.kind
         growth = self.other
@@ -104,7 +107,7 @@ def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
 
 
 def meeting_angle(classified: Classification, options: StabilityOptions = STABILITY) -> float:
-    """[rad] that multipliers which are not small have to turn at least until two of them meet."""
+    """Angle [rad] that multipliers which are not small have to turn at least until two of them meet."""
     angles: list[float] = []
     for value in classified.values:
         angle = abs(math.atan2(value.imag, value.real))
@@ -149,8 +152,7 @@ def is_uncertain(
     meetings: bool = True,
     options: StabilityOptions = STABILITY,
 ) -> bool:
-    """Whether a classification may be another once the motion has changed further, as it did from plain to
-    fine.
+    """Whether a classification may change once the motion changes further, as it did from plain to fine.
 
     That is so where nothing is told; of a decay that is less than its change; and of a growth that is less
     than some times that. So it is (meetings) where a pair turns so fast that it may meet at -1, where one
@@ -174,8 +176,9 @@ def is_uncertain(
 
 
 def flip_function(values: Sequence[complex]) -> float:
-    """What changes its sign where one multiplier passes -1, smoothly, however it has come there: less than
-    0 while none has.
+    """A smooth function of the multipliers that changes its sign where one passes -1.
+
+    It is less than 0 while none has, however it comes there.
 
     >>> flip_function([0.5 + 0.5j, 0.5 - 0.5j]), flip_function([-1.5, -0.5])
     (-2.5, 0.25)
@@ -220,7 +223,7 @@ def growth_is_linear(
 
 
 def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
-    """How far a pair is from -1, and the logarithm of its size; nan if there is none that is not small.
+    """Distance of a pair of multipliers from -1, and the logarithm of its size; nan if all are small.
 
     The distance is the pair's sum over its size, plus 2. It is about the square of the angle that is left
     until both meet; where it is negative, minus that of the logarithm by which they have parted along the
@@ -242,7 +245,7 @@ def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILI
 
 
 def flip_angle(classified: Classification, options: StabilityOptions = STABILITY) -> float:
-    """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
+    """Angle [rad] from the negative real axis to the nearest pair that is not small; 0 once one is there."""
     met = classified.kind is Bifurcation.PERIOD_DOUBLING and classified.growth > math.log(
         options.classification.small_multiplier
     )

@@ -33,8 +33,11 @@ Mask = npt.NDArray[np.bool_]
 
 
 class Confirmation(Frozen):
-    """stable (point,): what has a stable motion with further harmonics near it. limited: whether there would
-    have been more to look at than the most points of many contacts."""
+    """Points that are confirmed as stable with further harmonics.
+
+    stable (point,): whether there is a stable motion with further harmonics near it. limited: whether there
+    would have been more to look at than the most points of many contacts.
+    """
 
     stable: Mask
     limited: bool = False
@@ -48,7 +51,7 @@ def confirmed_stable(
     options: StabilityOptions = STABILITY,
     motions: KnownMotions | None = None,
 ) -> Confirmation:
-    """Which of the points to_confirm (point,) have a stable motion with further harmonics near them.
+    """Whether the points to_confirm (point,) have a stable motion with further harmonics near them.
 
     Parameters
     ----------
@@ -86,7 +89,7 @@ def confirmed_stable(
 
 
 class ConfirmedPoints:
-    """Points that are looked at, each once."""
+    """Confirmations of points, each computed once."""
 
     def __init__(
         self,
@@ -132,8 +135,10 @@ class ConfirmedPoints:
         return self.known[i][0]
 
     def _classify(self, i: int) -> Classification:
-        """The classification of the motion that the one known at the frequency of a point leads to, or the
-        point."""
+        """The classification of a point with further harmonics.
+
+        It is that of the motion to which the one known at its frequency leads, or else the point itself.
+        """
         z = self.z[i]
         motion = (
             self.motions.interpolate(self.system, z) if self.motions is not None and self.far[i] else None
@@ -145,7 +150,7 @@ class ConfirmedPoints:
         return self.multipliers.confirmation(z)
 
     def _may_look(self) -> bool:
-        """Whether another evaluation is left; it is taken then."""
+        """Whether another evaluation is left; if so it is taken."""
         self.limited |= self.evaluations_left < 1.0
         if self.limited:
             return False
@@ -154,12 +159,15 @@ class ConfirmedPoints:
         return True
 
     def _poll(self) -> None:
-        """Of many contacts, as a look takes long: multipliers of few may be those of another curve then."""
+        """Poll for an interruption, with many contacts: a look takes long.
+
+        Multipliers of few may be those of another curve then.
+        """
         if self.many:
             self.work.poll()
 
     def between(self, a: int, b: int, found: Mask) -> None:
-        """Fill found after a point up to another."""
+        """Fill found (point,) after point a up to point b."""
         if b - a == 1:
             found[b] = self.confirms(b)
             return
@@ -171,8 +179,9 @@ class ConfirmedPoints:
             self.between(middle, b, found)
 
     def along(self, near: int, last: int, found: Mask) -> None:
-        """Fill found up to the last point, as far as a motion leads that confirms the one near, or the next
-        that one does away from there.
+        """Fill found (point,) up to the last point, as far as a motion leads that confirms the one near.
+
+        If that does not, the next point away from there is tried.
 
         The frequency changes one way from there to the last point. The way to the next is shortened until the
         motion is found, and lengthened then.

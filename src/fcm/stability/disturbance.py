@@ -1,4 +1,4 @@
-"""How small disturbances of a periodic motion go on from one event to the next.
+"""Propagation of small disturbances of a periodic motion from one event to the next.
 
 Between two events no contact changes its state, and the disturbances of the modal coordinates, their rates by
 the angle and the places of the sliders obey
@@ -36,7 +36,9 @@ else:
 
 @cython.cclass
 class Stiffness:
-    """`at` a frequency, `assemble` states of the contacts; `make` then K (mode, mode), image (mode, contact).
+    """Stiffness of a structure with its contacts in given states, as disturbances see it.
+
+    `at` a frequency, `assemble` states of the contacts; `make` then K (mode, mode), image (mode, contact).
 
     damping (mode,) is the diagonal of D; rate bounds how fast the motion turns, per radian. Modes that follow
     without delay are given by their flexibility (port, port), with contacts in series.
@@ -69,7 +71,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def at(self, omega: cython.double) -> cython.int:
-        """Take a frequency."""
+        """Set the frequency."""
         i: cython.Py_ssize_t
         self.omega, self.made = omega, False
         for i in range(self.modes):
@@ -79,7 +81,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def assemble(self, state: cython.int[::1], key: bytes) -> cython.int:
-        """Take states of the contacts, known by a key; K, image and rate are made when they are needed."""
+        """Set the states of the contacts, known by a key; K, image and rate are made when they are needed."""
         self.made = False
         if not self.soft:
             self.contacts_alone(state)
@@ -96,7 +98,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def make(self) -> cython.int:
-        """Fill K, image and rate."""
+        """Fills K, image and rate, unless they are made already."""
         if not self.made:
             self.condense()
             self.modal()
@@ -104,14 +106,14 @@ class Stiffness:
         return 0
 
     def system(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """K, D (mode,) and image."""
+        """The matrices K, D (mode,) and image."""
         self.make()
         return np.asarray(self.K), np.asarray(self.damping), np.asarray(self.image)
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def contacts_alone(self, state: cython.int[::1]) -> cython.void:
-        """Forces on the ports S d - B w of the displacements d of the ports."""
+        """Fill S and B: forces on the ports are S d - B w, for displacements d of the ports."""
         c: cython.int
         self.S[:, :] = 0.0
         self.B[:, :] = 0.0
@@ -126,7 +128,9 @@ class Stiffness:
                 self.S[2 * c, 2 * c + 1] = -self.contact[c, 0] * self.contact[c, 2]
 
     def softened(self) -> tuple[FloatArray, ...]:
-        """S, B, and displacements of the ports by modes (mode, port) and by places (port, contact).
+        """The matrices S, B, and displacements of the ports by modes and by places of sliders.
+
+        The displacements are (mode, port) and (port, contact).
 
         In series with the flexibility C: d = P q - C (S d - B w) = T P q + W w.
         """
@@ -138,7 +142,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(check=False)
     def condense(self) -> cython.void:
-        """Forces of the ports on the modes, over omega^2."""
+        """Fill work with the forces of the ports on the modes, over omega^2."""
         c: cython.int
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -160,7 +164,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(check=False)
     def modal(self) -> cython.void:
-        """K, and the rate from two bounds of its eigenvalues.
+        """Fill K, and the rate from two bounds of its eigenvalues.
 
         They are the greatest sum of a row; and that of a mode alone, with the norm of what the contacts add.
         """
@@ -193,7 +197,7 @@ class Stiffness:
     def displacement(
         self, port: cython.Py_ssize_t, X: cython.double[:, ::1], out: cython.double[::1]
     ) -> cython.int:
-        """The displacement of a port, for the columns (q, q', w) of X."""
+        """Compute the displacement of a port for the columns (q, q', w) of X."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         weight: cython.double
@@ -254,7 +258,9 @@ class EigenExpansion:
     def grow(
         self, time: cython.double, part: cython.double[:, ::1], drive: cython.double[:, ::1]
     ) -> cython.void:
-        """The parts (2 values, column), of which the places drive some, or None, after a time.
+        """Replace the parts (2 values, column) by what they are after a time.
+
+        drive: the parts that the places drive, or None.
 
         What is driven grows by (exp(value time) - 1) / value, of no value by the time.
         """
@@ -274,7 +280,10 @@ class EigenExpansion:
 
 
 class Propagator:
-    """States by their keys, each seen once before it is decomposed."""
+    """Propagation through states of the contacts by their eigenvalues.
+
+    States are known by keys; each is seen once before it is decomposed.
+    """
 
     def __init__(self, options: PropagationOptions = STABILITY.propagation) -> None:
         self.options = options
@@ -319,7 +328,7 @@ class Propagator:
 
 
 def _decomposed(A: FloatArray, B: FloatArray, max_condition: float) -> EigenExpansion | None:
-    """None where the eigenvectors are nearly dependent."""
+    """The eigenvalue expansion of a system; None where the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
         unit = np.repeat([1.0, np.abs(values).max()], len(A) // 2)[:, None]  # of places and velocities
@@ -365,7 +374,9 @@ ORDER = cython.declare(cython.int, 10)  # of the series of the exponential: 0.25
 
 @cython.cclass
 class Disturbances:
-    """X: of (q, q', w) by rows, one disturbance in each of the first 2 modes + `memories` columns.
+    """Disturbances of a motion on their way through the states of its contacts.
+
+    X: of (q, q', w) by rows, one disturbance in each of the first 2 modes + `memories` columns.
 
     state are those of the contacts, of which `stiffness` has been assembled.
     """
@@ -387,15 +398,18 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def assemble(self) -> cython.int:
-        """Let `stiffness` take the states."""
+        """Assemble `stiffness` for the present states of the contacts."""
         self.key = self.states.tobytes()
         return self.stiffness.assemble(self.state, self.key)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate(self, length: cython.double) -> cython.int:
-        """X by the exponential, by the state's eigenvalues, or by a series in steps in which its terms do not
-        grow large; of those there are too many where a mode is far stiffer than the others."""
+        """Propagate X by the exponential, by the state's eigenvalues, or by a series in steps.
+
+        Steps are so short that the terms of the series do not grow large; there are too many where a mode is
+        far stiffer than the others.
+        """
         if self.size <= self.few:
             return self.propagate_by_squaring(length)
         s: Stiffness = self.stiffness
@@ -416,7 +430,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate_by_squaring(self, length: cython.double) -> cython.int:
-        """X by the rows of the exponential for (q, q'), from a short angle by squaring."""
+        """Propagate X by the exponential for the rows (q, q'), squared from a short angle."""
         m: cython.Py_ssize_t = self.modes
         n: cython.Py_ssize_t = self.size
         i: cython.Py_ssize_t
@@ -445,7 +459,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(check=False)
     def fill_system(self, length: cython.double) -> cython.void:
-        """A, the system times a length."""
+        """Fill A with the system times a length."""
         m: cython.Py_ssize_t = self.modes
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -462,7 +476,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def carry(self) -> cython.int:
-        """X by 1 + E, of the rows of (q, q'); the places of the sliders stay."""
+        """Multiply the rows (q, q') of X by 1 + E; the places of the sliders stay."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -481,7 +495,7 @@ class Disturbances:
     def product(
         self, left: cython.double[:, ::1], right: cython.double[:, ::1], factor: cython.double
     ) -> cython.int:
-        """F = factor left right, of the rows of (q, q')."""
+        """Fill F = factor left right, for the rows of (q, q')."""
         if self.modes * self.modes * self.size > self.blas_products:
             n: cython.Py_ssize_t = 2 * self.modes
             np.matmul(np.asarray(left)[:, :n], np.asarray(right)[:n], out=np.asarray(self.F))
@@ -504,7 +518,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def apply(self, h: cython.double) -> cython.int:
-        """One step: X plus the terms (A h)^j X / j!, A (q, q', w) = (q', image w - K q - D q', 0)."""
+        """Take one step: X plus the terms (A h)^j X / j!, A (q, q', w) = (q', image w - K q - D q', 0)."""
         m: cython.Py_ssize_t = self.modes
         columns: cython.Py_ssize_t = 2 * m + self.memories
         i: cython.Py_ssize_t
@@ -531,7 +545,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def add_stiffness(self, columns: cython.Py_ssize_t) -> cython.int:
-        """work = K q + D q' of the term (q, q')."""
+        """Fill work = K q + D q' of the term (q, q')."""
         m: cython.Py_ssize_t = self.modes
         K: cython.double[:, ::1] = self.stiffness.K
         big: cython.bint = m * m * columns > self.blas_products

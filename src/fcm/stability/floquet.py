@@ -17,7 +17,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class _WorkspaceCache(threading.local):
-    """The workspace that each thread used last, and what it is for."""
+    """The workspace for multipliers that each thread used last, with its key."""
 
     def __init__(self) -> None:
         self.key: tuple[object, ...] = ()
@@ -30,8 +30,11 @@ _WORKSPACES = _WorkspaceCache()
 def multipliers_of(
     system: System, highest: float, options: StabilityOptions = STABILITY
 ) -> Multipliers | HillMultipliers:
-    """The workspace for a system, be it a structure or a sector of a ring; the last one if it is small, and
-    the contacts alone are others, as in a sweep. Hill's method where a contact has a law of its own."""
+    """The workspace that computes the multipliers of a system's solutions.
+
+    The system may be a structure or a sector of a ring. The last workspace is used again if it is small, and
+    the contacts alone differ, as in a sweep. Where a contact has a law of its own it is by Hill's method.
+    """
     if system.own_laws:
         return HillMultipliers(system, options)
     if system.scene.ring is not None:

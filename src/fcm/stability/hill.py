@@ -32,16 +32,16 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class UnchangedMotion:
-    """The motion that is judged: that of the balance itself, with nothing added to it."""
+    """The motion of the balance itself, in the place of an enriched one: nothing is added to it."""
 
     shift = 0.0
 
     def at(self, z: FloatArray) -> None:
-        """Of a point z (unknown + 1,): nothing is to be done."""
+        """Take a point z (unknown + 1,): nothing is to be done."""
 
 
 class HillMultipliers:
-    """The multipliers of solutions of a system; a workspace, as `Multipliers` is."""
+    """Computes multipliers of a system's solutions by Hill's method; a workspace, as `Multipliers` is."""
 
     def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
         self.options = options
@@ -61,7 +61,7 @@ class HillMultipliers:
         self.modes, self.each = modes, each
 
     def of(self, z: FloatArray) -> list[complex] | None:
-        """The multipliers at z (unknown + 1,), twice as many as modes; None where they are not finite."""
+        """Multipliers at z (unknown + 1,), twice as many as modes; None where they are not finite."""
         from scipy.linalg import eig  # its import takes longer than most curves
 
         omega, stiffness = float(z[-1]), self._stiffness(z)
@@ -87,7 +87,7 @@ class HillMultipliers:
         return [*found, *again][: 2 * self.modes]
 
     def _off_centre(self, vectors: ComplexArray) -> FloatArray:
-        """The mean harmonic of disturbances (mode unknown, exponent), by their squares: (exponent,)."""
+        """Mean harmonic of each disturbance (mode unknown, exponent), by the squares: (exponent,)."""
         parts = vectors.reshape(self.modes, self.each, -1)
         ahead, behind = parts[:, 1::2] + 1j * parts[:, 2::2], parts[:, 1::2] - 1j * parts[:, 2::2]
         up, down = (np.sum(np.abs(0.5 * one) ** 2, axis=0) for one in (ahead, behind))
@@ -96,7 +96,7 @@ class HillMultipliers:
         return mean
 
     def _stiffness(self, z: FloatArray) -> FloatArray:
-        """P T P^T of the motion, (mode unknown, mode unknown)."""
+        """Stiffness of the contacts on the modes, P T P^T, (mode unknown, mode unknown)."""
         x = np.ascontiguousarray(self.system.layout.with_harmonics(z, self.system.harmonics, self.harmonics))
         ports, d, width = self.system.linear.ports, self.wide.directions, self.wide.width
         found = np.zeros((self.modes, self.each, self.modes, self.each))

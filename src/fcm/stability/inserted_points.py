@@ -30,12 +30,12 @@ class InsertedPoint(Frozen):
 
     @property
     def mark(self) -> int:
-        """What it is besides a point."""
+        """Mark of the point: none."""
         return Mark.NONE
 
     @property
     def frequency(self) -> float:
-        """[rad/s]"""
+        """Frequency of the point [rad/s]."""
         return float(self.z[-1])
 
 
@@ -49,7 +49,7 @@ class MultiplierCrossing(InsertedPoint):
 
     @property
     def mark(self) -> int:
-        """What it is besides a point."""
+        """Mark of the point: a crossing of multipliers."""
         return Mark.CROSSING
 
 

@@ -1,4 +1,4 @@
-r"""What becomes of a small disturbance of a motion with many contacts that slide in a plane, within a period.
+r"""Monodromy of motions with many contacts that slide in a plane: a small disturbance after a period.
 
 The equations are those of `planar_monodromy`, collocated at the same points. But the structure with the
 springs K of all contacts, as if they stuck, is put together once. With S the flexibility of the modes far
@@ -90,7 +90,7 @@ class ManyPlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def begin(self, omega: cython.double) -> cython.bint:
-        """Take a frequency, and the disturbances to be followed; false if they are too many."""
+        """Set the frequency and the initial disturbances; false if these are too many."""
         count, state = np.asarray(self.sequence.count), np.asarray(self.sequence.state)
         self.moving = np.flatnonzero((count > 1) | (state[:, 0] == SLIP))
         self.number = np.full(count.size, -1)
@@ -154,12 +154,12 @@ class ManyPlanarMonodromy(VariationalSteps):
 
     @cython.ccall
     def disturbances(self) -> FloatArray:
-        """The rows (q, q', memory) now."""
+        """The present disturbances, rows (q, q', memory)."""
         kept = np.array([self.memory[k, i] for k, i in self.remembered]).reshape(-1, self.columns)
         return np.concatenate((self.q, self.p, kept))
 
     def _arrange(self) -> None:
-        """Which contacts slip, are open, and stick, and what those do to one another."""
+        """Sort the contacts that slip, are open, and stick, and prepare what those do to one another."""
         self.poll()
         state, columns, m, s = np.asarray(self.state)[self.moving], self.columns, self.modes, self.stages
         slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
@@ -192,7 +192,7 @@ class ManyPlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def step(self, theta: cython.double, h: cython.double) -> cython.double:
-        """A step from an angle on; what it leaves out beside a disturbance, infinity where it is singular."""
+        """Take a step from an angle on; its error relative to a disturbance, infinity if singular."""
         if not self.arranged:
             self._arrange()
         i: cython.int
@@ -246,7 +246,10 @@ class ManyPlanarMonodromy(VariationalSteps):
                 self.relaxing[a, i, i] += self.pressed[i, a]
 
     def at_node(self, i: cython.int) -> cython.bint:
-        """`by`: by (q, s, disturbances), e . du - dr of contacts that slip, what s feels, forces on modes."""
+        """Fill `by` at a node; false where that is singular.
+
+        By (q, s, disturbances): e . du - dr of contacts that slip, what s feels, forces on modes.
+        """
         n: cython.int = self.slipping
         m: cython.int = self.modes
         a: cython.int
@@ -289,7 +292,7 @@ class ManyPlanarMonodromy(VariationalSteps):
         return condense(by, self.swapped_slips)
 
     def push_modes(self, i: cython.int) -> None:
-        """`by`: -K q is one of the forces on modes. `force`: these at a node, of q_0 and without slip."""
+        """Add the force -K q on the modes to `by`, and fill `force` at a node, of q_0 and without slip."""
         n: cython.int = self.slipping
         m: cython.int = self.modes
         a: cython.int
@@ -307,7 +310,10 @@ class ManyPlanarMonodromy(VariationalSteps):
                     self.force[i, a, j] += part * self.q[b, j]
 
     def equations_of_modes(self, h: float) -> None:
-        """`whole`: p + h A C p - h A (forces by q_0 + h A p, s, and disturbances) = p_0."""
+        """Fill the equations of the modes in `whole`.
+
+        p + h A C p - h A (forces by q_0 + h A p, s, and disturbances) = p_0.
+        """
         n: cython.int = self.slipping
         m: cython.int = self.modes
         s: cython.int = self.stages
@@ -344,7 +350,10 @@ class ManyPlanarMonodromy(VariationalSteps):
                 out[row, row] += 1.0
 
     def equations_of_slip(self, h: float) -> None:
-        """`whole`: relaxing s - what s feels of q_0 + h A p and s = what it feels of the rest, and s_0."""
+        """Fill the equations of slip in `whole`.
+
+        relaxing s - what s feels of q_0 + h A p and s = what it feels of the rest, and s_0.
+        """
         n: cython.int = self.slipping
         m: cython.int = self.modes
         s: cython.int = self.stages
@@ -377,7 +386,10 @@ class ManyPlanarMonodromy(VariationalSteps):
                         out[row, last + j] += part * self.q[b, j]
 
     def move(self, h: float) -> float:
-        """`q_new`, `p_new` at the end; the last coefficient of the velocities, beside the disturbances."""
+        """Fill `q_new`, `p_new` at the end of the step; return its error.
+
+        That is the last coefficient of the velocities, relative to the disturbances.
+        """
         m: cython.int = self.modes
         s: cython.int = self.stages
         first: cython.Py_ssize_t = s * (m + self.slipping)
@@ -409,7 +421,7 @@ class ManyPlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def accept(self) -> cython.int:
-        """The end of the step is where the disturbances are."""
+        """Take the end of the step for the present place of the disturbances."""
         n: cython.int = self.slipping
         m: cython.int = self.modes
         a: cython.int
@@ -450,7 +462,7 @@ class ManyPlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
-        """State i of a contact begins: what it remembers of the disturbances."""
+        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
         sequence, k = self.sequence, int(self.number[c])
         before, now, angle = int(self.state[c]), int(sequence.state[c, i]), float(sequence.begin[c, i])
         self.state[c], self.fresh[c] = now, now == SLIP and before == SEPARATION

@@ -1,4 +1,4 @@
-r"""What becomes of a small disturbance of a periodic motion within one period, slow or fast.
+r"""The monodromy matrix: what one period makes of a small disturbance of a periodic motion.
 
 Of a motion whose contacts' states are known over the period, a disturbance obeys linear equations with
 coefficients that are constant between the events. With modes of mass 1 and shapes P_u, P_v at the contacts,
@@ -80,7 +80,9 @@ LANES = 8  # columns beside one another in the widest registers; arrays have a m
 
 @cython.cclass
 class Monodromy(Disturbances):
-    """`follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
+    """Monodromy of few contacts on a line.
+
+    `follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
 
     Velocities are by the angle. Followed is the motion that the sequence is of.
     """
@@ -95,7 +97,7 @@ class Monodromy(Disturbances):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
-        """Fill the matrix for a frequency."""
+        """Compute the monodromy of the sequence of states at a frequency."""
         s: StateSequence = self.sequence
         i: cython.int
         e: cython.int
@@ -117,7 +119,10 @@ class Monodromy(Disturbances):
         return 0
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """(2 modes + memories, the same): only contacts that stick when the period begins remember."""
+        """The monodromy matrix, (2 modes + memories, the same).
+
+        Only contacts that stick when the period begins have a memory.
+        """
         c: cython.int
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -138,7 +143,7 @@ class Monodromy(Disturbances):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def begin(self) -> cython.int:
-        """The disturbances to be followed, before the first event."""
+        """Set the disturbances to be followed, before the first event."""
         i: cython.int
         j: cython.int
         c: cython.int
@@ -156,7 +161,7 @@ class Monodromy(Disturbances):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def apply_event(self, e: cython.int) -> cython.int:
-        """An event: what the slider remembers of the disturbance, and the new state."""
+        """Pass an event: set what the slider remembers of the disturbance, and the new state."""
         c: cython.int = self.sequence.whose[e]
         k: cython.Py_ssize_t
         row: cython.Py_ssize_t = 2 * self.modes + c
@@ -177,16 +182,19 @@ class Monodromy(Disturbances):
 
 
 class BySeries(Propagator):
-    """Carries nothing: through the short angles of a part of a period the series takes less time."""
+    """A propagator that carries nothing, so that the series is used.
+
+    Through the short angles of a part of a period it takes less time.
+    """
 
     def through(self, *_: object) -> bool:
-        """Whether it has carried anything."""
+        """Whether the disturbances were carried: never."""
         return False
 
 
 @cython.cclass
 class RingMonodromy(Monodromy):
-    """The monodromy of the contacts of all sectors, see `Monodromy`.
+    """Monodromy of the contacts of all sectors of a ring, see `Monodromy`.
 
     part is the angle that is followed; renumber (mode, mode) renumbers the sectors in modal coordinates, and
     source (contact,) is the contact whose slider has the place of each afterwards.
@@ -208,7 +216,7 @@ class RingMonodromy(Monodromy):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
-        """Fill the matrix for a frequency."""
+        """Compute the monodromy of the sequence of states at a frequency."""
         s: StateSequence = self.sequence
         i: cython.int
         e: cython.int
@@ -233,7 +241,7 @@ class RingMonodromy(Monodromy):
     @cython.cfunc
     @cython.exceptval(check=False)
     def widest(self) -> cython.void:
-        """Begin in the middle of the widest gap between events, so that none is at the ends."""
+        """Let the period begin in the middle of the widest gap between events: none is at its ends."""
         s: StateSequence = self.sequence
         i: cython.int
         widest: cython.double = -1.0
@@ -249,7 +257,7 @@ class RingMonodromy(Monodromy):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def begin(self) -> cython.int:
-        """The disturbances to be followed, and the states at the start."""
+        """Set the disturbances to be followed, and the states at the start."""
         s: StateSequence = self.sequence
         i: cython.int
         c: cython.int
@@ -270,7 +278,10 @@ class RingMonodromy(Monodromy):
         return self.assemble()
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """(2 modes + memories, the same): only contacts that stick at the start remember."""
+        """The monodromy matrix, (2 modes + memories, the same).
+
+        Only contacts that stick at the start have a memory.
+        """
         m: cython.Py_ssize_t = self.modes
         columns: cython.Py_ssize_t = 2 * m + self.memories
         X = np.asarray(self.X)[:, :columns]
@@ -300,7 +311,9 @@ def add_products(
 
 @cython.cclass
 class ManyMonodromy:
-    """`follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
+    """Monodromy of many contacts on a line.
+
+    `follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
 
     Velocities are by the angle; of the places w those that are remembered when the period begins.
 
@@ -339,7 +352,7 @@ class ManyMonodromy:
         self.allocate(2 * self.modes, 0)
 
     def with_springs(self) -> npt.NDArray[np.float64]:
-        """[[-K, V], [U, G]] where all contacts stick, of modes and then tangential and normal ports."""
+        """The matrix [[-K, V], [U, G]] of modes, tangential and normal ports, where all contacts stick."""
         flexibility = (self.following.T * self.stiff**-2.0) @ self.following
         order, m = _by_direction(np.arange(self.contacts)), self.modes
         k_u, k_v = np.asarray(self.contact).T[1:3]
@@ -351,7 +364,7 @@ class ManyMonodromy:
         return np.block([[-K, found[:, :m].T], [found]])
 
     def allocate(self, columns: int, moving: int) -> None:
-        """Arrays for so many disturbances, and contacts that move."""
+        """Allocate arrays for numbers of disturbances, and of contacts that move."""
         self.columns, self.moving, wide = columns, moving, -(-columns // LANES) * LANES
         self.by_modes = self.soft and len(self.following) < moving
         self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, wide))
@@ -366,7 +379,7 @@ class ManyMonodromy:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
-        """Take a period at a frequency [rad/s]."""
+        """Compute the monodromy of the sequence of states at a frequency [rad/s]."""
         s: StateSequence = self.sequence
         i: cython.int
         k: cython.int
@@ -393,12 +406,12 @@ class ManyMonodromy:
         return self.apply_event(s.order[self.first])
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """(2 modes + memories, the same)."""
+        """The monodromy matrix, (2 modes + memories, the same)."""
         w = np.asarray(self.w)[self.remembering]
         return np.vstack((np.asarray(self.q), np.asarray(self.v), w))[:, : self.columns]
 
     def begin(self) -> None:
-        """The disturbances, the states and the matrices when the period begins."""
+        """Set the disturbances, the states and the matrices at the begin of the period."""
         s = self.sequence
         order, whose = np.asarray(s.order)[: s.events], np.asarray(s.whose)[: s.events]
         into = np.asarray(s.into)[: s.events]
@@ -447,7 +460,9 @@ class ManyMonodromy:
             column += 1
 
     def assemble(self, state: npt.NDArray[np.intc], moving: npt.NDArray[np.intp]) -> None:
-        """All of the matrices, for states of the contacts; stiffnesses over omega^2: all is by the angle.
+        """Assemble all matrices for states of the contacts.
+
+        Stiffnesses are over omega^2: all is by the angle.
 
         lower is [U, G], and upper V, of the ports of moving contacts, or of the modes that follow.
         """
@@ -494,7 +509,7 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def apply_event(self, e: cython.int) -> cython.int:
-        """An event: what the slider remembers of the disturbance, and the new state."""
+        """Pass an event: set what the slider remembers of the disturbance, and the new state."""
         c: cython.int = self.sequence.whose[e]
         to: cython.int = self.sequence.into[e]
         was: cython.int = self.state[c]
@@ -612,7 +627,7 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(check=False)
     def flexibility(self, r: cython.Py_ssize_t, at: cython.Py_ssize_t) -> cython.double:
-        """G between a port whose rows were found, and one at a place."""
+        """Flexibility G between a port whose rows were found, and the one at a place."""
         i: cython.Py_ssize_t
         found: cython.double = 0.0
         if not self.soft:
@@ -626,7 +641,7 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(check=False)
     def find_rate(self) -> cython.void:
-        """How fast the motion turns, at most."""
+        """Bound the rate at which the motion turns."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         rows: cython.double = 0.0
@@ -642,7 +657,10 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(check=False)
     def propagate(self, length: cython.double) -> cython.void:
-        """The disturbances after an angle, by a series in steps in which its terms do not grow large."""
+        """Propagate the disturbances through an angle by a series in steps.
+
+        They are so short that the terms of the series do not grow large.
+        """
         i: cython.int
         steps: cython.int = cython.cast(cython.int, ceil(self.rate * length / self.step_radians))
         steps = max(steps, 1)
@@ -652,7 +670,7 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(check=False)
     def apply(self, h: cython.double) -> cython.void:
-        """One step: the terms (A h)^j / j! of (q, q')' = (q', g - K q - D q')."""
+        """Take one step: add the terms (A h)^j / j! of (q, q')' = (q', g - K q - D q')."""
         order: cython.int = 0
         size: cython.double = 1.0
         share: cython.double
@@ -685,12 +703,12 @@ class ManyMonodromy:
 @cython.cfunc
 @cython.exceptval(check=False)
 def _side(state: cython.int) -> cython.double:
-    """Sign by which the load adds to the friction force."""
+    """Sign with which the load adds to the friction force: 0 without slip."""
     return 1.0 if state == POSITIVE else -1.0 if state == NEGATIVE else 0.0
 
 
 def _by_direction(contacts: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """The tangential ports of some contacts, then the normal ones, where each has both in turn.
+    """Indices of the tangential ports of some contacts, then of their normal ones.
 
     >>> _by_direction(np.array([0, 2])).tolist()
     [0, 4, 1, 5]

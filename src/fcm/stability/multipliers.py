@@ -1,4 +1,4 @@
-r"""Floquet multipliers of a balanced solution, and what they say of its stability.
+r"""Floquet multipliers of a balanced solution, and the classification of its stability by them.
 
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
 motion. Its motion is the `EnrichedMotion` one; that of the harmonics balanced alone tells how sure the
@@ -45,16 +45,18 @@ from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
 
 
 class VariationalProblem(NamedTuple):
-    """A balanced motion by its states, and what follows its disturbances through them."""
+    """The states of a balanced motion, and the monodromy that follows its disturbances through them."""
 
     states: BalancedSequence | PlanarSequence
     monodromy: Monodromy | ManyMonodromy | PlanarMonodromy | ManyPlanarMonodromy
 
 
 class _MotionSample(NamedTuple):
-    """A solution that was looked at, and its finer motion x: whether it is a fold, and without_neighbour; how
-    much the finer motion adds, contacts of that which are held, see `Classification`, and the monodromy
-    matrix of that."""
+    """A solution z, its finer motion x, and the monodromy matrix of that.
+
+    Whether it is a fold, and without_neighbour; shift: how much the finer motion adds; held: contacts of that
+    which are held, see `Classification`.
+    """
 
     z: FloatArray
     x: FloatArray
@@ -66,12 +68,12 @@ class _MotionSample(NamedTuple):
 
 
 class Multipliers:
-    """The multipliers of solutions of a system up to a frequency [rad/s]; a workspace."""
+    """Computes the multipliers of a system's solutions up to a frequency [rad/s]; a workspace."""
 
     def __init__(
         self, system: System, highest: float, last: bool = False, options: StabilityOptions = STABILITY
     ) -> None:
-        """The last balances no further harmonics where the finer motion leaves a classification uncertain."""
+        """last: whether no further harmonics are balanced where a classification is uncertain."""
         linear, self.options = system.linear, options
         self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
@@ -101,7 +103,7 @@ class Multipliers:
         )
 
     def take(self, system: System) -> None:
-        """A system with the same structure and harmonics, whose contacts may be others."""
+        """Take another system with the same structure and harmonics, whose contacts may differ."""
         same = system.scene.frequency_range == self.system.scene.frequency_range and not system.scene.loads
         self.system, self.further = system, self.further if same else None
         before = self.contact[:, :3].copy()
@@ -113,7 +115,7 @@ class Multipliers:
             self.fine, self.plain = self._followed()
 
     def _followed(self) -> list[VariationalProblem]:
-        """The finer motion and that of the balanced harmonics."""
+        """The variational problems of the finer motion and of that of the balanced harmonics."""
         fine, plain = self.states
         if isinstance(fine, BalancedSequence) and isinstance(plain, BalancedSequence):
             make = (
@@ -133,16 +135,16 @@ class Multipliers:
         self.system.work.poll()  # of now, which may be another later
 
     def of(self, z: FloatArray) -> list[complex] | None:
-        """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
+        """Multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
         return self._values(self.fine, z[-1]) if self.find_states(self.fine.states, self.finer.x) else None
 
     def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
-        """Let states look at the motion x; false where a number is not finite."""
+        """Find the states of the contacts in the motion x; false where a number is not finite."""
         return bool(states.find_events(x))
 
     def of_period(self, values: list[complex]) -> list[complex]:
-        """The multipliers of a period from the eigenvalues of what the monodromy follows."""
+        """Multipliers of a period from the eigenvalues of the monodromy matrix."""
         return values
 
     def classify(
@@ -168,7 +170,10 @@ class Multipliers:
         without_neighbour: Sequence[bool],
         sufficient: Sequence[float] = (),
     ) -> list[Classification]:
-        """The same of several solutions (unknown + 1,): LAPACK is called once for as many as can be held."""
+        """Classifications of several solutions (unknown + 1,), as `classify` gives them.
+
+        LAPACK is called once for as many as can be held.
+        """
         found, count = list[Classification](), 0
         while count < len(z):
             samples, entries = list[_MotionSample | Classification](), 0
@@ -183,7 +188,7 @@ class Multipliers:
     def _sample(
         self, z: FloatArray, at_fold: bool, without_neighbour: bool
     ) -> _MotionSample | Classification:
-        """At a solution and its finer motion; the classification where no multipliers are needed for it."""
+        """A sample of a solution and its finer motion; its classification where that needs no multipliers."""
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
         if self.finer.shift < self.options.confirmation.min_addition:
@@ -204,8 +209,7 @@ class Multipliers:
     def _classify_samples(
         self, samples: Sequence[_MotionSample | Classification], sufficient: Sequence[float]
     ) -> list[Classification]:
-        """The classifications, which the motion of the balanced harmonics alone confirms where that may
-        matter."""
+        """Classifications of samples, confirmed by the balanced harmonics where that may matter."""
         seen = [one for one in samples if isinstance(one, _MotionSample)]
         fine = dict(zip(map(id, seen), self._spectra([one.matrix for one in seen]), strict=True))
         known, left = dict[int, Classification](), list[_MotionSample]()
@@ -227,7 +231,7 @@ class Multipliers:
     def _from_finer(
         self, one: _MotionSample, fine: MultiplierSpectrum | None, sufficient: Sequence[float]
     ) -> Classification | None:
-        """What the finer motion alone says; None where that is to be confirmed."""
+        """The classification by the finer motion alone; None where that is to be confirmed."""
         if fine is None:
             return UNKNOWN
         finer, options = fine.classify(one.at_fold), self.options.confirmation
@@ -244,7 +248,7 @@ class Multipliers:
     def _of_both(
         self, one: _MotionSample, fine: MultiplierSpectrum | None, plain: MultiplierSpectrum | None
     ) -> Classification:
-        """What both motions say.
+        """The classification by the finer motion and that of the balanced harmonics.
 
         What the one does not confirm, or only just, is that of a motion with the further harmonics balanced
         too, which may be the last.
@@ -276,7 +280,10 @@ class Multipliers:
         times: float,
         one: _MotionSample,
     ) -> bool:
-        """As `is_uncertain`, but for a pair that decays also where it meets at -1."""
+        """Whether a classification may change; not by a pair that decays where it meets at -1.
+
+        Otherwise as `is_uncertain`.
+        """
         if not is_uncertain(found, fine, plain, times, options=self.options):
             return False
         return is_uncertain(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
@@ -324,7 +331,7 @@ class Multipliers:
         return None if found is None else found._replace(rebalanced=True)
 
     def _further(self) -> tuple[Rebalancing, Multipliers]:
-        """What balances the harmonics of the finer motion, and the multipliers of that."""
+        """The balance with the harmonics of the finer motion, and the multipliers of that."""
         if self.further is None:
             refined = Rebalancing(
                 self.system, enriched_harmonics([int(h) for h in self.system.harmonics]), self.options
@@ -356,7 +363,10 @@ class Multipliers:
     def continued(
         self, z: FloatArray, motion: FloatArray, harmonics: tuple[int, ...] | None = None
     ) -> Classification:
-        """The same of the motion to which another one with further harmonics leads, or with some others."""
+        """The classification of the motion to which another one with further harmonics leads.
+
+        harmonics: those of that motion, if they are others.
+        """
         refined, multipliers = self._further()
         if harmonics is not None:
             motion = refined.system.extended(motion, harmonics)
@@ -364,8 +374,11 @@ class Multipliers:
         return UNKNOWN if there is None else self._classify_if_sufficient(multipliers, there) or UNKNOWN
 
     def _classify_if_sufficient(self, multipliers: Multipliers, z: FloatArray) -> Classification | None:
-        """Of a motion with further harmonics. Where those beyond its own add more than the most to it, it
-        errs as much as what it is to confirm: then of one with these balanced, too; None where none tells."""
+        """The classification of a motion with further harmonics; None where none tells.
+
+        Where the harmonics beyond its own add more than `max_addition` to it, it errs as much as what it is
+        to confirm. Then it is that of a motion with these balanced, too.
+        """
         multipliers.finer.at(z)
         if multipliers.finer.shift <= self.options.confirmation.max_addition:
             return multipliers.classify(z)
@@ -374,7 +387,7 @@ class Multipliers:
         return multipliers._rebalanced(z, np.array(multipliers.finer.x), persistent=True)
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
-        """The monodromy matrix of the motion that was looked at."""
+        """The monodromy matrix of the motion whose states were found last."""
         # that of many contacts takes long; what looks at few is shared, and what is polled may look with it
         if self.contacts >= self.options.structure.many_contacts:
             self.system.work.poll()
@@ -383,13 +396,13 @@ class Multipliers:
         return found
 
     def _values(self, followed: VariationalProblem, omega: float) -> list[complex] | None:
-        """The multipliers of the motion that was looked at."""
+        """The multipliers of the motion whose states were found last; None where they are not finite."""
         matrix = self._matrix(followed, omega)
         found = None if matrix is None else eigenvalues((matrix,))[0]
         return None if found is None else self._without_neutral(found)
 
     def _spectra(self, matrices: Sequence[FloatArray | None]) -> list[MultiplierSpectrum | None]:
-        """The spectrum of each; None of those of which it is not known."""
+        """Spectra of monodromy matrices; None for each that is not known."""
         known = iter(eigenvalues([one for one in matrices if one is not None]))
         each = (None if one is None else next(known) for one in matrices)
         return [
@@ -398,7 +411,7 @@ class Multipliers:
         ]
 
     def _without_neutral(self, found: list[complex]) -> list[complex]:
-        """The multipliers of a period, without those of what nothing holds."""
+        """Multipliers of a period without those of rigid-body modes that nothing holds."""
         values = self.of_period(found)
         for _ in range(2 * self.has_rigid_body_modes):
             nearest = min(values, key=_distance_from_one)
@@ -407,7 +420,7 @@ class Multipliers:
         return values
 
     def _with_sliders_at_rest(self, one: _MotionSample) -> Classification:
-        """With the sliders that an extreme of a limit holds left where they are."""
+        """The classification with the sliders at rest that an extreme of a limit holds."""
         states = self.fine.states
         states.yielding = False
         self.find_states(states, one.x)
@@ -423,7 +436,7 @@ def _few_contacts(
     states: Sequence[BalancedSequence],
     options: StabilityOptions,
 ) -> list[VariationalProblem]:
-    """Each state of the contacts put together anew."""
+    """Variational problems of few contacts: each combination of states is assembled anew."""
     linear = system.linear
     soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
     stiffness = Stiffness(
@@ -441,7 +454,7 @@ def _many_contacts(
     states: Sequence[BalancedSequence],
     options: StabilityOptions,
 ) -> list[VariationalProblem]:
-    """Each change of one contact's state as that."""
+    """Variational problems of many contacts: each change of one contact's state is followed on its own."""
     linear, near = system.linear, ~far
     following = combined(
         linear.ports[far], linear.natural[far], contact[:, 1:3].ravel(), options.structure.min_yield
@@ -464,7 +477,7 @@ def quasi_static_modes(
     planar: bool,
     options: StabilityOptions = STABILITY,
 ) -> npt.NDArray[np.bool_]:
-    """Which of many modes are so far above the excitation that they follow without delay.
+    """Mask (mode,) of the modes so far above the excitation that they follow without delay: of many modes.
 
     With contacts in a plane also of few: steps would have to resolve each of their vibrations.
     """

@@ -10,22 +10,23 @@ from fcm.frozen import Frozen
 
 
 class ClassificationOptions(Frozen):
-    """What multipliers say of one solution.
+    """Options on what multipliers say of one solution.
 
     Attributes
     ----------
     growth_tolerance : float
-        Of a multiplier over 1, up to which a motion is stable.
+        Growth, the logarithm of the largest multiplier's size, up to which a motion counts as stable.
     real_uncertainty : float
-        Logarithm of a real multiplier that truncation may put on the wrong side of 1 in any case.
+        Logarithm of a real multiplier up to which truncation may have put it on the wrong side of 1.
     shift_factor : float
-        Times the shift of one from the balanced harmonics to more, which may be on the wrong side, too.
+        Logarithm of a real multiplier, relative to its shift between the balanced harmonics and more, up to
+        which it may be on the wrong side of 1. The larger of both limits holds.
     flip_angle : float
-        [rad] from -1, within which a pair is followed as it passes, as modes flip there.
+        [rad] Angle from -1 within which a pair of multipliers is followed closely: there modes flip.
     small_multiplier : float
-        Multipliers below are far from growth, wherever they turn.
+        Size of a multiplier below which it is far from growth, wherever it turns.
     neutral_tolerance : float
-        Distance from 1 of the multipliers of a mode of zero frequency that nothing holds.
+        Distance from 1 below which the multipliers of an unconstrained mode of zero frequency are left out.
     """
 
     growth_tolerance: float = 1e-7
@@ -42,24 +43,28 @@ class StructureOptions(Frozen):
     Attributes
     ----------
     many_modes : int
-        With more, those far above the excitation follow without delay.
+        Number of modes above which those far above the excitation are taken to follow without delay.
     many_contacts : int
-        From so many on a change of one's state is followed as that.
+        Number of contacts from which on each change of one contact's state is followed on its own.
     flexible_contacts : int
-        The same of contacts in a plane, where some modes follow without delay.
+        Number of contacts in a plane from which on each change of one contact's state is followed on its own,
+        where some modes follow without delay.
     above_excitation, above_harmonics : float
-        Times the excitation, and times the highest harmonic, from where modes are far.
+        Frequency of a mode above which it is far, relative to the excitation, and relative to its highest
+        harmonic; the larger limit holds.
     above_of_few : float
-        Times that, with fewer modes, and contacts in a plane.
+        Factor on that limit where modes are few and contacts in a plane.
     min_yield : float
-        Of many contacts' springs, by which the structure yields along a combination of modes that are far:
-        along others it is taken as rigid.
+        Compliance of the far modes along a combination of contacts, relative to their springs, up to which
+        the structure is taken as rigid along it.
     max_cached : int
-        Disturbances; with fewer the last workspace is used again.
+        Number of disturbances up to which the last workspace is used again.
     max_entries : int
-        Entries of the matrices of points that are held at once, whose eigenvalues are found together.
+        Number of matrix entries from which on no further point is added to those whose eigenvalues are found
+        together.
     max_disturbances : int
-        Of the sectors of a ring; with more a point takes seconds, and stability is unknown.
+        Most disturbances of the sectors of a ring. With more a point takes seconds, and stability is reported
+        as unknown.
     """
 
     many_modes: int = 24
@@ -80,40 +85,40 @@ class ConfirmationOptions(Frozen):
     Attributes
     ----------
     safe_decay : float
-        Logarithm in a period, which truncation hardly makes a growth.
+        Decay in a period, as a logarithm, that truncation hardly turns into growth: it needs no confirmation.
     decay_ratio : float
-        Times what further harmonics add to the displacements, that such a decay also is; light impacts
-        make that of it.
+        Decay in a period relative to what further harmonics add to the displacements, which needs no
+        confirmation: light impacts turn as much of it into growth. The larger limit holds.
     growth_ratio : float
-        The same of a growth that truncation may have made.
+        Growth in a period, relative to what further harmonics add, up to which truncation may have made it.
     min_addition : float
-        Part of the displacements that further harmonics add; less may be none.
+        Addition of further harmonics, relative to the displacements, below which a motion may have none.
     frequency_step : float
-        Relative change of the frequency, by which it is found how fast a pair turns towards -1.
+        First relative change of the frequency that shows how fast a pair of multipliers turns towards -1.
     max_frequency_change : float
-        Change of the frequency until it meets there.
+        Relative change of the frequency within which the pair has to meet at -1: otherwise it does not.
     max_evaluations : int
-        Until then.
+        Most frequencies at which that is computed.
     meeting_tolerance : float
-        Square of the angle [rad] that is then left.
+        Square of the pair's angle [rad] from -1, below which it counts as met.
     meeting_decay : float
-        Logarithm of the decay there.
+        Decay in a period, as a logarithm, that the pair needs where it meets, to stay stable.
     tolerance : float
-        Part of the way to a solution of many contacts with more harmonics, to which that is known.
+        Error of a solution of many contacts with more harmonics, relative to the way to it.
     max_change : float
-        Of a solution's size; one with more harmonics that is further away is another.
+        Distance of a solution with more harmonics, relative to its size, above which it is another one.
     homotopy_parts : tuple of float
-        Of the further harmonics' equations, where all at once are too much.
+        Parts of the further harmonics' equations, in turn, where all at once are too much.
     max_unknowns : int
-        From so many on these are not tried.
+        Number of further unknowns from which on these parts are not tried.
     point_interval : int
-        Points from one that is looked at to the next, of few contacts; between them the middle is, too, and
-        more where the growth is not on a line.
+        Number of points from one that is confirmed to the next, where contacts are few. The middle between
+        them is confirmed, too, and more where the growth does not lie on a line.
     max_fraction_of_many : float
-        Points of a curve of many contacts that are looked at, at most, over all that it has: the others are
-        not confirmed.
+        Number of confirmed points of a curve of many contacts, relative to all its points, at most. The
+        others are not confirmed.
     max_addition : float
-        Part of the displacements that the harmonics beyond the further ones may add to a motion that
+        Addition of the harmonics beyond the further ones, relative to the displacements, up to which a motion
         confirms.
     """
 
@@ -141,24 +146,27 @@ class WindowOptions(Frozen):
     Attributes
     ----------
     margin : float
-        Part of the differences between three values, by which what they foretell may be too high.
+        Error of a predicted minimum, relative to the differences between the three values that predict it.
     margin_reduction : float
-        Of it, each time that the way was divided, as differences fall by squares and errors by cubes.
+        Factor on that margin for each division of the way, as differences fall by squares and errors by
+        cubes.
     max_multipliers : int
-        With more, two are always about to meet.
+        Number of multipliers above which no window is looked for: two are then always about to meet.
     min_size : float
-        Of multipliers that matter.
+        Size of a multiplier up to which it is left out.
     min_length : float
-        A way, relative to the size of the solution, that is not divided.
+        Length of a way, relative to the size of the solution, below which it is not divided.
     min_distance : float
-        Part of the way between two places; none nearer to one of them is looked at, but a window may
-        begin there.
+        Distance of a new place from the two around it, relative to theirs, at least; a window may begin
+        nearer to one of them.
     max_divisions : int
-        Divisions of a way, at most.
+        Most divisions of a way between two points.
     edge_distance : float
-        Part of a step; between places nearer than this the edge of a window is not looked for.
+        Distance of two places, relative to the step, up to which no edge of a window is looked for between
+        them.
     angle_factor, angle_margin : float
-        Times the angle by which multipliers turn, and [rad], by which two may come nearer to one another.
+        Angle by which two multipliers may come nearer to one another: this factor on the angle by which
+        multipliers turn, plus this margin [rad].
     """
 
     margin: float = 0.1
@@ -174,35 +182,38 @@ class WindowOptions(Frozen):
 
 
 class SamplingOptions(Frozen):
-    """Which points of a path are looked at, and where stability changes between them.
+    """Options on which points of a path are looked at, and where stability changes between them.
 
     Attributes
     ----------
     interval_one_harmonic : int
-        Points of one harmonic, from one that is always looked at to the next.
+        Number of points from one that is always classified to the next, with one harmonic.
     interval_several_harmonics : int
-        Of more, as the growth jumps where a contact's states change.
+        Number of points from one that is always classified to the next, with several harmonics, where the
+        growth jumps as a contact's states change.
     interval_many_contacts : int
-        Of many contacts with more harmonics, of which each changes the growth by little.
+        Number of points from one that is always classified to the next, with many contacts and several
+        harmonics: each contact changes the growth by little.
     max_deviation : float
-        Of the growth from a straight line, over its own size, that is followed up.
+        Deviation of the growth at a middle point from a straight line, relative to its size, from which on
+        more points are classified.
     safe_growth : float
-        Growth; less is not followed up.
+        Growth below which such a deviation is ignored.
     sufficient_decay : float
-        Growth that counts as any that is less.
+        Growth that stands for any smaller one.
     max_phase : float
-        [rad] by which multipliers that are not small turn at most, from one point to the next.
+        [rad] Angle by which multipliers that are not small may turn from one classified point to the next.
     tolerance : float
-        Part of a step, to which a crossing is known.
+        Error of the place of a crossing, relative to the step.
     confirmed_tolerance : float
-        The same where classifications are confirmed and the growth jumps, as it may from one motion to a
-        finer one.
+        Error of the place of a crossing, relative to the step, where classifications are confirmed and the
+        growth jumps, as it may from one motion to a finer one.
     growth_tolerance : float
-        Growth at a crossing.
+        Size of the growth below which a crossing is found.
     max_evaluations : int
-        At a crossing, at most.
+        Most classifications for one crossing.
     sign_change : SignChangeOptions
-        How it is bracketed.
+        How the crossing is bracketed.
     """
 
     interval_one_harmonic: int = 16
@@ -220,14 +231,14 @@ class SamplingOptions(Frozen):
 
 
 class HillOptions(Frozen):
-    """Hill's method, of contacts with laws of one's own.
+    """Hill's method, which stands for the monodromy matrix where contacts have laws of one's own.
 
     Attributes
     ----------
     min_offset : float
-        Mean harmonic of a disturbance, from which on another one may be the same.
+        Mean harmonic of a disturbance above which it may be a copy of another, shifted by whole harmonics.
     multiplier_tolerance : float
-        Relative difference of the multipliers of two that are.
+        Relative difference of the multipliers of two disturbances, below which one is such a copy.
     """
 
     min_offset: float = 0.25
@@ -235,22 +246,39 @@ class HillOptions(Frozen):
 
 
 class PlanarStabilityOptions(Frozen):
-    """How disturbances of contacts in a plane are followed.
+    """Options on how disturbances of contacts in a plane are followed.
 
-    stages, stages_of_many: Radau's points of a step, of few and of many contacts. tolerance: of the
-    velocities' last coefficient in Legendre's polynomials over a step, beside the size of a disturbance;
-    multipliers err by about a thousandth of it. tolerance_of_many: the same of many contacts, of which
-    multipliers err by about a hundredth. coefficient_floor: of the last coefficient but one, what the last
-    is taken for at least, as it may vanish by chance. end_factor: times the tolerance, what steps may leave
-    out that end where a slipping contact opens, or begin where it closes. max_step: step [rad]. min_factor,
-    max_factor, safety: limits of the ratio of two steps, and what it is multiplied by. max_retry_factor: the
-    same limit of a step that is taken again, shorter. min_step: [rad]; where none as short will do, stability
-    is unknown.
-
-    max_disturbances, most_of_many: disturbances that are followed, of few and of many contacts; with more,
-    stability is unknown. initial_panels: of slip that are recorded for a contact at first. event_tolerance:
-    [rad] between events that are one, as those of contacts that mirror one another are; multipliers err by
-    about as much. min_gap: [rad] between events, from where on a period may begin between them.
+    Attributes
+    ----------
+    stages, stages_of_many : int
+        Number of Radau points of a step, with few contacts and with many.
+    tolerance : float
+        Last Legendre coefficient of the velocities over a step, relative to the size of a disturbance, up to
+        which the step is accepted. Multipliers err by about a thousandth of it.
+    tolerance_of_many : float
+        Last Legendre coefficient, as for `tolerance`, with many contacts, where multipliers err by about a
+        hundredth of it.
+    coefficient_floor : float
+        Least value taken for that coefficient, relative to the last but one: it may vanish by chance.
+    end_factor : float
+        Factor on the tolerance for steps that end where a slipping contact opens, or begin where one closes.
+    max_step : float
+        [rad] Longest step.
+    min_factor, max_factor, safety : float
+        Least and greatest ratio of a step to the one before, and the factor on what the tolerance allows.
+    max_retry_factor : float
+        Greatest ratio of a rejected step's next attempt to it.
+    min_step : float
+        [rad] Shortest step; where none as short is accepted, stability is unknown.
+    max_disturbances, most_of_many : int
+        Most disturbances that are followed, with few contacts and with many; with more, stability is unknown.
+    initial_panels : int
+        Number of panels of slip that are recorded for a contact at first.
+    event_tolerance : float
+        [rad] Distance of two events up to which they are one, as those of contacts that mirror one another
+        are. Multipliers err by about as much.
+    min_gap : float
+        [rad] Distance of two events above which a period may begin between them.
     """
 
     stages: int = 5
@@ -273,26 +301,27 @@ class PlanarStabilityOptions(Frozen):
 
 
 class PropagationOptions(Frozen):
-    """How disturbances of contacts on a line are carried through a state of the contacts.
+    """Options on how disturbances of contacts on a line are propagated between changes of state.
 
     Attributes
     ----------
     max_states, max_numbers : int
-        States of the contacts that are remembered, and the numbers that their matrices may have.
+        Most states of the contacts whose matrices are kept, and most numbers in these matrices.
     max_condition : float
-        Of the eigenvectors of a state; worse ones are not used.
+        Condition number of the eigenvectors of a state above which they are not used.
     step_radians, step_radians_of_many : float
-        [rad] of the fastest motion in a step of the series; and with many contacts.
+        [rad] Angle of the fastest motion in a step of the series, with few contacts and with many.
     series_tolerance : float
         Bound of the last term of the series, relative to the first.
     blas_products : int
-        Products of a matrix from which on BLAS is faster.
+        Number of multiplications of a matrix product above which it is left to BLAS.
     max_steps : float
-        Steps that take longer than to square the exponential.
+        Number of steps of the series above which the matrix exponential is squared instead.
     few_disturbances : int
-        Up to which the exponential itself is made, by squaring.
+        Number of disturbances up to which the matrix exponential itself is computed, by squaring.
     squared_radians : float
-        [rad] of the fastest motion, from which it is squared. Its series has ten terms, complete at 0.25.
+        [rad] Angle of the fastest motion above which the exponential is squared. Its series has ten terms,
+        complete at 0.25.
     """
 
     max_states: int = 256
@@ -308,7 +337,7 @@ class PropagationOptions(Frozen):
 
 
 class StabilityOptions(Frozen):
-    """All of the package, by what they are for: see the class of each field."""
+    """All options of stability, grouped by purpose; see the class of each field."""
 
     classification: ClassificationOptions = ClassificationOptions()
     structure: StructureOptions = StructureOptions()

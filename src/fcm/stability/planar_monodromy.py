@@ -1,4 +1,4 @@
-r"""What becomes of a small disturbance of a motion whose contacts slide in a plane, within one period.
+r"""The monodromy matrix of a motion whose contacts slide in a plane.
 
 It is carried from event to event, in steps as long as polynomials resolve its velocities. What a step does,
 and an event, is for `PlanarMonodromy` and `ManyPlanarMonodromy` to say.
@@ -49,7 +49,9 @@ else:
 
 @cython.cclass
 class VariationalSteps:
-    """`follow` a sequence: `matrix` is then the derivative of (q, q', memory) after a period by that before.
+    """Steps of disturbances through a sequence of states of contacts in a plane.
+
+    `follow` a sequence: `matrix` is then the derivative of (q, q', memory) after a period by that before.
 
     Velocities are by the angle.
 
@@ -81,43 +83,46 @@ class VariationalSteps:
         self.filled = np.zeros((0, 0))
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """(2 modes + memories, the same); of more disturbances than the options allow, not a number."""
+        """The monodromy matrix, (2 modes + memories, the same).
+
+        It is nan where there are more disturbances than the options allow.
+        """
         found: npt.NDArray[np.float64] = self.filled
         return found
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def begin(self, omega: cython.double) -> cython.bint:
-        """Take a frequency, and the disturbances to be followed; false if they are too many."""
+        """Set the frequency and the initial disturbances; false if these are too many."""
         raise NotImplementedError
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def step(self, theta: cython.double, h: cython.double) -> cython.double:
-        """A step from an angle on; what it leaves out beside a disturbance, infinity where it is singular."""
+        """Take a step from an angle on; its error relative to a disturbance, infinity if singular."""
         raise NotImplementedError
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def accept(self) -> cython.int:
-        """The end of the step is where the disturbances are."""
+        """Take the end of the step for the present place of the disturbances."""
         raise NotImplementedError
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
-        """State i of a contact begins: what it remembers of the disturbances."""
+        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
         raise NotImplementedError
 
     @cython.ccall
     def disturbances(self) -> npt.NDArray[np.float64]:
-        """The rows (q, q', memory) now."""
+        """The present disturbances, rows (q, q', memory)."""
         raise NotImplementedError
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
-        """Fill the matrix for a frequency."""
+        """Compute the monodromy of the sequence of states at a frequency."""
         e: cython.int
         c: cython.int
         i: cython.int
@@ -150,7 +155,7 @@ class VariationalSteps:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def find(self) -> cython.int:
-        """The events of the period, `order` of their angles."""
+        """Find the events of the period, and the `order` of their angles."""
         c: cython.int
         i: cython.int
         self.events = 0
@@ -288,7 +293,7 @@ class PlanarMonodromy(VariationalSteps):
         self._room(2 * m)
 
     def _room(self, columns: int) -> None:
-        """Arrays for so many disturbances."""
+        """Allocate arrays for a number of disturbances."""
         m, c, s = self.modes, self.contacts, self.stages
         self.columns = columns
         self.q, self.p, self.q_new, self.p_new = np.zeros((4, m, columns))
@@ -299,14 +304,14 @@ class PlanarMonodromy(VariationalSteps):
         self.push, self.scale = np.zeros((m * s, columns)), np.zeros(columns)
 
     def disturbances(self) -> npt.NDArray[np.float64]:
-        """The rows (q, q', memory) now."""
+        """The present disturbances, rows (q, q', memory)."""
         rows = [2 * c + i for c in range(self.contacts) for i in range(self.held[c])]
         return np.concatenate((self.q, self.p, np.asarray(self.memory)[rows]))
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def begin(self, omega: cython.double) -> cython.bint:
-        """Take a frequency, and the disturbances to be followed; false if they are too many."""
+        """Set the frequency and the initial disturbances; false if these are too many."""
         c: cython.int
         i: cython.int
         j: cython.int
@@ -333,7 +338,7 @@ class PlanarMonodromy(VariationalSteps):
         return True
 
     def activate(self) -> None:
-        """Which contacts are closed, and what forces on these do is to be found anew."""
+        """List the contacts that are closed, and forget what forces on these do."""
         c: cython.int
         i: cython.int
         m: cython.int
@@ -354,7 +359,7 @@ class PlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
-        """State i of a contact begins: what it remembers of the disturbances."""
+        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
         j: cython.int
         x: cython.Py_ssize_t = 2 * c
         before: cython.int = self.state[c]
@@ -389,7 +394,7 @@ class PlanarMonodromy(VariationalSteps):
         return 0
 
     def displaced(self, c: cython.int) -> None:
-        """`du`, the displacements of a contact, which far modes share in."""
+        """Fill `du` with the displacements of a contact, which far modes share in."""
         d: cython.int
         i: cython.int
         j: cython.int
@@ -408,13 +413,13 @@ class PlanarMonodromy(VariationalSteps):
                         self.du[d, j] -= by * self.force[i, j]
 
     def contact_ratio(self, c: cython.int) -> float:
-        """mu k_v / k_u: of the radius, by the normal displacement."""
+        """Ratio mu k_v / k_u: derivative of the radius by the normal displacement."""
         k_u: float = self.sequence.contact[c, 1]
         ratio: float = self.sequence.contact[c, 0] * self.sequence.contact[c, 2] / k_u if k_u > 0.0 else 0.0
         return ratio
 
     def prepare(self, h: float) -> None:
-        """What modes, and displacements of closed contacts, answer to forces at the nodes of a step."""
+        """Compute the answers of modes and closed contacts to forces at the nodes of a step."""
         m: cython.int
         if h == self.taken:
             return
@@ -424,7 +429,9 @@ class PlanarMonodromy(VariationalSteps):
         self.taken = h
 
     def respond(self, m: cython.int, h: float) -> None:
-        """q = q_to (q_0, p_0) + q_by f, and p likewise, of one mode, from q = q_0 + h A p, p = p_0 + h A p'.
+        """Compute the answer of one mode to forces f at the nodes of a step.
+
+        q = q_to (q_0, p_0) + q_by f, and p likewise, from q = q_0 + h A p, p = p_0 + h A p'.
 
         With p' = -w^2 q - 2 zeta w p + f: (1 + 2 zeta w h A + w^2 h^2 A^2) p = p_0 - w^2 h A q_0 + h A f.
         """
@@ -482,7 +489,7 @@ class PlanarMonodromy(VariationalSteps):
                 self.rest_by[2 * m + i, j] = part
 
     def couple(self) -> None:
-        """What the unknowns answer to forces on closed contacts: of the modes, and of those far above."""
+        """Compute the answers of the unknowns to forces on closed contacts, by near and far modes."""
         s: cython.int = self.stages
         ports: cython.int = 3 * self.actives
         i: cython.int
@@ -513,7 +520,9 @@ class PlanarMonodromy(VariationalSteps):
                             self.answer[i, a, j, b] += part * self.seen[m, b]
 
     def slip(self, c: cython.int, theta: float, h: float) -> None:
-        """A contact slips: s = inverse (feels . (du, dv)) + kept s_0 at the nodes of a step.
+        """Compute s of a contact that slips at the nodes of a step.
+
+        s = inverse (feels . (du, dv)) + kept s_0.
 
         As it closes, no s_0: the polynomial has the nodes only.
         """
@@ -562,7 +571,7 @@ class PlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def step(self, theta: cython.double, h: cython.double) -> cython.double:
-        """One step from an angle on, in `q_new`, `p_new` and `work`; what it leaves out, as `rest`."""
+        """Take one step from an angle on, in `q_new`, `p_new` and `work`; its error, as `rest`."""
         a: cython.int
         self.prepare(h)
         for a in range(self.actives):
@@ -577,7 +586,7 @@ class PlanarMonodromy(VariationalSteps):
         return self.rest()
 
     def unforced(self) -> None:
-        """`work`: one, and the unknowns as the modes go on without forces."""
+        """Fill `work` with the unit matrix, and the unknowns as the modes go on without forces."""
         size: cython.int = self.unknowns * self.stages
         i: cython.int
         j: cython.int
@@ -601,7 +610,7 @@ class PlanarMonodromy(VariationalSteps):
                         self.work[row, size + j] += by * self.q[m, j] + on * self.p[m, j]
 
     def assemble(self, a: cython.int) -> None:
-        """Take from `work` what the forces of a closed contact do."""
+        """Subtract the effect of a closed contact's forces from `work`."""
         s: cython.int = self.stages
         c: cython.int = self.active[a]
         state: cython.int = self.state[c]
@@ -664,7 +673,7 @@ class PlanarMonodromy(VariationalSteps):
                     )
 
     def solve(self, size: cython.int) -> bool:
-        """The right side of `work` becomes the solution: Gaussian elimination, pivots along columns."""
+        """Replace the right side of `work` by the solution: Gaussian elimination, pivots along columns."""
         i: cython.int
         j: cython.int
         k: cython.int
@@ -697,7 +706,10 @@ class PlanarMonodromy(VariationalSteps):
         return True
 
     def move(self) -> None:
-        """`stress`, the forces, and `push`, these on the modes, at the nodes; `q_new`, `p_new` at the end."""
+        """Fill the forces at the nodes, and `q_new`, `p_new` at the end of the step.
+
+        `stress`: the forces; `push`: these on the modes.
+        """
         s: cython.int = self.stages
         ports: cython.int = 3 * self.actives
         a: cython.int
@@ -732,7 +744,7 @@ class PlanarMonodromy(VariationalSteps):
                     self.p_new[m, j] += on * self.push[i * self.modes + m, j]
 
     def displace(self) -> None:
-        """`stress`: at first the displacements of closed contacts at the nodes."""
+        """Fill `stress` with the displacements of closed contacts at the nodes."""
         ports: cython.int = 3 * self.actives
         size: cython.Py_ssize_t = self.unknowns * self.stages
         a: cython.int
@@ -756,7 +768,7 @@ class PlanarMonodromy(VariationalSteps):
                         self.stress[row, j] += by * self.work[i * self.modes + m, size + j]
 
     def strain(self, a: cython.int) -> None:
-        """Forces of a closed contact in the place of its displacements; what it remembers at the end."""
+        """Replace the displacements of a closed contact by its forces, and fill its memory at the end."""
         s: cython.int = self.stages
         c: cython.int = self.active[a]
         state: cython.int = self.state[c]
@@ -803,7 +815,10 @@ class PlanarMonodromy(VariationalSteps):
                 )
 
     def rest(self) -> float:
-        """The last coefficient of the velocities, beside the size of a disturbance; see `Panel.rest`."""
+        """Error of a step: the last coefficient of the velocities, relative to a disturbance.
+
+        See `Panel.rest`.
+        """
         i: cython.int
         j: cython.int
         k: cython.int
@@ -829,7 +844,7 @@ class PlanarMonodromy(VariationalSteps):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def accept(self) -> cython.int:
-        """The end of the step is where the disturbances are."""
+        """Take the end of the step for the present place of the disturbances."""
         a: cython.int
         c: cython.int
         i: cython.int
@@ -855,7 +870,7 @@ class PlanarMonodromy(VariationalSteps):
 
 @cython.cclass
 class RingPlanarMonodromy(PlanarMonodromy):
-    """The monodromy of the contacts of all sectors, see `PlanarMonodromy`, in a part of a period.
+    """Monodromy of the contacts of all sectors of a ring, in a part of a period; see `PlanarMonodromy`.
 
     part is the angle that is followed; renumber (mode, mode) renumbers the sectors in the coordinates of
     modes that are not far, and source (contact,) is the contact whose memory has the place of each
@@ -877,7 +892,7 @@ class RingPlanarMonodromy(PlanarMonodromy):
         self.part, self.renumber, self.source = part, renumber, source
 
     def disturbances(self) -> npt.NDArray[np.float64]:
-        """The rows (q, q', memory) now, as the sectors are numbered at the beginning."""
+        """The present disturbances, rows (q, q', memory), as the sectors are numbered at the beginning."""
         rows = [2 * self.source[c] + i for c in range(self.contacts) for i in range(self.held[c])]
         q, p = self.renumber @ np.asarray(self.q), self.renumber @ np.asarray(self.p)
         return np.concatenate((q, p, np.asarray(self.memory)[rows]))

@@ -15,7 +15,7 @@ from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class Rebalancing:
-    """Finds beside a solution of a balance one of the balance with more harmonics; a workspace."""
+    """Finds the solution of a balance with more harmonics beside one with fewer; a workspace."""
 
     def __init__(self, system: System, more: Sequence[int], options: StabilityOptions = STABILITY) -> None:
         self.options = options.confirmation
@@ -40,7 +40,7 @@ class Rebalancing:
         self.fewer.work.poll()  # of now, which may be another later
 
     def take(self, system: System) -> None:
-        """A system with the same structure and harmonics, whose contacts may be others."""
+        """Take another system with the same structure and harmonics, whose contacts may differ."""
         self.fewer, self.system = system, system.with_harmonics(self.more)
         self.balance.laws = self.system.laws()
         self.balance.largest[:] = 0.0
@@ -71,7 +71,7 @@ class Rebalancing:
         return np.array(newton.z) if by_parts and self._by_homotopy(here, lack) else None
 
     def continue_to(self, z: FloatArray, motion: FloatArray) -> FloatArray | None:
-        """The same from a motion of more harmonics near, or at a frequency near."""
+        """The solution of more harmonics for z, from a motion of these near it, or at a frequency near."""
         here = self.system.extended(z, self.harmonics)
         self.balance.measure(here)
         self.balance.probe(here)
@@ -85,7 +85,7 @@ class Rebalancing:
         return np.array(newton.z) if self._converges(lack, 1.0) else None
 
     def _of_many(self, here: FloatArray, lack: FloatArray) -> FloatArray | None:
-        """The solution of many contacts: beside the last one, by damped steps, or by whole ones."""
+        """The solution with many contacts: beside the last one, by damped steps, or by whole ones."""
         newton, assumed = self.newton, np.array(self.newton.z)
         if self.last is not None:
             there, added = self.last
@@ -101,7 +101,7 @@ class Rebalancing:
         return np.array(newton.z) if self._converges(lack, 1.0) else None
 
     def _is_near(self, here: FloatArray) -> bool:
-        """Whether what Newton's method has found is no other motion."""
+        """Whether the solution found is near enough to be no other motion."""
         return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.max_change)
 
     def _converges(self, lack: FloatArray, part: float) -> bool:
@@ -111,7 +111,7 @@ class Rebalancing:
         return correct_with_kept_jacobian(self.newton, distance) and self.newton.moved <= distance
 
     def _by_homotopy(self, here: FloatArray, lack: FloatArray) -> bool:
-        """The same from where all of them are lacking, to a solution that is near that, too."""
+        """Whether Newton's method leads to a near solution as the further equations are added by parts."""
         self.newton.z[:] = here
         if not all(self._converges(lack, part) for part in self.options.homotopy_parts):
             return False

@@ -32,7 +32,7 @@ MAX_NAMED = 8  # diameters in a sentence
 
 
 def stability_unknown(system: System, highest: float, options: StabilityOptions = STABILITY) -> str:
-    """Why the stability of a system's waves is unknown; empty if it is known."""
+    """Reason why the stability of a system's waves is unknown; empty if it is known."""
     ring = system.scene.ring
     assert ring is not None
     missing = sorted(set(ring.lacking(range(ring.period)).values()))
@@ -58,13 +58,13 @@ class RingModes(Frozen):
     renumber: FloatArray  # (mode, mode)
 
     def selected(self, which: npt.NDArray[np.bool_]) -> RingModes:
-        """Some of the modes."""
+        """The modes marked by which (mode,)."""
         renumber = np.ascontiguousarray(self.renumber[np.ix_(which, which)])
         return RingModes(self.natural[which], self.damping[which], self.ports[which], renumber)
 
 
 class RingMultipliers(Multipliers):
-    """The multipliers of solutions of one sector."""
+    """Computes multipliers of solutions of one sector of a ring."""
 
     def __init__(
         self, system: System, highest: float, last: bool = False, options: StabilityOptions = STABILITY
@@ -113,11 +113,14 @@ class RingMultipliers(Multipliers):
         }
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
-        """As `Multipliers._matrix`; None where modes are missing, or there are too many."""
+        """The monodromy matrix of the motion whose states were found last.
+
+        None where modes are missing, or there are too many.
+        """
         return None if self.unknown else Multipliers._matrix(self, followed, omega)
 
     def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
-        """As `Multipliers.find_states`, with the unknowns of one sector."""
+        """Find the states of the contacts in the motion x of one sector; see `Multipliers.find_states`."""
         d = 3 if self.planar else 2
         count = (states.width // d - 1) // 2
         blocks = np.asarray(x)[: self.contacts * states.width].reshape(self.contacts, states.width)
@@ -136,13 +139,16 @@ class RingMultipliers(Multipliers):
         without_neighbour: Sequence[bool],
         sufficient: Sequence[float] = (),
     ) -> list[Classification]:
-        """As `Multipliers.classify_all`; in an n-th of a period multipliers turn n times less towards -1."""
+        """Classifications of several solutions, as `Multipliers.classify_all` gives them.
+
+        In an n-th of a period multipliers turn n times less towards -1.
+        """
         found = Multipliers.classify_all(self, z, at_fold, without_neighbour, sufficient)
         n = self.ring.period
         return [one._replace(angle_to_flip=min(one.angle_to_flip * n, np.pi)) for one in found]
 
     def of_period(self, values: list[complex]) -> list[complex]:
-        """Magnitudes of a whole period, with the angles of its part."""
+        """Multipliers with the magnitudes of a whole period and the angles of its n-th part."""
         return [abs(value) ** (self.ring.period - 1) * value for value in values]
 
 
@@ -152,7 +158,7 @@ def _phases(ring: Ring, harmonics: list[int]) -> FloatArray:
 
 
 def sector_shifts(ring: Ring) -> int:
-    """The sectors j that the wave passes in the n-th part of a period: j engine_order = gcd, of the sectors.
+    """Number j of sectors that the wave passes in the n-th part of a period: j engine_order = gcd.
 
     >>> none = np.zeros(0)
     >>> ring = Ring(8, 3, none, none, np.zeros((0, 0), complex), none, none)
@@ -184,7 +190,7 @@ def modes_around(linear: RingLinear, ring: Ring) -> RingModes:
 
 
 def _places(ring: Ring) -> npt.NDArray[np.intp]:
-    """The modes whose diameters disturbances have, those that are cosine and sine twice."""
+    """Indices of the ring's modes that disturbances have, twice for those that are cosine and sine."""
     repeats = ring.diameter % (ring.sectors // ring.period) == 0
     single = (ring.diameter == 0) | (2 * ring.diameter == ring.sectors)
     return np.repeat(np.arange(ring.diameter.size), np.where(repeats, np.where(single, 1, 2), 0))

@@ -8,11 +8,14 @@ from fcm.model.scene import FloatArray
 
 
 class SpacedPoints:
-    """number (point,): how many points there are up to each, of which those that are nearer to the one before
-    than the mean distance count less."""
+    """Points of a curve counted by their distance, so that crowded ones count less.
+
+    number (point,): how many points there are up to each, of which those that are nearer to the one before
+    than the mean distance count less.
+    """
 
     def __init__(self, z: FloatArray, crowded: bool) -> None:
-        """z (point, unknown + 1); where they may not be crowded each counts as one."""
+        """z (point, unknown + 1); crowded: whether they may be; else each counts as one."""
         self.number = np.arange(float(len(z)))
         steps = np.diff(path_lengths(z))
         if crowded and steps.size and steps.sum() > 0.0:

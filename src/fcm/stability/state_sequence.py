@@ -54,7 +54,7 @@ class StateSequence:
     """
 
     def __init__(self, contacts: int, most: int) -> None:
-        """Of so many contacts, with at most so many events."""
+        """Makes a sequence for a number of contacts with room for `most` events."""
         self.contacts, self.events = contacts, 0
         self.allocate(most)
         self.state, self.remembers = np.zeros(contacts, dtype=np.intc), np.zeros(contacts, dtype=np.intc)
@@ -69,7 +69,7 @@ class StateSequence:
     def add_event(
         self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double
     ) -> cython.void:
-        """One more event."""
+        """Adds the event that contact c enters a state at an angle [rad]."""
         i: cython.int = self.events
         while angle < 0.0:
             angle += TWO_PI
@@ -303,7 +303,8 @@ class PlanarSequence:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keep(self, c: cython.int) -> cython.bint:
-        """Its states, without what is rounding, neighbours joined, and its panels."""
+        """Keeps the states of contact c without those within rounding, equal neighbours joined, and its
+        panels."""
         i: cython.int
         p: cython.int
         state: cython.int
@@ -339,7 +340,7 @@ class PlanarSequence:
         return True
 
     def length(self, p: cython.int) -> float:
-        """Of a piece of several [rad]."""
+        """Length [rad] of piece p of the cycle."""
         last: cython.bint = p + 1 == self.kernel.cycle.slider.pieces
         length: float = self.kernel.cycle.slider.begin[0 if last else p + 1]
         length -= self.kernel.cycle.slider.begin[p]

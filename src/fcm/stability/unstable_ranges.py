@@ -1,4 +1,4 @@
-"""From where to where every motion that was found is unstable."""
+"""Frequency ranges in which every motion that was found is unstable."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Str
 
 
 def stretches_of(paths: Sequence[Path], stable: Sequence[FloatArray], span: Stretch) -> list[Stretch]:
-    """The same of paths, with stable (path, point)."""
+    """Stretches without a stable motion for paths, with stable (path, point); see `unstable_stretches`."""
     parts = ((path.parameter, one) for path, one in zip(paths, stable, strict=True))
     return unstable_stretches(parts, span)
 

@@ -1,1 +1,1 @@
-"""The linear structure: from its matrices to modes, and to the flexibility of those that are left out."""
+"""The linear structure: from its matrices to modes, and the flexibility of the modes left out."""

@@ -1,4 +1,4 @@
-"""The damping of modes: from a matrix, in proportion to mass and stiffness, from a loss factor."""
+"""Damping of modes: from a matrix, proportional to mass and stiffness, or from a loss factor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def ratios(coefficients: FloatArray, stiffness: FloatArray) -> FloatArray:
 
 
 def proportional(by_mass: float, by_stiffness: float, stiffness: FloatArray) -> FloatArray:
-    """Ratios of the damping matrix by_mass M + by_stiffness K.
+    """Damping ratios of the damping matrix by_mass M + by_stiffness K.
 
     >>> proportional(0.2, 0.01, np.array([4.0]))  # (0.2 + 0.01 * 4) / (2 * 2)
     array([0.06])
@@ -92,7 +92,7 @@ def coupling_effect(
 
 
 def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> FloatArray | None:
-    """The response of seen to pushes; None where the dynamic stiffness is singular."""
+    """Response of the displacements `seen` to pushes; None where the dynamic stiffness is singular."""
     try:
         response: FloatArray = seen.conj().T @ np.linalg.solve(dynamic, pushes)
     except np.linalg.LinAlgError:
@@ -101,7 +101,7 @@ def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> Floa
 
 
 def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> FloatArray:
-    """Frequencies from low to high: resonances, where half of their power is left, and between these."""
+    """Frequencies between low and high: resonances, their half-power points, and places between these."""
     value, turn = np.linalg.eigh(matrix)
     natural = np.sqrt(np.maximum(value, 0.0))
     width = 0.5 * np.einsum("ij,ij->j", turn.conj(), damper @ turn).real

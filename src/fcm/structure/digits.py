@@ -1,4 +1,4 @@
-"""How many digits the entries of a matrix were written with, and what that leaves uncertain of its modes.
+"""Number of digits with which the entries of a matrix were written, and the uncertainty of its modes.
 
 A program that writes a matrix as text rounds every entry, and one of single precision does too. The terms of
 the elastic energy of a rigid-body motion cancel; with rounded entries it is a sum of these roundings instead
@@ -21,7 +21,7 @@ SINGLE = 7  # digits of a number of single precision
 
 
 def digits_of(K: Matrix) -> int | None:
-    """Decimal digits of the entries; None where they are as many as there can be, or few enough to be exact.
+    """Decimal digits of the entries; None where they have full precision, or few enough to be exact.
 
     >>> import scipy.sparse
     >>> rng = np.random.default_rng(0)
@@ -46,20 +46,23 @@ def digits_of(K: Matrix) -> int | None:
 
 
 def _some(K: Matrix) -> FloatArray:
-    """Sizes of entries that are not 0, each once."""
+    """Magnitudes of a sample of the nonzero entries, each once."""
     entries: FloatArray = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * RIGID_BODY.sampled_entries))]))
     entries = entries[entries > 0.0]
     return entries[:: max(1, entries.size // RIGID_BODY.sampled_entries)]
 
 
 def _single(values: FloatArray) -> bool:
-    """Whether these are numbers of single precision."""
+    """Whether all values are numbers of single precision."""
     with np.errstate(over="ignore"):
         return bool((values.astype(np.float32) == values).all())
 
 
 def _most_need(values: FloatArray, digits: int) -> bool:
-    """Whether most values have so many digits or more, as 0.9 of those have that are rounded to them."""
+    """Whether most values need at least so many digits.
+
+    Of values rounded to a number of digits, 0.9 need all of them.
+    """
     return bool(np.mean(_rounded(values, digits - 1) != values) > 0.5)
 
 
@@ -68,7 +71,7 @@ def _rounded(values: FloatArray, digits: int) -> FloatArray:
 
 
 def energy_uncertain(K: Matrix, shapes: FloatArray) -> FloatArray:
-    """Standard deviation of phi^T K phi of each shape (row, mode) by its digits; 0 if K has them all."""
+    """Standard deviation of phi^T K phi by the digits of K, of each shape (row, mode); 0 for full digits."""
     digits = digits_of(K)
     if digits is None:
         return np.zeros(shapes.shape[1])
@@ -84,7 +87,7 @@ def energy_uncertain(K: Matrix, shapes: FloatArray) -> FloatArray:
 
 
 def _unit(size: FloatArray, digits: int) -> FloatArray:
-    """The distance of a number of so many digits to the next; 0 of 0, which is exact."""
+    """Unit in the last digit of numbers with so many digits; 0 for a zero, which is exact."""
     unit: FloatArray
     if digits == SINGLE and _single(size):
         unit = np.spacing(size.astype(np.float32)).astype(np.float64)

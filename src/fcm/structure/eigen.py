@@ -37,25 +37,30 @@ Matrix = Any  # scipy sparse array or matrix
 class EigenOptions(Frozen):
     """Tolerances of the modes."""
 
-    dense_size: int = 600  # rows up to which all modes are computed at once
-    shift: float = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
-    min_shift: float = 1e-11  # the same, where a frequency of interest says what a small shift is
-    max_shift: float = 1e-4  # the same, where rounding has made rigid-body modes more negative than that
-    frequency_shift: float = 1e-3  # of the square of that frequency
-    last_digits: float = 10.0  # units of the last digit of entries that a shift is at least, if they have few
-    # relative: such an eigenvalue of the inverse problem is a row without mass
+    dense_size: int = 600  # rows up to which all modes are computed by a dense solver
+    # size of the shift relative to the largest ratio of stiffness to mass on the diagonals
+    shift: float = 1e-9
+    # least shift, relative to the same ratio, where a frequency of interest is given
+    min_shift: float = 1e-11
+    # shift, relative to the same ratio, that is tried where K - s M is not positive definite
+    max_shift: float = 1e-4
+    frequency_shift: float = 1e-3  # shift relative to the square of the highest frequency of interest
+    last_digits: float = 10.0  # least shift in units of the entries' last digit, where they have few digits
+    # eigenvalue of the inverse problem, relative to the greatest, up to which a row is massless
     massless_tolerance: float = 1e-13
-    mass_tolerance: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
-    missed_tolerance: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
-    frequency_tolerance: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it
-    max_corrections: int = 12  # of static displacements; a shift that needs more is replaced
+    # negative eigenvalue of the mass, scaled to a diagonal of 1, that counts as rounding
+    mass_tolerance: float = 1e-9
+    missed_tolerance: float = 1e-3  # relative tolerance of the search for a mode that Lanczos has missed
+    # a missed mode's w^2 must be below the highest one found by this part of it
+    frequency_tolerance: float = 1e-6
+    max_corrections: int = 12  # corrections of static displacements; a shift that needs more is replaced
 
 
 OPTIONS = EigenOptions()
 
 
 class StructureError(ValueError):
-    """Matrices that are no stiffness and mass of a structure."""
+    """Raised for matrices that are not the stiffness and mass of a structure."""
 
 
 class Modes(Frozen):
@@ -70,7 +75,7 @@ class Modes(Frozen):
 
 
 class System(Frozen):
-    """Stiffness and mass of a structure, and the answer of K - s M to loads."""
+    """Stiffness and mass of a structure, and a solver of (K - s M) x = loads."""
 
     K: Matrix  # (row, row)
     M: Matrix
@@ -82,7 +87,7 @@ class System(Frozen):
         return int(self.K.shape[0])
 
     def static(self, loads: FloatArray, beyond: float, near: float) -> FloatArray:
-        """Displacements under loads that push no mode below `beyond`, a square of a frequency, by K alone.
+        """Static displacements (by K alone) under loads that push no mode with w^2 below `beyond`.
 
         Each correction leaves at most -s / (beyond - s) of what the last one has left, down to `near`.
         """
@@ -92,13 +97,13 @@ class System(Frozen):
         return found
 
     def corrections(self, beyond: float, near: float) -> int:
-        """How many corrections that takes."""
+        """Number of corrections that `static` needs to reach the tolerance `near`."""
         left = -self.shift / (beyond - self.shift)
         return 0 if left <= near else int(np.ceil(np.log(near) / np.log(left))) - 1
 
 
 def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
-    """Factorise K - s M; StructureError where the matrices are no stiffness and mass.
+    """Factorises K - s M; raises StructureError if the matrices are not those of a structure.
 
     top is the highest angular frequency of interest, 0 where there is none.
     """
@@ -133,7 +138,7 @@ def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
 
 
 def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
-    """More than rounding of the entries may take away, and little beside what is of interest."""
+    """Size of the shift: above the rounding of the entries, and small beside what is of interest."""
     digits = digits_of(K)
     rounding = 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits
     if not top or K.shape[0] <= OPTIONS.dense_size:
@@ -142,7 +147,7 @@ def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
 
 
 def _faults_of_mass(M: Matrix) -> list[str]:
-    """Why a mass is not that of a structure; empty where it may be.
+    """Reasons why a mass matrix is not that of a structure; empty where it may be.
 
     Its diagonal is made 1, so that the unit of a row does not matter. Large matrices are factorised: the
     pivots have as many negative ones as the eigenvalues, and most masses couple no two directions.
@@ -174,12 +179,12 @@ def _said(what: str, negative: int | None) -> str:
 
 
 def _start(rows: int) -> FloatArray:
-    """The same vector every time, of no pattern."""
+    """Start vector of Lanczos: pseudo-random, and the same every time."""
     return np.random.default_rng(0).standard_normal(rows)
 
 
 def shifted(system: System, shift: float) -> System:
-    """The same with another negative shift, by another factorisation.
+    """The system with another negative shift, factorised again.
 
     Nearer to zero it need not be definite: digits that were not written make rigid-body modes negative.
     """
@@ -201,7 +206,7 @@ def modes_of(system: System, count: int) -> Modes:
 
 
 def of_shapes(system: System, shapes: FloatArray) -> Modes:
-    """Modes with these shapes, in any order and of any mass."""
+    """Modes from shapes in any order and of any modal mass: normalised and sorted."""
     shapes = shapes / np.sqrt(energy_of(system.M, shapes))
     stiffness = elastic_energy(system.K, shapes)
     order = np.argsort(stiffness)
@@ -209,7 +214,7 @@ def of_shapes(system: System, shapes: FloatArray) -> Modes:
 
 
 def _lanczos(system: System, count: int, known: FloatArray | None = None, near: float = 0.0) -> FloatArray:
-    """The shapes of the lowest modes; of those that are orthogonal to some shapes of mass 1."""
+    """Shapes of the lowest modes by Lanczos, orthogonal to `known` shapes of mass 1 if given."""
     rows, kind = system.rows, system.K.dtype
     start = _start(rows)
     if known is None:
@@ -232,7 +237,7 @@ def _lanczos(system: System, count: int, known: FloatArray | None = None, near: 
 
 
 def _complete(system: System, shapes: FloatArray, count: int) -> FloatArray:
-    """The shapes with those of lower modes that Lanczos has passed by, as of several equal frequencies."""
+    """The shapes with those of lower modes added that Lanczos has missed, as of equal frequencies."""
     while True:
         shapes = _apart(system, shapes)  # of mass 1, and orthogonal where frequencies are close
         highest = np.sort(elastic_energy(system.K, shapes))[count - 1]
@@ -244,7 +249,7 @@ def _complete(system: System, shapes: FloatArray, count: int) -> FloatArray:
 
 
 def _all(system: System) -> FloatArray:
-    """The shapes of all modes that have a mass."""
+    """Shapes of all modes that have a mass, by a dense solver."""
     mass = system.M.toarray()
     shifted = system.K.toarray() - system.shift * mass
     value, shapes = scipy.linalg.eigh(mass, shifted)
@@ -253,7 +258,7 @@ def _all(system: System) -> FloatArray:
 
 
 def _apart(system: System, shapes: FloatArray) -> FloatArray:
-    """The modes within the space of some shapes."""
+    """Shapes of the modes within the space spanned by some shapes (Rayleigh-Ritz)."""
     left = shapes.conj().T
     try:
         turn = scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
@@ -267,7 +272,7 @@ def _apart(system: System, shapes: FloatArray) -> FloatArray:
 
 
 def polished(system: System, shapes: FloatArray) -> FloatArray:
-    """Shapes of modes near zero frequency after two more inverse iterations, of mass 1.
+    """Shapes of modes near zero frequency, of mass 1, after two further inverse iterations.
 
     That takes other modes out of them, each by its own stiffness beside the shift: also those that the mass
     couples to them and the stiffness does not.
@@ -280,7 +285,7 @@ def polished(system: System, shapes: FloatArray) -> FloatArray:
 
 
 def unit_columns(rows: int, places: Sequence[int]) -> FloatArray:
-    """A column of each place, with 1 there: (row, place).
+    """Unit vectors (row, place), with a 1 at each place.
 
     >>> unit_columns(3, [2]).tolist()
     [[0.0], [0.0], [1.0]]
@@ -291,13 +296,13 @@ def unit_columns(rows: int, places: Sequence[int]) -> FloatArray:
 
 
 def energy_of(matrix: Matrix, shapes: FloatArray) -> FloatArray:
-    """phi^H A phi of each shape."""
+    """Energy phi^H A phi of each shape."""
     energy: FloatArray = np.einsum("ij,ij->j", shapes.conj(), matrix @ shapes).real
     return energy
 
 
 def elastic_energy(K: Matrix, shapes: FloatArray, together: int = 4096) -> FloatArray:
-    """phi^H K phi of each shape, whose terms nearly cancel.
+    """Elastic energy phi^H K phi of each shape, accurate although its terms nearly cancel.
 
     Row by row, where they cancel already: summed over all rows first, their rounding would be that of the
     greatest sum. Some rows at a time, so that what is computed on the way stays within the cache.

@@ -24,15 +24,15 @@ Matrix = Any  # scipy sparse array or matrix
 
 
 class FrontOptions(Frozen):
-    """Which fronts are taken together: fewer and larger ones, which hold some zeros."""
+    """Options for merging fronts into fewer and larger ones, which store some zeros."""
 
-    max_zeros: float = 0.1  # share of a front's entries that may be zeros
-    few_columns: int = 48  # columns of a front up to which more may be
-    max_zeros_of_few: float = 0.4  # then
+    max_zeros: float = 0.1  # share of a merged front's entries that may be zeros
+    few_columns: int = 48  # columns of a merged front up to which `max_zeros_of_few` holds instead
+    max_zeros_of_few: float = 0.4  # share of zeros in a merged front of few columns
 
 
 class Tree(Frozen):
-    """The order of the rows, and the fronts, each after those that it waits for.
+    """Elimination order of the rows, and the fronts, each after those that it waits for.
 
     Front i has the columns begin[i] to begin[i + 1] of the ordered matrix, and the rows below[i] under them.
     """
@@ -44,13 +44,13 @@ class Tree(Frozen):
 
     @property
     def entries(self) -> int:
-        """Numbers that a factor by these fronts keeps."""
+        """Number of entries that a factor by these fronts stores."""
         columns = np.diff(self.begin)
         return int((columns * (columns + np.array([one.size for one in self.below]))).sum())
 
 
 def nested_dissection(graph: Matrix) -> IntArray:
-    """The order of the vertices (row,) of a symmetric graph in which factors have few entries."""
+    """Fill-reducing order of the vertices (row,) of a symmetric graph."""
     from pymetis import CSRAdjacency
     from pymetis import nested_dissection as dissected
 
@@ -59,7 +59,9 @@ def nested_dissection(graph: Matrix) -> IntArray:
 
 
 def graph_of(matrix: Matrix) -> tuple[IntArray, Matrix]:
-    """The vertex of each row (row,), and the graph of the vertices, a pattern without its diagonal.
+    """Vertex of each row (row,), and the graph of the vertices: a pattern without its diagonal.
+
+    Rows with the same pattern share a vertex.
 
     Rows are told alike by a random number for each column, summed over their entries. Should two that differ
     have the same sum, their vertex has the entries of both.
@@ -82,7 +84,7 @@ def graph_of(matrix: Matrix) -> tuple[IntArray, Matrix]:
 
 
 def tree_of(matrix: Matrix, options: FrontOptions | None = None) -> Tree:
-    """The order and the fronts of a square matrix, of the pattern of both its triangles."""
+    """Elimination order and fronts of a square matrix, from the pattern of both its triangles."""
     options = options or FrontOptions()
     group, graph = graph_of(matrix)
     order = nested_dissection(graph) if graph.nnz else np.arange(graph.shape[0])
@@ -102,7 +104,7 @@ def tree_of(matrix: Matrix, options: FrontOptions | None = None) -> Tree:
 
 
 def _rows(vertices: IntArray, first: IntArray) -> IntArray:
-    """The rows of ascending vertices."""
+    """Row numbers of ascending vertices."""
     if not vertices.size:
         return vertices
     many = first[vertices + 1] - first[vertices]
@@ -111,7 +113,7 @@ def _rows(vertices: IntArray, first: IntArray) -> IntArray:
 
 
 def _parents(graph: Matrix) -> list[int]:
-    """The elimination tree: the column that each waits for it; -1 of the last."""
+    """The elimination tree: the parent of each column (the one that waits for it), -1 for a root."""
     graph = scipy.sparse.csr_array(graph)
     start, column = graph.indptr.tolist(), graph.indices.tolist()
     parent = [-1] * graph.shape[0]
@@ -136,7 +138,7 @@ def _children(parent: list[int]) -> list[list[int]]:
 
 
 def _postorder(parent: list[int]) -> IntArray:
-    """The columns so that those of a branch follow each other."""
+    """Postorder of the columns, in which those of a branch follow each other."""
     children = _children(parent)
     waiting = [one for one, above in enumerate(parent) if above < 0]
     found = []
@@ -147,7 +149,7 @@ def _postorder(parent: list[int]) -> IntArray:
 
 
 def _fronts(graph: Matrix, parent: list[int]) -> tuple[list[int], list[IntArray]]:
-    """Columns that share all rows below: where each begins and the last ends, and the rows below each."""
+    """Fronts of columns that share all rows below: first columns and end, and rows below each."""
     lower = scipy.sparse.csc_array(scipy.sparse.tril(graph, -1))
     lower.sort_indices()
     children = _children(parent)
@@ -177,7 +179,7 @@ def _fronts(graph: Matrix, parent: list[int]) -> tuple[list[int], list[IntArray]
 def _taken_together(
     begin: list[int], below: list[IntArray], weight: IntArray, options: FrontOptions
 ) -> tuple[list[int], list[IntArray]]:
-    """Fronts with those before that they wait for, where that stores few zeros."""
+    """Merges fronts with those before that they wait for, where that stores few zeros."""
     first = np.concatenate(([0], np.cumsum(weight)))
     kept: list[tuple[int, IntArray, int]] = []  # first column, rows below, zeros
     for i, rows in enumerate(below):

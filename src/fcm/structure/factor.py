@@ -1,4 +1,4 @@
-"""Factors of sparse symmetric or Hermitian matrices that are positive definite.
+"""Factors of sparse symmetric or Hermitian matrices, usually positive definite.
 
 By CHOLMOD where its package scikit-sparse is installed, else by fronts where the factor has many entries, by
 SuperLU where it has few. All give the same solutions to rounding.
@@ -28,23 +28,23 @@ Solve = Callable[[FloatArray], FloatArray]  # loads (row,) or (row, load) to dis
 
 
 class FactorOptions(Frozen):
-    """How matrices are factorised."""
+    """Options for choosing the factorisation of a sparse matrix."""
 
-    package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; by the number of rows where it is empty
-    superlu_size: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
-    dissection_size: int = 5000  # rows from which on nested dissection pays
-    light_entries: int = 5_000_000  # entries of a factor up to which SuperLU and its copy take little memory
-    # entries of a matrix from which on SuperLU has a thread that may be left behind
+    package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; where empty, chosen by the number of rows
+    superlu_size: int = 600  # rows up to which SuperLU is used: CHOLMOD's ordering gains nothing there
+    dissection_size: int = 5000  # rows from which on nested dissection is used
+    # entries of a factor up to which SuperLU, and its copy, need little memory
+    light_entries: int = 5_000_000
+    # entries of a matrix from which on SuperLU runs in a thread that an interruption leaves
     polled_entries: int = 200_000
-    poll_interval: float = 0.1  # [s] between looks at whether it is done, or the run interrupted
-    solved_entries: int = (
-        1_000_000  # of the loads that SuperLU solves for at once, as no signal ends it sooner
-    )
+    poll_interval: float = 0.1  # [s] between looks at whether that thread is done, or the run interrupted
+    # entries of the loads solved at once by SuperLU, which no signal can interrupt
+    solved_entries: int = 1_000_000
     fronts: FrontOptions = field(default_factory=FrontOptions)
 
 
 class NotPositiveError(ValueError):
-    """A matrix that is not positive definite, with the number of its negative eigenvalues.
+    """Raised for a matrix that is not positive definite, with the number of its negative eigenvalues.
 
     The number is None where it is unknown, and 0 of a singular matrix.
     """
@@ -55,7 +55,7 @@ class NotPositiveError(ValueError):
 
 
 class TooLargeError(ValueError):
-    """A matrix whose factors the memory does not hold."""
+    """Raised when the factors of a matrix do not fit into memory."""
 
     def __init__(self, rows: int, entries: int) -> None:
         super().__init__(
@@ -65,7 +65,7 @@ class TooLargeError(ValueError):
 
 
 def has_cholmod() -> bool:
-    """Whether scikit-sparse is installed, in a release that has what is used here."""
+    """Whether scikit-sparse is installed in a release with the functions used here."""
     try:
         from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
     except ImportError:
@@ -74,7 +74,7 @@ def has_cholmod() -> bool:
 
 
 def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None = None) -> Solve:
-    """Factorise a positive definite matrix once, for any number of solutions; else NotPositiveError.
+    """Factorises a positive definite matrix once, for any number of solutions; else raises NotPositiveError.
 
     Where it need not be definite, only a singular one is refused.
 
@@ -101,7 +101,10 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
 
 
 def _cholmod(matrix: Matrix) -> Solve | None:
-    """The factors by CHOLMOD; None where the matrix is not positive definite, which others tell more of."""
+    """Solver by CHOLMOD; None where the matrix is not positive definite.
+
+    The other packages then count its negative eigenvalues.
+    """
     from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
 
     try:
@@ -126,8 +129,7 @@ def _fronts(matrix: Matrix, definite: bool, tree: Tree) -> Solve:
 def _superlu(
     matrix: Matrix, definite: bool, options: FactorOptions, ordering: str = "MMD_AT_PLUS_A"
 ) -> Solve:
-    """The factors by SuperLU without pivoting off the diagonal: the signs of its pivots are those of the
-    eigenvalues.
+    """Solver by SuperLU without off-diagonal pivoting, so that its pivots have the signs of the eigenvalues.
 
     That is Sylvester's law of inertia, where no rows were exchanged.
     """
@@ -147,7 +149,7 @@ def _superlu(
 
 
 def by_blocks(solve: Solve, most: int, loads: FloatArray) -> FloatArray:
-    """Displacements under (row,) or (row, load), of so many entries at once at most."""
+    """Displacements under loads (row,) or (row, load), solved in blocks of at most so many entries."""
     if loads.ndim == 1 or loads.size <= most:
         return solve(loads)
     together = max(most // loads.shape[0], 1)
@@ -157,7 +159,7 @@ def by_blocks(solve: Solve, most: int, loads: FloatArray) -> FloatArray:
 
 
 def _left_behind(work: Callable[[], Any], poll: float) -> Any:
-    """What a compiled call returns, made in a thread of its own; an interruption leaves it behind.
+    """Result of a compiled call, run in a thread of its own that an interruption leaves behind.
 
     The call lets other threads run, but itself ends no sooner for a signal.
     """
@@ -180,5 +182,5 @@ def _left_behind(work: Callable[[], Any], poll: float) -> Any:
 
 
 def _negative(factor: Any) -> int:
-    """Pivots below zero."""
+    """Number of negative pivots."""
     return int((factor.U.diagonal().real < 0.0).sum())

@@ -1,4 +1,4 @@
-"""The flexibility of the modes that are left out, kept as a few modes of high frequency.
+"""The flexibility of the modes left out, kept as a few modes of high frequency.
 
 Seen through loads P and displacements P^T x, the modes left out answer P^T (K - w^2 M)^-1 P less the part of
 the kept modes. Their answer is sought in a block Krylov space. It begins with the residual attachment modes,
@@ -41,7 +41,7 @@ from fcm.structure.options import FLEXIBILITY, FlexibilityOptions
 
 
 class Flexibility(Frozen):
-    """Modes that stand for those left out, and how far their answer is off."""
+    """Modes that represent those left out, and bounds of the error of their response."""
 
     modes: Modes
     bound: float  # of the receptance among the loads, relative to their static one; inf if there is none
@@ -49,7 +49,7 @@ class Flexibility(Frozen):
 
 
 class Truncation(Frozen):
-    """A structure of which the lowest modes are kept: up to which frequency, and what is left out."""
+    """A structure with only its lowest modes kept: highest frequency of interest and first mode left out."""
 
     system: System
     kept: Modes
@@ -59,7 +59,7 @@ class Truncation(Frozen):
 
 
 def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
-    """Modes for what the kept ones leave out, under loads (row, load)."""
+    """Modes that represent the response of the modes left out, under loads (row, load)."""
     truncation = _with_shift_for_static(truncation)
     system, kept, options = truncation.system, truncation.kept, truncation.options
     omega, beyond = truncation.omega, truncation.beyond
@@ -95,7 +95,7 @@ def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
 
 
 def _with_shift_for_static(truncation: Truncation) -> Truncation:
-    """The same, or with another shift where static displacements would take too many corrections.
+    """The truncation, with another shift where static displacements would need too many corrections.
 
     Of a small structure a shift costs nothing, and corrections the digits that are lost in K u.
     """
@@ -106,7 +106,7 @@ def _with_shift_for_static(truncation: Truncation) -> Truncation:
 
 
 def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, static: FloatArray) -> float:
-    """Largest error of the receptance of any load by itself, over `static`; inf from the first mode left out.
+    """Greatest error of a load's own receptance relative to `static`; inf beyond the first mode left out.
 
     The modes are those that stand for what is left out.
     """
@@ -124,7 +124,7 @@ def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, s
 def error_at_other_rows(
     truncation: Truncation, found: Flexibility, loads: FloatArray, others: Sequence[int]
 ) -> tuple[float, float]:
-    """How far the displacement of other rows, under the loads, is off, and the part of it by damping.
+    """Error of the displacements at other rows under the loads, and the part of it by damping.
 
     Of the two static receptances the geometric mean; the second is to be multiplied by the loss factor. Their
     own flexibility is not among the modes: Galerkin's solution errs at them by more, and the part m_3 of what
@@ -149,7 +149,7 @@ def error_at_other_rows(
 
 
 def _residual_receptance(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
-    """The part of each load's static receptance that the kept modes leave out."""
+    """Part of each load's static receptance that the kept modes leave out."""
     outer = _without(system, kept, loads)
     rest: FloatArray = np.einsum(
         "ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))
@@ -160,7 +160,7 @@ def _residual_receptance(system: System, kept: Modes, loads: FloatArray) -> Floa
 def _damping_error(
     modes: Modes, outer: FloatArray, beyond: float, sixth: bool, static: FloatArray
 ) -> FloatArray:
-    """How far m_3 of each load may be off, over its static receptance; sixth is whether m_6 is known.
+    """Bound of the error of m_3 of each load over its static receptance; `sixth`: whether m_6 is known.
 
     In units of the greatest part of each load and of the lowest mode: the powers of extreme ones overflow.
     """
@@ -181,7 +181,9 @@ def _damping_error(
 
 
 def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, omega: float) -> FloatArray:
-    """Displacement of each load along itself at rest, from that part; of rigid-body modes at omega, if not 0.
+    """Static displacement of each load along itself, from the modes' part and `rest`.
+
+    That of rigid-body modes is taken at omega, if omega is not 0.
 
     What pushes rigid-body modes has no static answer; up to omega theirs is at least that.
     """
@@ -194,26 +196,26 @@ def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, om
 
 
 def _without(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
-    """Loads less the part that pushes the kept modes."""
+    """Loads minus the part that pushes the kept modes."""
     outer: FloatArray = loads - system.M @ (kept.shapes @ (kept.shapes.conj().T @ loads))
     return outer
 
 
 def _orthogonal(system: System, kept: Modes, displacements: FloatArray) -> FloatArray:
-    """Displacements less their part in the kept modes."""
+    """Displacements minus their part in the kept modes."""
     part: FloatArray = displacements - kept.shapes @ (kept.shapes.conj().T @ (system.M @ displacements))
     return part
 
 
 def _of_energy_1(system: System, columns: FloatArray, least: FloatArray | float) -> FloatArray:
-    """Columns of the energy 1; those that have less than the least are rounding, and left out."""
+    """Columns scaled to elastic energy 1; those with no more than `least` are rounding and left out."""
     energy = energy_of(system.K, columns)
     unit: FloatArray = columns[:, energy > least] / np.sqrt(energy[energy > least])
     return unit
 
 
 def _galerkin(system: System, basis: FloatArray, far: float, independent: float) -> Modes:
-    """The modes within a space of displacements; what is nearly a combination of others is left out.
+    """Modes within a space of displacements, without nearly dependent directions.
 
     far is the square of the highest angular frequency that one may have.
     """

@@ -1,4 +1,4 @@
-"""Where the displacements of contacts, and the forces along them, are among the unknowns of a balance.
+"""Places of the contacts' displacements, and of the forces along them, among the unknowns of a balance.
 
 Contact after contact the means of its displacements along each of its directions, then for each harmonic the
 real and imaginary part of each of them:
@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Layout(Frozen):
-    """The layout of contacts with so many directions each, and so many harmonics.
+    """Layout of the unknowns of contacts, with a number of directions each and a number of harmonics.
 
     >>> Layout(2, 2, 1).mean_at.tolist(), Layout(2, 2, 1).wave_at.tolist()
     ([0, 1, 6, 7], [2, 4, 8, 10])
@@ -36,12 +36,12 @@ class Layout(Frozen):
 
     @property
     def ports(self) -> int:
-        """Directions of all contacts."""
+        """Number of directions of all contacts together."""
         return self.contacts * self.directions
 
     @property
     def width(self) -> int:
-        """Unknowns of a contact."""
+        """Number of unknowns of one contact."""
         return self.directions * (1 + 2 * self.harmonics)
 
     @property
@@ -51,7 +51,7 @@ class Layout(Frozen):
 
     @property
     def stride(self) -> int:
-        """Unknowns of a contact in one harmonic."""
+        """Number of unknowns of one contact in one harmonic."""
         return 2 * self.directions
 
     @cached_property
@@ -69,49 +69,51 @@ class Layout(Frozen):
 
     @cached_property
     def waves_at(self) -> IntArray:
-        """The same of every harmonic, (harmonic, port)."""
+        """Index (harmonic, port) of the real part of each port's amplitude in every harmonic."""
         return self.wave_at + self.stride * np.arange(self.harmonics)[:, None]
 
     @cached_property
     def of_normal(self) -> npt.NDArray[np.bool_]:
-        """Whether an unknown of a contact is of its normal displacement, (width,)."""
+        """Mask (width,) of a contact's unknowns that belong to its normal displacement."""
         return self.along(self.directions - 1)
 
     def along(self, direction: int) -> npt.NDArray[np.bool_]:
-        """Whether an unknown of a contact is of its displacement along a direction, (width,)."""
+        """Mask (width,) of a contact's unknowns that belong to its displacement along a direction."""
         means = np.arange(self.directions) == direction
         found: npt.NDArray[np.bool_] = np.concatenate((means, np.tile(np.repeat(means, 2), self.harmonics)))
         return found
 
     @cached_property
     def places(self) -> tuple[IntArray, ...]:
-        """Where the unknowns of a contact's displacement along each direction are, each (1 + 2 harmonic,)."""
+        """Indices of a contact's unknowns along each direction, each (1 + 2 harmonic,)."""
         return tuple(np.flatnonzero(self.along(direction)) for direction in range(self.directions))
 
     def harmonic_of(self, harmonics: Sequence[int]) -> IntArray:
-        """Which of the harmonics an unknown of a contact is of, 0 for the means, (width,)."""
+        """Harmonic (width,) to which each unknown of a contact belongs, 0 for the means."""
         each = [self.directions, *[self.stride] * self.harmonics]
         return np.repeat([0, *harmonics], each).astype(np.intp)
 
     def blocks(self, x: FloatArray) -> FloatArray:
-        """Unknowns (..., unknown or more) by contact, (..., contact, width)."""
+        """Unknowns (..., unknown or more) grouped by contact: (..., contact, width)."""
         return x[..., : self.unknowns].reshape(*x.shape[:-1], self.contacts, self.width)
 
     def complex_ports(self, x: FloatArray) -> npt.NDArray[np.complex128]:
-        """Unknowns (unknown or more,) by port: the mean and the amplitudes, (port, 1 + harmonic)."""
+        """Unknowns (unknown or more,) as complex numbers by port: mean, amplitudes (port, 1 + harmonic)."""
         waves = x[self.waves_at] + 1j * x[self.waves_at + 1]
         return np.concatenate((x[self.mean_at][:, None], waves.T), axis=1)
 
     def flat(self, ports: npt.NDArray[np.complex128]) -> FloatArray:
-        """The other way round: (unknown,) of (port, 1 + harmonic)."""
+        """Unknowns (unknown,) from complex numbers (port, 1 + harmonic); inverse of `complex_ports`."""
         x = np.empty(self.unknowns)
         x[self.mean_at] = ports[:, 0].real
         x[self.waves_at], x[self.waves_at + 1] = ports[:, 1:].T.real, ports[:, 1:].T.imag
         return x
 
     def with_harmonics(self, x: FloatArray, old: Sequence[int], new: Sequence[int]) -> FloatArray:
-        """Unknowns (..., unknown + any) with other harmonics: those that they lack are zero; the rest
-        follows."""
+        """Unknowns (..., unknown + any) converted to other harmonics.
+
+        Amplitudes of new harmonics are zero; the entries after the unknowns follow unchanged.
+        """
         wide, to, of = _between(self, tuple(old), tuple(new))
         made = np.zeros((*x.shape[:-1], wide + x.shape[-1] - self.unknowns))
         made[..., to], made[..., wide:] = x[..., of], x[..., self.unknowns :]
@@ -120,14 +122,13 @@ class Layout(Frozen):
 
 @lru_cache(maxsize=256)
 def layout_of(contacts: int, directions: int, harmonics: int) -> Layout:
-    """That of so many, made once."""
+    """The `Layout` for these numbers, cached."""
     return Layout(contacts, directions, harmonics)
 
 
 @lru_cache(maxsize=256)
 def _between(layout: Layout, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, IntArray, IntArray]:
-    """How many unknowns there are with new harmonics; where those of harmonics that both have are among
-    these, and among the old ones."""
+    """Number of unknowns with new harmonics; indices of shared harmonics in the new and old ones."""
     wide = layout_of(layout.contacts, layout.directions, len(new))
     both = [h for h in (0, *old) if h == 0 or h in new]
     to, of = (

@@ -21,7 +21,7 @@ FROM_SINE = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
 
 
 class Linear(Frozen):
-    """The structure without its contacts; ports are the directions of each, the last of them its normal."""
+    """The structure without its contacts; ports are the contacts' directions, the last of each its normal."""
 
     natural: FloatArray  # (mode,) [rad/s]
     damping: FloatArray  # (mode,) ratio
@@ -36,7 +36,7 @@ class Linear(Frozen):
     driven: tuple[int, ...]  # harmonics h of the forces, of which the first is 1
 
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
-        """The structure seen from its ports at some harmonics, with the sums over its modes or without."""
+        """Receptances of the ports at some harmonics, with the sums over modes or without them."""
         ends = self.force, self.static, harmonics, summed
         seen = Receptance(self.ports, self.natural, self.damping, *ends, self.counted.size, self.driven)
         seen.add_inertia_forces(self.square)
@@ -44,38 +44,37 @@ class Linear(Frozen):
 
     @property
     def directions_of_contact(self) -> int:
-        """Ports of each contact, the last of which is along its normal."""
+        """Number of ports of each contact, the last of which is along its normal."""
         return self.ports.shape[1] // self.counted.size if self.counted.size else 0
 
     @property
     def normal(self) -> FloatArray:
-        """Shapes along the contacts' normals (mode, contact)."""
+        """Shapes (mode, contact) along the contacts' normals."""
         return self.ports[:, self.directions_of_contact - 1 :: self.directions_of_contact or 1]
 
     @cached_property
     def static(self) -> FloatArray:
-        """Flexibility of the ports for mean forces (port, port)."""
+        """Flexibility (port, port) of the ports for mean forces."""
         return np.ascontiguousarray(self.ports.T @ self.flexibility @ self.ports)
 
     @cached_property
     def static_of_dofs(self) -> FloatArray:
-        """Displacements of the degrees of freedom by mean forces on the ports (dof, port)."""
+        """Displacements (dof, port) of the degrees of freedom by unit mean forces on the ports."""
         return np.ascontiguousarray(self.dofs.T @ self.flexibility @ self.ports)
 
     @cached_property
     def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-        """As `attached_to`, of the degrees of freedom."""
+        """Combination of ports that each degree of freedom is, see `attached_to`."""
         return attached_to(self.ports, self.dofs)
 
     @cached_property
     def numbers(self) -> tuple[bytes, ...]:
-        """What is the same of structures that are the same."""
+        """Key of the structure: bytes that are equal for equal structures."""
         arrays = (getattr(self, field.name) for field in fields(Linear) if field.name != "driven")
         return (bytes(str(self.driven), "ascii"), *(array.tobytes() for array in arrays))
 
     def at(self, omega: float) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
-        """Receptance of the ports (driven, port, port) at a frequency, and their answer to the forces
-        (driven, port)."""
+        """Receptance (driven, port, port) and response to the forces (driven, port) at a frequency."""
         seen = self._at_forces
         seen.at(omega)
         G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)
@@ -86,8 +85,10 @@ class Linear(Frozen):
         return self.receptance(np.array(self.driven, dtype=np.float64))
 
     def answers_with(self, springs: FloatArray, omega: FloatArray) -> ComplexArray:
-        """Answers of the ports (case, point, driven, port) to the forces at frequencies omega (point,) with
-        springs (case, port) for contacts: of the modes' dynamic stiffness with these in it.
+        """Responses (case, point, driven, port) to the forces, with springs (case, port) in place of
+        contacts.
+
+        Frequencies are omega (point,). They come from the dynamic stiffness of the modes with the springs.
 
         That is as large as the modes are many, where the ports' receptance is as large as these are.
         """
@@ -101,17 +102,17 @@ class Linear(Frozen):
         return found
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
-        """Displacements (point, harmonic, dof) that forces on the ports (point, harmonic, port) make."""
+        """Displacements (point, harmonic, dof) by forces on the ports (point, harmonic, port)."""
         modal = force @ self.ports.T
         return amplitudes(self.natural, self.damping, omega, harmonics, modal) @ self.dofs
 
     def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
-        """Natural frequencies (mode,) [rad/s] with springs (port,) for contacts, as a harmonic meets them."""
+        """Natural frequencies (mode,) [rad/s] with springs (port,) in place of contacts, for a harmonic."""
         return with_springs(self.natural, self.ports, springs)
 
 
 def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-    """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
+    """Combination of ports (port, dof) that equals each degree of freedom, and a flag (dof,) where none does.
 
     Shapes on both, (mode, port) and (mode, dof). One port is enough where it moves as the degree of freedom:
     of fewer modes than ports all could be combined to that. A combination of several ports is one only where
@@ -129,7 +130,7 @@ def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.ND
 def _attached(
     of_ports: bytes, ports_shape: tuple[int, ...], of_dofs: bytes, dofs_shape: tuple[int, ...]
 ) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-    """The same of their numbers."""
+    """Combination of ports for `attached_to`, from the bytes of its arrays so that it can be cached."""
     ports = np.frombuffer(of_ports).reshape(ports_shape)
     dofs = np.frombuffer(of_dofs).reshape(dofs_shape)
     size = np.abs(dofs).max(axis=0, initial=0.0)
@@ -145,7 +146,7 @@ def _attached(
 
 
 def _single_shares(ports: FloatArray, dofs: FloatArray) -> FloatArray:
-    """Shares (port, dof) of the one port each whose shape is most nearly that of the degree of freedom.
+    """Shares (port, dof) of the single port whose shape is nearest to that of each degree of freedom.
 
     >>> _single_shares(np.array([[1.0, 2.0], [0.0, 4.0]]), np.array([[1.0], [2.0]])).tolist()
     [[0.0], [0.5]]
@@ -161,13 +162,13 @@ def _single_shares(ports: FloatArray, dofs: FloatArray) -> FloatArray:
 
 
 def with_springs(natural: FloatArray, ports: FloatArray | ComplexArray, springs: FloatArray) -> FloatArray:
-    """Natural frequencies of modes with springs (port,) on their ports (mode, port), in ascending order."""
+    """Natural frequencies (mode,) of modes with springs (port,) on ports (mode, port), ascending."""
     return _with_springs(natural.tobytes(), ports.tobytes(), ports.dtype.str, springs.tobytes())
 
 
 @lru_cache(REDUCTION.max_cached)
 def _with_springs(of_modes: bytes, of_ports: bytes, kind: str, of_springs: bytes) -> FloatArray:
-    """The same of their numbers."""
+    """Natural frequencies for `with_springs`, from the bytes of its arrays so that they can be cached."""
     natural, springs = np.frombuffer(of_modes), np.frombuffer(of_springs)
     ports = np.frombuffer(of_ports, dtype=kind).reshape(natural.size, springs.size)
     stiffness = np.diag(natural**2) + (ports.conj() * springs) @ ports.T
@@ -186,7 +187,7 @@ def amplitudes(
 def dynamic_stiffness(
     natural: FloatArray, damping: FloatArray, omega: FloatArray, harmonics: FloatArray
 ) -> ComplexArray:
-    """w_n^2 - w^2 + 2i zeta w_n w of each mode (point, harmonic, mode), nowhere zero, with w = h omega."""
+    """w_n^2 - w^2 + 2i zeta w_n w of modes (point, harmonic, mode), w = h omega; never zero."""
     w = (omega[:, None] * harmonics)[..., None]
     dynamic = (natural - w) * (natural + w) + 2j * damping * natural * w
     found: ComplexArray = np.where(dynamic == 0.0, DAMPING.min_ratio * w * w, dynamic)
@@ -194,7 +195,7 @@ def dynamic_stiffness(
 
 
 class _Last(threading.local):
-    """The structure that each thread asked for last, and what it is of: curves of a sweep have the same."""
+    """The structure that each thread requested last, with its key; the curves of a sweep share it."""
 
     def __init__(self) -> None:
         self.key: tuple[object, ...] = ()
@@ -205,7 +206,7 @@ _LAST = _Last()
 
 
 def linear_of(scene: Scene) -> Linear:
-    """The structure of a scene (of one curve)."""
+    """The `Linear` structure of a scene (of one curve)."""
     if scene.ring is not None or not scene.modal.frequency.all():  # others have the contacts' stiffness in it
         return _made(scene)
     modal, forces = scene.modal, [(one.amplitude, one.phase, one.power, one.harmonic) for one in scene.forces]
@@ -256,7 +257,7 @@ def _made(scene: Scene) -> Linear:
 def _flexibility(
     natural: FloatArray, normal: FloatArray, k_v: FloatArray, adrift: npt.NDArray[np.bool_]
 ) -> FloatArray:
-    """Of the modes with the normal springs that are counted to them; modes adrift stay where they are.
+    """Flexibility (mode, mode) of the modes, with normal springs counted to them; modes adrift have none.
 
     Without stiffness of its own a rigid-body mode has no flexibility. Then the normal springs of the contacts
     are counted to the structure, and taken off the contacts' forces again. The equation is the same, and its

@@ -13,7 +13,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Loads(NamedTuple):
-    """The forces are static + Im(sum_h (constant_h + omega^2 square_h) exp(i h omega t))."""
+    """External forces: static + Im(sum_h (constant_h + omega^2 square_h) exp(i h omega t))."""
 
     harmonics: tuple[int, ...]  # (driven,) h: 1, and those of which there are forces
     constant: ComplexArray  # (driven, dof)
@@ -21,12 +21,12 @@ class Loads(NamedTuple):
     static: FloatArray  # (dof,)
 
     def at(self, omega: float) -> ComplexArray:
-        """Amplitudes (driven, dof) at a frequency [rad/s]."""
+        """Force amplitudes (driven, dof) at a frequency [rad/s]."""
         return self.constant + omega**2 * self.square
 
 
 def driven_harmonics(scene: Scene) -> tuple[int, ...]:
-    """1, and the other harmonics at which there are forces, in order."""
+    """The harmonics at which there are forces, in order, and always 1."""
     return tuple(sorted({1, *(force.harmonic for force in scene.forces)}))
 
 

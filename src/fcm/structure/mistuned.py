@@ -1,4 +1,4 @@
-r"""A ring whose blades differ, in the modes of the ring whose blades are alike.
+r"""A ring with different blades, in the modal coordinates of the ring with equal blades.
 
 The tuned modes of nodal diameter n, P_i on one sector (P_i^H M P_i = 1 for each sector), move sector k by
 
@@ -28,10 +28,11 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class MistunedOptions(Frozen):
-    """Tolerances of what is computed of a mistuned ring."""
+    """Tolerances for mistuned rings."""
 
-    rigid_tolerance: float = 1e-9  # of the lowest w^2 of the tuned ring that is not 0: a w^2 below it is 0
-    # least likeness of the shapes of one family, where their strains are taken as alike
+    # w^2 relative to the lowest nonzero one of the tuned ring, below which it is 0
+    rigid_tolerance: float = 1e-9
+    # likeness of the shapes of a family from which on their strains are taken as alike
     min_likeness: float = 0.5
 
 
@@ -39,20 +40,20 @@ OPTIONS = MistunedOptions()
 
 
 class Basis(Frozen):
-    """The real coordinates of a ring: on sector k the shape of one is r_k Re P + i_k Im P of a mode's P."""
+    """Real coordinates of a ring: the shape on sector k is r_k Re P + i_k Im P of a sector mode's P."""
 
     mode: npt.NDArray[np.intp]  # (coordinate,) the sector's mode that it belongs to
     real: FloatArray  # (coordinate, sector)
     imaginary: FloatArray  # (coordinate, sector)
 
     def shapes(self, shapes: ComplexArray) -> FloatArray:
-        """Shapes of the ring (coordinate, sector, dof) from those of a sector (mode, dof)."""
+        """Shapes of the ring (coordinate, sector, dof) from the sector's shapes (mode, dof)."""
         own = shapes[self.mode][:, None, :]
         found: FloatArray = self.real[..., None] * own.real + self.imaginary[..., None] * own.imag
         return found
 
     def stiffness(self, energy: FloatArray, change: FloatArray) -> FloatArray:
-        """dK (coordinate, coordinate) by changes d (sector,) of the blades' stiffness.
+        """Stiffness change (coordinate, coordinate) by relative changes (sector,) of the blades' stiffness.
 
         energy (2, mode, 2, mode) is K_b between the real (0) and imaginary (1) parts of the modes' shapes.
         """
@@ -66,7 +67,7 @@ class Basis(Frozen):
 
 
 def basis_of(diameter: npt.NDArray[np.int64], sectors: int) -> Basis:
-    """The coordinates of a ring of sectors, from the nodal diameters (mode,) of a sector's modes.
+    """Coordinates of a ring with a number of sectors, from the nodal diameters (mode,) of a sector's modes.
 
     >>> basis = basis_of(np.array([0, 1, 2]), 4)
     >>> basis.mode.tolist(), basis.real[1].round(3).tolist()
@@ -83,7 +84,10 @@ def basis_of(diameter: npt.NDArray[np.int64], sectors: int) -> Basis:
 
 
 def energy_of(shapes: ComplexArray, weighted: ComplexArray) -> FloatArray:
-    """K_b between real and imaginary parts (2, mode, 2, mode); weighted is K_b times shapes (mode, row)."""
+    """Elastic energy by K_b between real and imaginary parts (2, mode, 2, mode).
+
+    `weighted` is K_b times the shapes (mode, row).
+    """
     left, right = (np.concatenate((one.real, one.imag)) for one in (shapes, weighted))
     found = left @ right.T
     modes = len(shapes)
@@ -93,7 +97,7 @@ def energy_of(shapes: ComplexArray, weighted: ComplexArray) -> FloatArray:
 def strains(
     frequency: FloatArray, shapes: ComplexArray, diameter: npt.NDArray[np.int64]
 ) -> tuple[ComplexArray, FloatArray]:
-    """Strain amplitudes (mode, family) of sector modes whose stiffness is not known, and their likeness.
+    """Strain amplitudes (mode, family) of sector modes with unknown stiffness, and their likeness.
 
     The fundamental mistuning model (Feiner and Griffin, Journal of Turbomachinery 124, 2002): the i-th modes
     of all diameters are a family, in which a sector deforms alike. So the strain energy of a sector between
@@ -120,7 +124,7 @@ def strains(
 def modes_of_mistuned(
     squared: FloatArray, change: FloatArray, options: MistunedOptions = OPTIONS
 ) -> tuple[FloatArray, FloatArray]:
-    """w^2 (mode,) in ascending order and vectors (coordinate, mode) of diag(squared) + change.
+    """w^2 (mode,) in ascending order, and eigenvectors (coordinate, mode), of diag(squared) + change.
 
     They are found by a Jacobi method, which is as accurate for the lowest modes as for the highest (Drmac and
     Veselic, SIAM Journal on Matrix Analysis 29, 2008). The highest stand for flexibility and can be a million

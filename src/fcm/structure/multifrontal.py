@@ -1,4 +1,4 @@
-"""Factors of large sparse symmetric or Hermitian matrices by fronts: A = L S L^H, S of signs.
+"""Multifrontal factors of large sparse symmetric or Hermitian matrices: A = L S L^H with signs S.
 
 Columns that share their entries are eliminated together, in a dense front, by LAPACK and BLAS. Its pivots are
 factored by Cholesky where they are positive definite, else by their eigenvalues, whose signs are counted. By
@@ -29,7 +29,7 @@ Matrix = Any  # scipy sparse array or matrix
 
 
 class SingularError(ValueError):
-    """A matrix with a pivot of zero."""
+    """Raised for a matrix with a pivot of zero."""
 
 
 class Factor:
@@ -46,7 +46,7 @@ class Factor:
     """
 
     def __init__(self, matrix: Matrix, tree: Tree | None = None) -> None:
-        """Factorise a matrix that both triangles are given of, in the order of a tree of its own.
+        """Factorises a matrix given with both triangles, in the order of a tree (made if none is given).
 
         Raises
         ------
@@ -65,7 +65,7 @@ class Factor:
         self.negative = sum(front.negative for front in self.fronts)
 
     def solve(self, loads: Array) -> Array:
-        """The solution (row,) or (row, load) of A x = loads."""
+        """Solution (row,) or (row, load) of A x = loads."""
         loads = np.asarray(loads)
         order, begin = self._tree.order, self._tree.begin
         table = loads.reshape(order.size, -1)[order].astype(np.result_type(self._kind, loads), copy=False)
@@ -108,7 +108,7 @@ class Factor:
 
 
 class _Front(Frozen):
-    """What is kept of a front of pivots F = L S L^H and rows B below them."""
+    """What is kept of an eliminated front: pivots F = L S L^H, and the rows B below them."""
 
     pivots: Array  # L; or its inverse where signs are given
     beneath: Array  # B L^-H
@@ -119,13 +119,13 @@ class _Front(Frozen):
         return 0 if self.signs is None else int((self.signs < 0.0).sum())
 
     def forward(self, loads: Array) -> Array:
-        """S L^-1 loads."""
+        """Forward substitution of a front: S L^-1 loads."""
         if self.signs is not None:
             return np.asarray(self.signs[:, None] * (self.pivots @ loads))
         return _triangular(self.pivots, loads, 0)
 
     def backward(self, mine: Array, below: Array) -> Array:
-        """L^-H (mine - S (B L^-H)^H below)."""
+        """Backward substitution of a front: L^-H (mine - S (B L^-H)^H below)."""
         taken = (below.conj().T @ self.beneath).conj().T
         if self.signs is not None:
             return np.asarray(self.pivots.conj().T @ (mine - self.signs[:, None] * taken))
@@ -133,14 +133,14 @@ class _Front(Frozen):
 
 
 def _triangular(lower: Array, loads: Array, turned: int) -> Array:
-    """L^-1 loads, or L^-H loads where turned is 2."""
+    """Solves with a triangular factor: L^-1 loads, or L^-H loads if `turned` is 2."""
     (trsm,) = get_blas_funcs(("trsm",), (lower, loads))
     found: Array = trsm(1.0, lower, loads, lower=1, trans_a=turned)
     return found
 
 
 def _eliminated(full: Array, count: int, scale: float) -> tuple[_Front, Array]:
-    """The front of the first columns, and the lower triangle of what it leaves to the rows below."""
+    """The front of the first `count` columns, and the lower triangle of its update to the rows below."""
     (potrf,) = get_lapack_funcs(("potrf",), (full,))
     pivots, failed = potrf(full[:count, :count], lower=1, clean=1)
     rest = full[count:, count:]
@@ -157,7 +157,7 @@ def _eliminated(full: Array, count: int, scale: float) -> tuple[_Front, Array]:
 
 
 def _of_any_sign(full: Array, count: int, scale: float) -> _Front:
-    """A front whose pivots F = Q D Q^H are not all positive: L = Q |D|^1/2, S the signs of D."""
+    """A front with indefinite pivots F = Q D Q^H: L = Q |D|^1/2, S the signs of D."""
     value, vectors = np.linalg.eigh(full[:count, :count])
     size = np.abs(value)
     if size.min() <= count * np.finfo(float).eps * scale:
@@ -167,7 +167,7 @@ def _of_any_sign(full: Array, count: int, scale: float) -> _Front:
 
 
 def _add(full: Array, at: IntArray, left: Array, together: int = 64) -> None:
-    """Add the lower triangle of what a front has left to another, at ascending places.
+    """Adds the update of one front (lower triangle) to another front, at ascending places.
 
     Some columns at a time: those of one node alone would take as many calls as there are nodes, squared. What
     is above the diagonal in them is added as well, where nothing is read.

@@ -1,4 +1,4 @@
-"""The structure seen from its contacts: receptances at every harmonic of a frequency, modes summed out.
+"""Receptances of the structure at the contacts, for every harmonic of a frequency, summed over modes.
 
 With modes of mass 1, shapes P on the ports, those of the first contact first, and x = Re(X exp(i h omega t)),
 
@@ -29,18 +29,21 @@ from fcm.structure.options import DAMPING, RECEPTANCE
 
 @cython.cclass
 class Receptance:
-    """G_re, G_im, dG_re, dG_im (harmonic, port, port); X_re, X_im, dX_re, dX_im (driven, port) the answer to
-    the external forces; c, s (harmonic, mode) the compliances of the modes and their derivatives; static
-    (port, port) for mean forces; force_re, force_im, slope_re, slope_im (driven, mode) the external forces at
-    omega and their derivatives. Without summed, for many ports, none of G is made: what asks for answers to
-    forces goes by the modes.
+    """Receptances at the ports of contacts, and the response to external forces, at one frequency.
+
+    G_re, G_im, dG_re, dG_im (harmonic, port, port) are receptances and derivatives; X_re, X_im, dX_re, dX_im
+    (driven, port) the response to the external forces. c, s (harmonic, mode) are the compliances of the modes
+    and their derivatives, static (port, port) is for mean forces. force_re, force_im, slope_re, slope_im
+    (driven, mode) are the external forces at omega and their derivatives. Without `summed`, for many ports, G
+    is not made; responses then go by the modes.
 
     force (driven, mode) acts at the harmonics driven; forced (harmonic,) is the number of the force at each
     of the list, -1 where there is none, and first the place of harmonic 1 in the list.
 
     mean_at, wave_at (port,): indices of the mean of a port and of the real part of its first harmonic among
     the unknowns of a balance, see `fcm.structure.layout`. stride: from the index of one harmonic to the next.
-    contacts: how many the ports belong to."""
+    contacts: how many the ports belong to.
+    """
 
     def __init__(
         self,
@@ -86,14 +89,14 @@ class Receptance:
         self.omega = -1.0
 
     def add_inertia_forces(self, square: npt.NDArray[np.complex128]) -> None:
-        """Add forces omega^2 square (driven, mode)."""
+        """Sets additional external forces omega^2 square (driven, mode)."""
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.omega = -1.0
 
     def set_external_forces(
         self, constant: npt.NDArray[np.complex128], square: npt.NDArray[np.complex128]
     ) -> None:
-        """Put other external forces, constant + omega^2 square (driven, mode), in their place."""
+        """Replaces the external forces by constant + omega^2 square (driven, mode)."""
         self.constant_re, self.constant_im = np.array(constant.real), np.array(constant.imag)
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         if self.omega != -1.0:
@@ -101,7 +104,7 @@ class Receptance:
             self.external()
 
     def of_harmonic(self, j: int) -> npt.NDArray[np.complex128]:
-        """G (port, port) of the harmonic number j of the list, at the frequency put last."""
+        """Receptance G (port, port) of harmonic number j of the list, at the last frequency."""
         if self.summed:
             return np.asarray(self.G_re)[j] + 1j * np.asarray(self.G_im)[j]  # type: ignore[no-any-return]
         c, shapes = np.asarray(self.c_re)[j] + 1j * np.asarray(self.c_im)[j], np.asarray(self.shapes)
@@ -110,7 +113,7 @@ class Receptance:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def at(self, omega: cython.double) -> cython.int:
-        """Fill the arrays for a frequency."""
+        """Fills all arrays for a frequency [rad/s]."""
         j: cython.int
         if omega == self.omega:
             return 0
@@ -130,7 +133,7 @@ class Receptance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def forces(self) -> cython.void:
-        """The external forces on the modes."""
+        """Sets the external forces on the modes, and their derivatives, at the frequency."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         w: cython.double = self.omega
@@ -169,7 +172,7 @@ class Receptance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def sums(self, j: cython.int) -> cython.void:
-        """Sum over the modes, of one harmonic; receptances are symmetric."""
+        """Sums the receptances of one harmonic over the modes; they are symmetric."""
         k: cython.Py_ssize_t
         m: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -193,7 +196,7 @@ class Receptance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def sums_by_pairs(self, j: cython.int) -> cython.void:
-        """The same numbers, of several pairs of ports at once, which do not wait for one another."""
+        """Sums the receptances of one harmonic for several pairs of ports at once, for speed."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         m: cython.Py_ssize_t
@@ -232,7 +235,7 @@ class Receptance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def external(self) -> cython.void:
-        """The answer of the ports to the external forces."""
+        """Sets the responses of the ports to the external forces, at all driven harmonics."""
         j: cython.int
         for j in range(self.count):
             if self.forced[j] >= 0:
@@ -241,7 +244,7 @@ class Receptance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def answer(self, j: cython.int, n: cython.int) -> cython.void:
-        """To those number n, at the harmonic number j."""
+        """Sets the response of the ports to external force number n, which acts at harmonic number j."""
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         for k in range(self.ports):
@@ -264,7 +267,11 @@ class Receptance:
 
 @cython.cclass
 class TravellingReceptance(Receptance):
-    """`waves` (harmonic,): of each harmonic the receptance on (a, b), of that harmonic alone."""
+    """Receptances of a ring's sector, from those of each travelling-wave harmonic.
+
+    `waves` (harmonic,) are real receptances on ports with real and with imaginary parts, each of one
+    harmonic.
+    """
 
     def __init__(
         self,
@@ -282,7 +289,7 @@ class TravellingReceptance(Receptance):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def at(self, omega: cython.double) -> cython.int:
-        """Fill the arrays for a frequency."""
+        """Fills all arrays for a frequency [rad/s]."""
         j: cython.int
         if omega == self.omega:
             return 0
@@ -296,7 +303,7 @@ class TravellingReceptance(Receptance):
     @cython.cfunc
     @cython.exceptval(check=False)
     def from_real(self, j: cython.int, wave: Receptance) -> cython.void:
-        """One harmonic from its real blocks."""
+        """Sets the complex receptance of one harmonic from its real blocks."""
         n: cython.Py_ssize_t = self.ports
         k: cython.int = self.forced[j]
         p: cython.Py_ssize_t
@@ -328,7 +335,7 @@ class TravellingReceptance(Receptance):
 
 @cython.cclass
 class ForcedModes:
-    """Modes of mass 1 with shapes on the ports (mode, port) and on the degrees of freedom (mode, dof)."""
+    """Forced response of modes of mass 1, with shapes on ports (mode, port) and dofs (mode, dof)."""
 
     def __init__(
         self,
@@ -352,7 +359,8 @@ class ForcedModes:
         size: cython.double[::1],
         out: cython.double[::1],
     ) -> cython.int:
-        """Greatest amplitude over the size of a degree of freedom, of some harmonics: (harmonic,).
+        """Fills, for some harmonics, the greatest amplitude over the size of a degree of freedom:
+        (harmonic,).
 
         force (harmonic, port, 2): real and imaginary parts; size (dof,), where 0 does not count; harmonic 1
         is the first of both.
@@ -367,7 +375,7 @@ class ForcedModes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def move(self, w: cython.double, force: cython.double[:, ::1]) -> cython.void:
-        """The modes under the forces on the ports (port, 2) of a frequency."""
+        """Sets the modal amplitudes under forces on the ports (port, 2) at a frequency."""
         m: cython.Py_ssize_t
         p: cython.Py_ssize_t
         for m in range(self.natural.shape[0]):
@@ -387,7 +395,7 @@ class ForcedModes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def greatest(self, size: cython.double[::1]) -> cython.double:
-        """Greatest of the amplitudes over sizes (dof,)."""
+        """Greatest amplitude relative to sizes (dof,)."""
         m: cython.Py_ssize_t
         d: cython.Py_ssize_t
         most: cython.double = 0.0

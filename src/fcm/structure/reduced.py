@@ -1,4 +1,4 @@
-"""The lowest modes of a structure, and modes for the flexibility of the rest."""
+"""Reduction of a structure to its lowest modes, and modes for the flexibility of the rest."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from fcm.structure.rounding import of_frequencies, of_receptances
 
 
 class ModeSelection(Frozen):
-    """What is kept of a structure."""
+    """Options on what is kept of a structure."""
 
     count: int | None = None  # modes; None for all up to some times the highest frequency of interest
     flexibility: bool = True  # whether that of the other modes is kept as well, under the loads
@@ -38,7 +38,7 @@ class ModeSelection(Frozen):
 
 
 class Reduced(Frozen):
-    """A structure as modes of mass 1; the first `kept` are its own, the others stand for what is left out."""
+    """A reduced structure as modes of mass 1; the first `kept` are its own, the others flexibility modes."""
 
     modes: Modes
     kept: int
@@ -59,7 +59,9 @@ def reduced(
     top: float,
     selection: ModeSelection,
 ) -> Reduced:
-    """Modes of a structure for loads (row, load) up to the angular frequency top.
+    """Reduces a structure to modes for loads (row, load) up to the angular frequency top.
+
+    For the selection's other rows the error of their displacement is estimated as well.
 
     At the other rows of the selection it is told how far what that leaves out is off.
     """
@@ -97,7 +99,7 @@ def reduced(
 
 
 def _cleared(system: System, found: Modes) -> Modes:
-    """The modes, of which those that may be rigid-body modes have nothing of others in them."""
+    """The modes, with possible rigid-body modes cleared of all other modes."""
     count = may_be_rigid(system.K, system.M, found)
     if not count:
         return found
@@ -106,7 +108,7 @@ def _cleared(system: System, found: Modes) -> Modes:
 
 
 def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Modes]:
-    """Elastic modes orthogonal to the first, rigid ones.
+    """The system and its modes, with elastic modes orthogonal to the rigid-body modes, which are first.
 
     Beside rigid-body modes, -1 / s, they lose the digits by which s is nearer to zero than their lambda. If
     these are many, all are solved for again about -lambda of the first.
@@ -127,14 +129,14 @@ def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Mo
 
 
 def _together(kept: Modes, more: Modes) -> Modes:
-    """Those of the structure, and after them those that stand for the others."""
+    """The modes of the structure followed by those that represent the rest."""
     return Modes(
         np.concatenate((kept.stiffness, more.stiffness)), np.concatenate((kept.shapes, more.shapes), axis=1)
     )
 
 
 def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
-    """Those that move least under a load along themselves."""
+    """Unit loads (row, load) on those rows that move least under a load along themselves."""
     elastic = modes.stiffness > 0.0
     seen = np.abs(modes.shapes[list(others)][:, elastic].T) ** 2
     order = np.argsort((seen / modes.stiffness[elastic, None]).sum(axis=0))
@@ -144,7 +146,7 @@ def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:
-    """How many modes are kept where no number is asked for."""
+    """Number of modes kept where no number is requested."""
     if rows <= REDUCTION.full_size:
         return modes.count
     return max(REDUCTION.min_modes, int((modes.stiffness < (REDUCTION.frequency_factor * top) ** 2).sum()))

@@ -1,4 +1,4 @@
-"""Rigid-body modes: which of them the contacts hold when they are closed, and which are adrift.
+"""Rigid-body modes: those that closed contacts hold, and those that are adrift.
 
 A rigid-body mode has no stiffness of its own. In the mean only normal forces answer its displacement, for
 friction depends on motion and not on place. So the rigid-body modes are turned, among themselves, into
@@ -20,7 +20,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def settled(scene: Scene) -> tuple[Modal, BoolArray]:
-    """The modes with rigid-body modes turned into held ones and such as are adrift, and which are (mode,)."""
+    """The modes with rigid-body modes rotated into held and adrift ones; mask (mode,) of the latter."""
     modal = scene.modal
     adrift = np.zeros(modal.frequency.size, dtype=bool)
     rigid = np.flatnonzero(modal.frequency == 0.0)

@@ -1,4 +1,4 @@
-"""Rigid-body modes as an eigensolver gives them: with a small frequency, which is its rounding."""
+"""Recognises rigid-body modes in the results of an eigensolver, whose small frequency is rounding."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST = 6  # rigid-body modes of one body
 
 
 def rigid_by_gap(frequency: FloatArray, most: int = MOST) -> int:
-    """How many of the lowest modes are rigid-body modes, of those with a frequency above 0: at most `most`.
+    """Number of rigid-body modes among modes of nonzero frequency, by a gap after the lowest; at most `most`.
 
     Their own frequencies are rounding, and may be as far from each other.
 
@@ -30,7 +30,7 @@ def rigid_by_gap(frequency: FloatArray, most: int = MOST) -> int:
 
 
 def most_rigid(K: Matrix) -> int:
-    """How many rigid-body modes there may be: six of each body, fewer of one with fewer rows.
+    """Greatest possible number of rigid-body modes: six for each body, fewer for one with fewer rows.
 
     >>> import scipy.sparse
     >>> most_rigid(scipy.sparse.block_diag([np.ones((2, 2)), np.ones((9, 9))]))
@@ -43,7 +43,7 @@ def most_rigid(K: Matrix) -> int:
 
 
 def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
-    """How many of the lowest modes have no stiffness, beyond the rounding of matrices.
+    """Number of lowest modes that have no stiffness beyond the rounding of the matrices.
 
     No unit of a row changes what is compared, each time with a gap to the next frequency that is the wider,
     the less is known of the rounding:
@@ -76,7 +76,7 @@ def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
 
 
 def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
-    """How many of the lowest modes may be rigid-body modes: before a gap, with little elastic energy."""
+    """Number of lowest modes that may be rigid-body modes: before a gap, with little elastic energy."""
     size = np.abs(modes.stiffness)
     share = _share(K, modes)
     little = (share <= RIGID_BODY.nearly_rigid[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
@@ -92,7 +92,7 @@ def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
 
 
 def _nearest(left: float) -> float:
-    """How near the next frequency may be where so much is left of the terms, up to the first of `nearly`."""
+    """Greatest ratio of neighbouring frequencies that is still a gap, for a share `left` of the terms."""
     return min(
         RIGID_BODY.min_ratio,
         RIGID_BODY.nearly_rigid[1]
@@ -101,7 +101,7 @@ def _nearest(left: float) -> float:
 
 
 def _share(K: Matrix, modes: Modes) -> FloatArray:
-    """What is left of the sum of the terms of each mode's elastic energy, relative to their sizes."""
+    """Elastic energy of each mode relative to the sum of the magnitudes of its terms."""
     size = np.abs(modes.shapes)
     terms = np.einsum("ij,ij->j", size, abs(K) @ size)
     share: FloatArray = np.abs(modes.stiffness) / np.where(terms > 0.0, terms, 1.0)
@@ -109,7 +109,7 @@ def _share(K: Matrix, modes: Modes) -> FloatArray:
 
 
 def _unknown(modes: Modes) -> float:
-    """The stiffness up to which negative ones say that nothing is known; 0 where there are none."""
+    """Stiffness up to which modes are unknown, judged by the most negative one; 0 without negative ones."""
     return RIGID_BODY.negative_factor * max(0.0, -float(modes.stiffness.min(initial=0.0)))
 
 
@@ -127,7 +127,7 @@ def _low(K: Matrix, M: Matrix, share: FloatArray) -> FloatArray:
 
 
 def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int:
-    """How many of the lowest modes may have no stiffness, by the digits of K, far below the next that has."""
+    """Number of lowest modes without stiffness within the digits of K, far below the next one; 0 if none."""
     may = modes.stiffness <= RIGID_BODY.standard_deviations * energy_uncertain(K, modes.shapes)
     count = may.size if may.all() else int(may.argmin())
     apart = (
@@ -139,7 +139,7 @@ def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int
 
 
 def unclear_below(K: Matrix, modes: Modes, rigid: int) -> float:
-    """Up to which part of the first elastic frequency the digits of K do not tell modes from rigid-body ones.
+    """Fraction of the first elastic frequency below which the digits of K cannot exclude rigid-body modes.
 
     0 where that is too little to be said, or nothing is rigid.
     """

@@ -1,4 +1,4 @@
-"""The structure of a sector of a ring as arrays: another one for each harmonic of a travelling wave."""
+"""The structure of a ring's sector as arrays, which differ for each harmonic of a travelling wave."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Wave(Frozen):
-    """The structure as one harmonic meets it."""
+    """The modes of a sector for one harmonic of a travelling wave."""
 
     natural: FloatArray  # (mode,) [rad/s]
     damping: FloatArray  # (mode,) ratio
@@ -26,36 +26,36 @@ class Wave(Frozen):
     dofs: ComplexArray  # (mode, dof)
 
     def stiffened(self, springs: FloatArray) -> FloatArray:
-        """Natural frequencies with springs (port,) along the ports."""
+        """Natural frequencies [rad/s] with springs (port,) along the ports."""
         return with_springs(self.natural, self.ports, springs)
 
 
 class RingLinear(Linear):
-    """The structure of a sector; the fields of `Linear` are what the mean meets, of nodal diameter 0."""
+    """The structure of a sector; the fields of `Linear` are those for the mean, of nodal diameter 0."""
 
     ring: Ring
     directions: FloatArray  # (dof, port)
     loads: Loads  # (dof,)
 
     def wave(self, harmonic: int) -> Wave:
-        """What a harmonic meets."""
+        """The modes of the sector for a harmonic of the travelling wave."""
         natural, damping, shapes = self.ring.modes(harmonic)
         return Wave(natural, damping, shapes @ self.directions, shapes)
 
     @cached_property
     def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-        """As `Linear.attached`: a displacement is a combination of ports only if it is that in every wave."""
+        """Combination of ports that each degree of freedom is, see `Linear.attached`; equal in every wave."""
         waves = [self.wave(harmonic) for harmonic in range(self.ring.period)]
         ports, dofs = (np.concatenate([getattr(one, name) for one in waves]) for name in ("ports", "dofs"))
         return attached_to(*(np.concatenate((shapes.real, shapes.imag)) for shapes in (ports, dofs)))
 
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
-        """The sector seen from its ports at some harmonics."""
+        """Receptances of the sector's ports at some harmonics."""
         waves = [self._real(int(h)) for h in harmonics]
         return TravellingReceptance(waves, self.static, harmonics, self.counted.size, self.driven)
 
     def _real(self, harmonic: int) -> Receptance:
-        """The receptance of one harmonic on ports with the real and those with the imaginary parts."""
+        """Receptance of one harmonic, on the ports' real parts and imaginary parts as separate real ports."""
         wave = self.wave(harmonic)
         both = np.concatenate((wave.ports.real, wave.ports.imag), axis=1)
         force, square = np.zeros((2, 1, len(wave.dofs)), dtype=np.complex128)
@@ -68,7 +68,7 @@ class RingLinear(Linear):
         return seen
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
-        """As `Linear.displacements`."""
+        """Displacements (point, harmonic, dof) by forces on the ports (point, harmonic, port)."""
         found = np.zeros((*force.shape[:2], self.directions.shape[0]), dtype=np.complex128)
         for j, h in enumerate(harmonics):
             wave = self.wave(int(h))
@@ -79,12 +79,12 @@ class RingLinear(Linear):
         return found
 
     def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
-        """As `Linear.stiffened`, of the modes that a harmonic meets."""
+        """Natural frequencies (mode,) [rad/s] of a harmonic's modes, with springs (port,) for contacts."""
         return self.wave(harmonic).stiffened(springs)
 
 
 class Diameter(Frozen):
-    """Natural frequencies [rad/s] in ascending order, (mode,) each."""
+    """Natural frequencies [rad/s] of one nodal diameter, in ascending order, (mode,) each."""
 
     number: int
     opened: FloatArray  # without the contacts
@@ -92,7 +92,7 @@ class Diameter(Frozen):
 
 
 def nodal_diameters(scene: Scene) -> list[Diameter]:
-    """Those that have modes, from 0 to half of the sectors.
+    """Natural frequencies of all nodal diameters that have modes, from 0 to half of the sectors.
 
     >>> import fcm
     >>> disk = nodal_diameters(fcm.load_scene("bladed-disk"))

@@ -1,4 +1,4 @@
-"""What rounding leaves uncertain of modes and receptances: of a low mode's elastic energy most cancels.
+"""Effect of rounding on modes and receptances: most of a low mode's elastic energy cancels.
 
 Stiff parts beside soft ones, and fine meshes, make the terms of the elastic energy of a mode many orders
 greater than their sum. The frequency is off by what is lost of that sum. The shapes are off, too: they have
@@ -19,7 +19,7 @@ LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic ene
 
 
 def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
-    """How far the frequency of each mode may be off, relative; 0 for rigid-body modes.
+    """Relative error of each mode's frequency by rounding; 0 for rigid-body modes.
 
     Each row of the sum is rounded by itself: two deviations of that are taken, and of entries that were
     written with few digits.
@@ -34,7 +34,7 @@ def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
 
 
 def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega: float) -> float:
-    """How far the answer to a load along itself is off, relative to the static one, up to omega.
+    """Error of a load's own receptance by rounding, relative to the static one, up to omega.
 
     At rest, near it, between resonances and at omega; at a resonance by as much more as that is higher.
     The answer of rigid-body modes, which have no static one, is that at omega. Of many loads those are looked
@@ -61,7 +61,10 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
 
 
 def _between(modes: Modes, omega: float) -> FloatArray:
-    """Frequencies up to omega that are far from those of all modes, the last of them omega; none up to 0."""
+    """Frequencies up to omega that are far from all modes, omega itself being the last.
+
+    Empty for omega = 0.
+    """
     if not omega:
         return np.zeros(0)
     ends = np.append(np.sqrt(modes.stiffness[modes.stiffness < omega**2]), omega)
@@ -74,7 +77,7 @@ def _between(modes: Modes, omega: float) -> FloatArray:
 def _energy_and_error(
     K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, a: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Displacement of each load along itself at w^2 = -a, and how far the answer's energy is from it."""
+    """Displacement of each load along itself at w^2 = -a, and the rounding error of its energy."""
     on_modes = modes.shapes.conj().T @ loads
     answer = on_modes / (modes.stiffness + a)[:, None]
     work: FloatArray = np.einsum("ij,ij->j", on_modes.conj(), answer).real

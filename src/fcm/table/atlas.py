@@ -42,12 +42,15 @@ class Geometry(NamedTuple):
 
 
 def geometry(b_bar: FloatArray, phi: FloatArray) -> Geometry:
-    """Of points of one shape, with full relative accuracy of E however small it is."""
+    """Slip geometry of points of one shape, with full relative accuracy of E however small it is."""
     return Geometry(*slip_geometry(b_bar.reshape(-1), phi.reshape(-1)).reshape(3, *b_bar.shape))
 
 
 def delta_separation(u: FloatArray, b_bar: FloatArray) -> FloatArray:
-    """Of u in separation, 0 at n0 = b and 1 at n0 = -b: u = arcsin(sin(FOLD_U) / pi ...)."""
+    """Angle delta at coordinate u in separation, which is 0 at n0 = b and 1 at n0 = -b.
+
+    It inverts u = arcsin(sin(FOLD_U) / pi ...).
+    """
     layer = 1.0 / (1.0 + b_bar)
     scaled = (np.pi * np.sin(FOLD_U * u) / np.sin(FOLD_U)) ** 2 / (np.pi + layer)
     delta: FloatArray = np.minimum(0.5 * (scaled + np.sqrt(scaled * (scaled + 4.0 * layer))), np.pi)
@@ -55,7 +58,7 @@ def delta_separation(u: FloatArray, b_bar: FloatArray) -> FloatArray:
 
 
 def t_slip(u: FloatArray) -> FloatArray:
-    """Inverse of `u_slip`."""
+    """Coordinate t of u, the inverse of `u_slip`."""
     t: FloatArray = np.sin(0.5 * np.pi * u) ** 2
     return t
 
@@ -74,7 +77,7 @@ def b_variation(x: FloatArray, phi: FloatArray) -> FloatArray:
 
 
 def phi_phase(z: FloatArray) -> FloatArray:
-    """Inverse of `z_phase`."""
+    """Phase phi of z, the inverse of `z_phase`."""
     phi = 0.5 * np.pi * (1.0 + np.sin(FOLD_Z * (2.0 * z - 1.0)) / np.sin(FOLD_Z))
     inside: FloatArray = np.clip(phi, 0.0, np.pi)
     return inside

@@ -105,7 +105,7 @@ def _reduced_separation(nodes: Nodes, first: int) -> FloatArray:
 
 
 def _reduced_slip(nodes: Nodes) -> FloatArray:
-    """G = (F - F_edge) / E."""
+    """Reduced coefficients G = (F - F_edge) / E of the slip chart at its nodes."""
     F_b, F_s, F_c = fourier_coefficients(*nodes)
     shape = atlas.geometry(nodes.b_bar, nodes.phi)
     edge = 0.5 * (shape.high - shape.low)

@@ -38,7 +38,7 @@ def vanishing_variation(delta: FloatArray, phi: FloatArray) -> FloatArray:
 
 
 def _primitive(theta: FloatArray, nu: FloatArray, phi: FloatArray) -> FloatArray:
-    """Of nu + sin(theta + phi) times 1/2, sin(theta), cos(theta)."""
+    """Antiderivatives of nu + sin(theta + phi) times 1/2, sin(theta) and cos(theta)."""
     mean = 0.5 * (nu * theta - np.cos(theta + phi))
     sine = -nu * np.cos(theta) + 0.5 * (theta * np.cos(phi) - 0.5 * np.sin(2.0 * theta + phi))
     cosine = nu * np.sin(theta) + 0.5 * (theta * np.sin(phi) - 0.5 * np.cos(2.0 * theta + phi))

@@ -22,7 +22,7 @@ Sampler = Callable[[int, int], tuple[FloatArray, FloatArray, FloatArray]]  # of 
 
 
 class Interpolant(Protocol):
-    """What can be measured: a `Table`, or anything that is called like one."""
+    """Protocol of what can be measured: a `Table`, or anything that is called like one."""
 
     def __call__(
         self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
@@ -52,7 +52,7 @@ def sample(count: int, seed: int = ERROR_OPTIONS.seed) -> tuple[FloatArray, Floa
 
 
 def _small(count: int, decades: int, random: np.random.Generator) -> FloatArray:
-    """Of either sign, from 10^decades to 1, uniform in log."""
+    """Random numbers of either sign with magnitudes from 10^decades to 1, uniform in their logarithm."""
     size: FloatArray = 10.0 ** random.uniform(decades, 0.0, count) * random.choice((-1.0, 1.0), count)
     return size
 
@@ -67,7 +67,7 @@ def _variation(count: int, random: np.random.Generator) -> FloatArray:
 
 
 def regime(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> npt.NDArray[np.int64]:
-    """Index into REGIMES."""
+    """Index into REGIMES of the regime at each point."""
     width = atlas.geometry(b_bar, phi).width
     code = np.where(n0_bar < b_bar, 1, np.where(n0_bar - b_bar < width, 2, 3))
     return np.where(n0_bar <= -b_bar, 0, code)

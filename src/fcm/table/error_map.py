@@ -87,6 +87,6 @@ def _peaks(error: FloatArray, n0: FloatArray, b: FloatArray) -> list[tuple[float
 
 
 def _greatest(error: FloatArray, n0: FloatArray, b: FloatArray) -> tuple[tuple[float, float], float]:
-    """Where an error is greatest, and how great."""
+    """Place (n0, b) and value of the greatest error."""
     index = np.unravel_index(np.argmax(error), error.shape)
     return (float(n0[index]), float(b[index])), float(error[index])

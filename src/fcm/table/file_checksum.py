@@ -14,7 +14,7 @@ LENGTH = len(START) + 9  # eight hexadecimal digits and the end of the line
 
 
 def attach(path: Path) -> None:
-    """Seal a file."""
+    """Appends the checksum line to a file."""
     with path.open("r+b") as file:
         line = _line(file.read())
         file.write(line)

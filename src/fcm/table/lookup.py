@@ -47,7 +47,7 @@ class Table:
         error: dict[str, Any] | None = None,
         part: Part | None = None,
     ) -> None:
-        """From the reduced coefficients G of the two charts, shapes (3, n, nx, nz)."""
+        """Makes a table from reduced coefficients G of the two charts, shapes (3, n, nx, nz)."""
         _, nodes_1, nodes_x, nodes_z = separation.shape
         self.part = Part.all_of((nodes_1, slip.shape[1], nodes_x, nodes_z)) if part is None else part
         self.resolution: Resolution = self.part.resolution
@@ -64,7 +64,7 @@ class Table:
 
     @classmethod
     def of_splines(cls, coefficients: Coefficients, error: dict[str, Any], part: Part) -> Table:
-        """From the attributes of another."""
+        """Makes a table from the spline coefficients and attributes of another."""
         table = cls.__new__(cls)
         table.__setstate__(
             {
@@ -102,7 +102,7 @@ class Table:
         return numbers[:3], numbers[3:].reshape(3, 3, *numbers.shape[1:])
 
     def __getstate__(self) -> dict[str, Any]:
-        """What goes to another process: the arrays, of which the rest is made there."""
+        """State for another process: the arrays only, from which the rest is made there."""
         return {name: value for name, value in vars(self).items() if name not in ("_cubic", "_frame")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

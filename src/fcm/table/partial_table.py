@@ -29,18 +29,18 @@ class Part(NamedTuple):
 
     @classmethod
     def all_of(cls, resolution: Resolution) -> Part:
-        """Every node."""
+        """The part that has every node of a resolution."""
         nu_1, nu_2, nx, nz = resolution
         return cls(resolution, (0, nu_1), (0, nu_2), (0, nx), (0, nz))
 
     @property
     def whole(self) -> bool:
-        """Whether this is every node."""
+        """Whether the part has every node."""
         return self == Part.all_of(self.resolution)
 
     @property
     def nodes(self) -> int:
-        """How many there are in both charts."""
+        """Number of nodes in both charts."""
         levels, nx, nz = (int(np.diff(r).sum()) for r in (self[1:3], self.variation, self.phase))
         return levels * nx * nz
 
@@ -61,7 +61,7 @@ class Part(NamedTuple):
 
 
 def frame(part: Part) -> Frame | None:
-    """Where the nodes of a part are, of each chart along each axis; None if it has them all."""
+    """Ranges of the nodes of a part, in each chart along each axis; None if it has them all."""
     if part.whole:
         return None
     nu_1, nu_2, nx, nz = part.resolution
@@ -91,7 +91,7 @@ def _uniform(random: np.random.Generator, count: int, nodes: Range, of: int) -> 
 
 
 class Reach:
-    """Where in the charts of a resolution a table is asked."""
+    """Ranges of the charts of a resolution in which a table is evaluated."""
 
     def __init__(self, resolution: Resolution) -> None:
         self.resolution = resolution

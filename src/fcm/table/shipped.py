@@ -60,7 +60,7 @@ def _check(text: bytes) -> bytes:
 
 
 def _sum(numbers: Coefficients) -> int:
-    """Of all numbers by their bits, and of how many: another if a bit changes or a number is missing."""
+    """Sum over the bits of all numbers and their count: differs if a bit changes or a number is missing."""
     return int(numbers.view(np.uint32).sum(dtype=np.uint64)) + numbers.size
 
 

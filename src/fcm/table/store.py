@@ -95,7 +95,7 @@ def _write(path: Path, arrays: Arrays, attributes: dict[str, Any]) -> None:
 
 
 def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
-    """Of the shapes and bytes of all arrays, and of the attributes that say what they are worth."""
+    """Checksum of the shapes and bytes of all arrays, and of the attributes on accuracy and resolution."""
     part = _written(attributes["part"]) if "part" in attributes else ""
     resolution = _written(attributes["resolution"])
     value = zlib.crc32(f"{attributes['measured_error']} {resolution}{part}".encode())
@@ -108,7 +108,7 @@ def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
 
 
 def _written(numbers: Iterable[int]) -> str:
-    """As every table has had it written, whatever the options are by which numpy prints."""
+    """Numbers as text, as every table has had them written, whatever numpy's print options are."""
     return f"[{', '.join(f'np.int32({int(number)})' for number in numbers)}]"
 
 
@@ -152,7 +152,10 @@ def _part(attributes: Mapping[str, Any]) -> Part:
 
 
 def _unsealed(path: Path) -> str:
-    """What a file is whose bytes nothing vouches for: on such the library may end this process, or circle."""
+    """Sentence on a file without a valid seal.
+
+    The netCDF library may crash on such a file or run on without end, so it is not opened.
+    """
     content = path.read_bytes()
     if TITLE.encode() in content:
         return f"damaged, it was changed or cut off after it was written; {REMEDY}"
@@ -181,7 +184,7 @@ def _check_kind(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def _damage(attributes: Mapping[str, Any], arrays: Arrays) -> str:
-    """What is wrong with a file that says it is a table; empty if nothing is."""
+    """Fault of a file that claims to be a table; empty if there is none."""
     if missing := sorted({"measured_error", "resolution", "checksum"} - set(attributes)):
         return f"attribute {', '.join(missing)} missing"
     if missing := sorted(expected(_part(attributes)) - set(arrays)):

@@ -30,7 +30,10 @@ Progress = Callable[[float, str], None]
 
 
 class Row(NamedTuple):
-    """One layout at one resolution: error at most, 99.9 %, rms [-]; time [us] a look-up and a point."""
+    """Result of one layout at one resolution: errors [-], and time [us] of a look-up and a point.
+
+    The errors are the greatest, the 99.9 % and the rms one.
+    """
 
     layout: str
     interpolation: str

@@ -231,7 +231,7 @@ def slip_geometry(b_bar: cython.double[::1], phi: cython.double[::1]) -> np.ndar
 def weights(
     f: float,
 ) -> tuple[float, float, float, float]:
-    """Those of the four coefficients."""
+    """Weights of the four coefficients of a cubic B-spline at a fraction f of an interval."""
     g: float = 1.0 - f
     third: float = (1.0 + 3.0 * f * (1.0 + f * (1.0 - f))) / 6.0
     return g * g * g / 6.0, (4.0 + 3.0 * f * f * (f - 2.0)) / 6.0, third, f * f * f / 6.0
@@ -240,7 +240,7 @@ def weights(
 def slopes(
     f: float,
 ) -> tuple[float, float, float, float]:
-    """Their derivatives by f."""
+    """Derivatives of the four B-spline weights by f."""
     g: float = 1.0 - f
     return -0.5 * g * g, f * (1.5 * f - 2.0), 0.5 + f * (1.0 - 1.5 * f), 0.5 * f * f
 
@@ -318,7 +318,7 @@ class Cubic:
                 out[at + 3 + m], out[at + 6 + m], out[at + 9 + m] = by_u, by_x, by_z
 
     def many(self, q: cython.double[:, ::1], gradient: cython.bint) -> np.ndarray:
-        """At many points q (3, point): values (3, 1, point), or with the derivatives (3, 4, point)."""
+        """Values (3, 1, point) at points q (3, point), or values with derivatives (3, 4, point)."""
         i: cython.Py_ssize_t
         numbers: cython.Py_ssize_t = 12 if gradient else 3
         found = np.empty(numbers * q.shape[1])
@@ -335,7 +335,7 @@ FARTHEST = cython.declare(cython.double, 2e300)  # of n0_bar: an infinite preloa
 @cython.final
 @cython.cclass
 class Frame:
-    """What a part of a table answers for: from low to high, in nodes of its chart, rows (chart, 3).
+    """Ranges of chart coordinates for which a part of a table answers: low to high in nodes, rows (chart, 3).
 
     ``here`` is added to nodes of all of the table (of the slip chart those from its first) for those of the
     part.
@@ -384,7 +384,7 @@ class Tabulated(CoefficientLaw):
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """See `CoefficientLaw`."""
+        """Writes the coefficients of one point from the table; see `CoefficientLaw.evaluate`."""
         n0: float = min(max(n0_bar, -FARTHEST), FARTHEST)
         if not (n0_bar == n0_bar and isfinite(b_bar) and isfinite(phi)):
             self.unknown(gradient, out, at)
@@ -402,7 +402,7 @@ class Tabulated(CoefficientLaw):
         out[at + 2] = self.place.scale * out[at + 2]
 
     def _chain(self, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
-        """From derivatives of G by the coordinates to derivatives of F by n0_bar, b_bar and phi."""
+        """Turns derivatives of G by the coordinates into derivatives of F by n0_bar, b_bar and phi."""
         by_u: cython.double[3] = [0.0, 0.0, 0.0]
         by_x: cython.double[3] = [0.0, 0.0, 0.0]
         by_z: cython.double[3] = [0.0, 0.0, 0.0]

@@ -12,7 +12,8 @@ from fcm.time_domain.cycle_measures import Scanned, scanned
 
 
 def contact_loads(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
-    """Greatest normal and friction force of each contact; slip and energy in a period of the force.
+    """Greatest normal and friction force of each contact, its slip and its dissipated energy per period of
+    the force.
 
     Parameters
     ----------
@@ -43,7 +44,7 @@ def contact_loads(cycles: Sequence[Cycle], known: Scanned | None = None) -> Floa
 
 
 def _of(cycle: Cycle, known: Scanned | None = None) -> FloatArray:
-    """Of each contact the greatest forces, and slip and energy of all the cycle: (contact, 4)."""
+    """Greatest forces of each contact, and its slip and energy over one whole cycle: (contact, 4)."""
     system, each = cycle.system, len(cycle.system.contacts)
     least, greatest = (known or scanned(system, cycle.segments)).part(system.parts.forces)
     system.run(system.slips, cycle.segments)

@@ -1,4 +1,4 @@
-"""The flow of one combination of contact states, without the forces: matrix, exits, powers, table.
+"""The linear flow for one combination of contact states, without forces: matrix, exits, powers and tables.
 
 The exits are rows g of y that stay positive while the states last. The conditions are (9), (10), (13) to
 (16), free of division. E lasts while mu n - f > 0 and mu n + f > 0, P and N while n > 0 and +-k_u times the
@@ -26,7 +26,7 @@ Codes = npt.NDArray[np.int8]
 
 
 class Flow(NamedTuple):
-    """What `Flows.add` takes; matrices are of the part of y without the forces, transposed."""
+    """Data of one flow for `Flows.add`; matrices are transposed, for the part of y without the forces."""
 
     states: Codes  # (contact,)
     step: float  # [s], the reciprocal of a bound of the rates of the motion
@@ -46,7 +46,7 @@ class Flow(NamedTuple):
 
 
 def made(system: System, states: Codes) -> Flow:
-    """The flow of a combination, with steps that resolve the frequency of the system as well."""
+    """The flow of a combination of contact states, with steps that resolve the forces as well."""
     matrix = _matrix(system, states)
     step, halved = _step(system, matrix)
     change = matrix.T * step
@@ -67,7 +67,7 @@ def made(system: System, states: Codes) -> Flow:
 
 
 def _matrix(system: System, states: Codes) -> FloatArray:
-    """The matrix of (q, q', f, n, 1), (linear, linear)."""
+    """Matrix (linear, linear) of the equations for (q, q', f, n, 1)."""
     modal, m = system.scene.modal, system.modes
     a = np.zeros((system.linear, system.linear))
     a[system.q, system.p] = np.eye(m)
@@ -91,7 +91,10 @@ def _matrix(system: System, states: Codes) -> FloatArray:
 
 
 def _step(system: System, a: FloatArray) -> tuple[float, bool]:
-    """One over a bound of the rates [1/s] at which the motion changes: no frequency of it is higher.
+    """Step length [s], one over a bound of the rates of the motion; and whether it was halved for the forces.
+
+    It is halved only as often as bounding the frequency of the forces takes, so that the step is the same
+    whenever it is made.
 
     And whether that is halved, as often as it takes to bound the frequency of the forces: never more often,
     so that the step is the same whenever it is made.
@@ -115,7 +118,7 @@ def _step(system: System, a: FloatArray) -> tuple[float, bool]:
 
 
 def _exponential(a: FloatArray) -> FloatArray:
-    """The sum of a**j / j! for j = 0 ... ORDER, in blocks of four powers (Paterson and Stockmeyer)."""
+    """Taylor polynomial of exp(a) of degree ORDER, in blocks of four powers (Paterson and Stockmeyer)."""
     square = a @ a
     powers = np.stack((np.eye(a.shape[0]), a, square, square @ a))
     blocks, fourth = np.tensordot(BLOCKS, powers, 1), square @ square
@@ -126,7 +129,7 @@ def _exponential(a: FloatArray) -> FloatArray:
 
 
 def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:
-    """See `Flow`."""
+    """Products h (A h)**k B of the matrix with the forces of each harmonic, see `Flow.pushes`."""
     pushes, flows = np.zeros((ORDER, 4 * system.flows.waves, change.shape[0])), system.flows
     for b in (0, 1):
         pushes[0, b::4, system.p] = step * np.asarray(flows.constant)[b::2]
@@ -137,7 +140,7 @@ def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:
 
 
 def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:
-    """The rows of the exits (by f, n and the rates of u and v), their contacts, and where each leads."""
+    """Rows of the exits (by f, n and the rates of u and v), the contact and the next state of each."""
     rows: list[FloatArray] = []
     owner: list[int] = []
     goal: list[int] = []

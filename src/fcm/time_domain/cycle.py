@@ -1,4 +1,4 @@
-"""One cycle of an exact motion: the sequence of its states, its values at any instants."""
+"""One cycle of an exact motion: its sequence of contact states and its values at any instant."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Cycle(Frozen):
 
     @property
     def letters(self) -> list[str]:
-        """The states in each segment, one letter of EPNS for each contact."""
+        """Contact states in each segment, as a word with one letter of EPNS for each contact."""
         return ["".join(LETTERS[code] for code in row) for row in np.asarray(self.segments.states).tolist()]
 
     @property
     def states(self) -> tuple[str, ...]:
-        """For each contact the sequence of its states, such as 'EPEN', as if the cycle repeated."""
+        """State sequence of each contact, such as 'EPEN', as if the cycle repeated."""
         lasting = np.asarray(self.segments.states)[np.asarray(self.segments.length) > 0.0]
         return _sequences(lasting.tobytes(), lasting.shape[1])
 
@@ -44,12 +44,12 @@ class Cycle(Frozen):
 
 @lru_cache
 def _sequences(states: bytes, contacts: int) -> tuple[str, ...]:
-    """The sequence of each contact, from the codes of all in each segment; most repeat along a curve."""
+    """State sequences of all contacts, from their codes in each segment; cached, as most repeat."""
     return tuple(_sequence([LETTERS[code] for code in states[j::contacts]]) for j in range(contacts))
 
 
 def _sequence(letters: list[str]) -> str:
-    """The letters around the cycle without repetition, from separation or else the stick before P."""
+    """Letters of a cycle without repetition, from separation on, or else from the stick before P."""
     kept = "".join(x for i, x in enumerate(letters) if i == 0 or letters[i - 1] != x)
     if len(kept) > 1 and kept[0] == kept[-1]:
         kept = kept[:-1]

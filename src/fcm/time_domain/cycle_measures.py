@@ -1,4 +1,4 @@
-"""What is reported of a cycle: greatest and least displacement, mean, fundamental, in closed form."""
+"""Measures of a cycle: greatest and least displacement, mean and fundamental, in closed form."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcm.time_domain.system import System
 
 
 class Measure(Frozen):
-    """One cycle of each degree of freedom; lengths in the scene's unit."""
+    """Measures of one cycle for each degree of freedom; lengths are in the scene's unit."""
 
     amplitude: FloatArray  # (dof,) half the peak-to-peak
     fundamental: FloatArray  # (dof,) amplitude of the fundamental
@@ -26,7 +26,7 @@ class Measure(Frozen):
 
 
 def measure(cycle: Cycle, known: Displaced | None = None) -> Measure:
-    """Measure the displacements over a cycle, of which the extremes may be known.
+    """Measures the displacements over a cycle, whose extremes may be given.
 
     The integrals are exact to rounding; each extreme is a root of the velocity.
     """
@@ -40,7 +40,7 @@ def measure(cycle: Cycle, known: Displaced | None = None) -> Measure:
 
 
 class Displaced(NamedTuple):
-    """The least and the greatest displacement of each degree of freedom, and where they are."""
+    """Least and greatest displacement of each degree of freedom, and where they occur."""
 
     least: FloatArray  # (dof,)
     greatest: FloatArray  # (dof,)
@@ -55,7 +55,7 @@ def displaced(system: System, segments: Segments) -> Displaced:
 
 
 class Scanned(NamedTuple):
-    """The least and the greatest of all that is reported of a motion, found on one way through it."""
+    """Least and greatest value of every reported quantity of a motion, found in one pass."""
 
     least: (
         FloatArray  # (row,) of the displacements, then of the rest, see `fcm.time_domain.system.System.parts`
@@ -64,12 +64,12 @@ class Scanned(NamedTuple):
     displaced: Displaced
 
     def part(self, rows: slice) -> tuple[FloatArray, FloatArray]:
-        """The least and the greatest of some rows."""
+        """Least and greatest values of some rows."""
         return self.least[rows], self.greatest[rows]
 
 
 def scanned(system: System, segments: Segments) -> Scanned:
-    """The same of segments."""
+    """Least and greatest value of every reported quantity over segments."""
     scan, dofs = system.reported, system.parts.displaced
     system.run(scan, segments)
     least, greatest = np.array(scan.least), np.array(scan.greatest)
@@ -78,7 +78,7 @@ def scanned(system: System, segments: Segments) -> Scanned:
 
 
 class Extreme(NamedTuple):
-    """The least or greatest value of a row over segments, and where it is."""
+    """Least or greatest value of a row over segments, and where it occurs."""
 
     value: float
     segment: int
@@ -89,7 +89,10 @@ Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of 
 
 
 def extremes_by(scan: Scan, system: System, segments: Segments) -> Extremes:
-    """The least and the greatest of the rows of a scan, of the state vector without the forces' angle."""
+    """Least and greatest values of the rows of a scan over segments.
+
+    The rows act on the state vector without the forces' angle.
+    """
     system.run(scan, segments)
     values = [*np.asarray(scan.least).tolist(), *np.asarray(scan.greatest).tolist()]
     places = np.asarray(scan.place).tolist()

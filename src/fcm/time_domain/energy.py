@@ -1,4 +1,4 @@
-"""The energy balance of a motion: what the forces did, where it went."""
+"""The energy balance of a motion: work of the forces, dissipation and stored energy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.time_domain.trajectory import Motion
 
 
 class Energy(NamedTuple):
-    """Work over the motion: `work` = `slip` + `damping` + `stored`, but for rounding."""
+    """Energy balance over a motion: `work` = `slip` + `damping` + `stored`, up to rounding."""
 
     work: float  # of the external forces
     slip: float  # dissipated by friction, integral of f dw
@@ -26,13 +26,13 @@ class Energy(NamedTuple):
 
     @property
     def error(self) -> float:
-        """What is missing, relative to the turnover."""
+        """Imbalance of the energy relative to the turnover; absolute where the turnover is 0."""
         missing = abs(self.work - self.slip - self.damping - self.stored)
         return missing / self.turnover if self.turnover > 0.0 else missing
 
 
 def energy(motion: Motion) -> Energy:
-    """The energy balance over a motion, by Gauss quadrature that is exact to rounding.
+    """Energy balance over a motion, by Gauss quadrature that is exact to rounding.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def energy(motion: Motion) -> Energy:
 
 
 def powers_of(cycle: Cycle) -> Powers:
-    """The integrals of the powers over a cycle."""
+    """Integrals over a cycle of the powers of forces, slip and damping."""
     system, modal = cycle.system, cycle.system.scene.modal
     damper = 2.0 * modal.mass * modal.damping * modal.frequency
     powers = Powers(system.flows, sines_and_cosines(system.wave), system.static, damper)
@@ -63,7 +63,7 @@ def powers_of(cycle: Cycle) -> Powers:
 
 
 def _stored(system: System, y: FloatArray) -> float:
-    """Kinetic and elastic energy, with the preload's potential; the springs' own slips do not count."""
+    """Kinetic and elastic energy with the potential of the preload, without what slips have dissipated."""
     modal = system.scene.modal
     q, p = y[system.q], y[system.p]
     total = 0.5 * float(modal.mass @ (p * p + (modal.frequency * q) ** 2))
@@ -74,7 +74,7 @@ def _stored(system: System, y: FloatArray) -> float:
 
 
 def _normal_energy(contact: Contact, v: float, n: float) -> float:
-    """Potential of max(n, 0) - max(n_0, 0) over v, 0 at v = 0."""
+    """Potential of the normal force max(n, 0) - max(n_0, 0) as a function of v, 0 at v = 0."""
     if contact.k_v == 0.0:
         return 0.0
     if contact.n_0 <= 0.0:

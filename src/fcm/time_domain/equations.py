@@ -1,4 +1,4 @@
-"""What the equations of a motion in time are made of, whatever states the contacts are in."""
+"""Matrices of the equations of motion in time that do not depend on the states of the contacts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Matrices(NamedTuple):
-    """The matrices of a scene.
+    """The matrices of a scene that do not depend on the states of its contacts.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Matrices(NamedTuple):
 
 
 def matrices_of(system: System) -> Matrices:
-    """Those of a system, which are the same at every frequency."""
+    """The `Matrices` of a system, equal at every frequency."""
     modal, c = system.scene.modal, system.contacts
     law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
     return Matrices(
@@ -57,13 +57,16 @@ def matrices_of(system: System) -> Matrices:
 
 
 def sines_and_cosines(wave: npt.NDArray[np.complex128]) -> FloatArray:
-    """Of Im(wave exp(i h theta)) (waves, mode) the factors of sin, cos in turn: (2 waves, mode)."""
+    """Factors of sin and cos in Im(wave exp(i h theta)), in turn: (2 waves, mode) of wave (waves, mode)."""
     parts: FloatArray = np.stack((wave.real, wave.imag), axis=1)
     return parts.reshape(-1, wave.shape[-1])
 
 
 def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What stands for the contacts that are held.
+    """Springs and steady forces that replace the held contacts.
+
+    Returns the shapes of the springs (spring, mode), these times stiffness over modal masses, and the steady
+    modal forces.
 
     The shapes of springs (spring, mode), these times their stiffness divided by the modal masses, and the
     steady modal forces.
@@ -86,7 +89,7 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def held_limits(system: System) -> FloatArray:
-    """Of each contact that is held its limit, or gap, and what is left of it either way.
+    """Rows for the slip limit, or gap, of each held contact, and for its margin on either side.
 
     Rows of the state vector without the forces' angle, (3 held, linear).
     """
@@ -95,7 +98,7 @@ def held_limits(system: System) -> FloatArray:
 
 
 def _limits_of(system: System, one: Held) -> list[FloatArray]:
-    """The three rows of a contact."""
+    """The three limit rows of one held contact."""
     load, force = held_forces(system, one)
     if one.open:
         return [-load] * 3
@@ -106,14 +109,14 @@ def _limits_of(system: System, one: Held) -> list[FloatArray]:
 
 
 def held_rows(system: System) -> FloatArray:
-    """The normal forces of all contacts that are held, then their friction forces: (2 held, d - 2)."""
+    """Rows for the normal forces of all held contacts, then for their friction forces: (2 held, d - 2)."""
     pairs = [held_forces(system, one) for one in system.scene.held]
     loads, forces = ([pair[i] for pair in pairs] for i in (0, 1))
     return np.array(loads + forces).reshape(2 * len(pairs), system.linear)
 
 
 def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
-    """The normal and the friction force of a contact that is held closed: rows of the state vector."""
+    """Rows of the state vector for the normal and friction force of a contact that is held closed."""
     contact, shapes = one.contact, system.scene.modal.shapes
     load, force = np.zeros((2, system.linear))
     load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0

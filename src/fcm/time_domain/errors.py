@@ -4,8 +4,8 @@ from __future__ import annotations
 
 
 class SimulationError(ValueError):
-    """The motion cannot be computed as asked; the message says why and what to try."""
+    """Raised when the motion cannot be computed as asked; the message says why and what to try."""
 
 
 class CycleError(SimulationError):
-    """A cycle cannot be followed to its end."""
+    """Raised when a cycle cannot be followed to its end."""

@@ -1,4 +1,4 @@
-"""The exact motion in each combination of contact states, as a pool of flows that serves all frequencies.
+"""The exact motion in each combination of contact states, from a pool of flows for all frequencies.
 
 The state vector is
 
@@ -62,7 +62,7 @@ KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
 
 
 def _shapes(n: int, contacts: int, waves: int, taylor_size: int) -> dict[str, tuple[int, ...]]:
-    """What the pool keeps of one flow whose state has n components, and forces at so many harmonics."""
+    """Shapes of the pool's arrays for one flow: n components of its state, `waves` force harmonics."""
     e = max(2 * contacts, 1)  # exits: of a contact two at most
     wide = (BLOCK + 1) * WATCHED * e
     return {
@@ -78,7 +78,7 @@ def _shapes(n: int, contacts: int, waves: int, taylor_size: int) -> dict[str, tu
 
 @cython.cclass
 class FlowArrays:
-    """The flows of a scene; where there is no room for more, the one that was used longest ago goes.
+    """Pool of the flows of a scene; when it is full, the least recently used flow is replaced.
 
     Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
     and the Taylor coefficients, are made where they are needed.
@@ -109,7 +109,7 @@ class FlowArrays:
         self._make_room(4)
 
     def at(self, omega: float) -> None:
-        """Set the frequency [rad/s]."""
+        """Sets the excitation frequency [rad/s]."""
         i: cython.Py_ssize_t
         b: cython.Py_ssize_t
         if omega == self.omega:
@@ -121,11 +121,11 @@ class FlowArrays:
                 self.slope[b, i] = 2.0 * self.omega * self.square[b, i]
 
     def bytes(self) -> int:
-        """Memory of the pool."""
+        """Memory of the pool [bytes]."""
         return sum(made.nbytes for made in self._pool.values())
 
     def add(self, flow: Any) -> int:
-        """Put a `fcm.time_domain.contact_states.Flow` into the pool; returns its place."""
+        """Puts a `fcm.time_domain.contact_states.Flow` into the pool; returns its place."""
         k, exits, made = self._place(), len(flow.owner), self._pool
         rows, table, series, pushes = flow.rows, flow.table, flow.series, flow.pushes
         made["states"][k], made["step"][k], made["halved"][k] = flow.states, flow.step, flow.halved
@@ -146,7 +146,7 @@ class FlowArrays:
         return k
 
     def spell(self, slot: int) -> None:
-        """Make the Taylor coefficients (A h)**j / j! of a flow, of which those to j = 1 are there."""
+        """Computes the Taylor coefficients (A h)**j / j! of a flow from j = 2 on."""
         terms = self._pool["terms"][slot].reshape(ORDER + 1, self.linear, self.linear)
         for j in range(2, ORDER + 1):
             np.matmul(terms[j - 1], terms[1], out=terms[j])
@@ -154,13 +154,13 @@ class FlowArrays:
         self._pool["spelled"][slot] = 1
 
     def next_power(self, slot: int) -> None:
-        """Make the power of a flow over twice as many steps as the last."""
+        """Computes the power of a flow over twice as many steps as the last one."""
         power, j = self._pool["power"][slot], int(self._pool["squared"][slot])
         np.matmul(power[j], power[j], out=power[j + 1])
         self._pool["squared"][slot] = j + 1
 
     def take_options(self, options: FlowOptions) -> None:
-        """Have them as numbers of C."""
+        """Copies the options to typed attributes for the kernels."""
         self.min_count, self.max_bytes = options.min_count, options.max_bytes
         self.dense_size, self.taylor_size = options.dense_size, options.taylor_size
         self.few_rows, of = options.few_rows, options.transitions
@@ -174,7 +174,7 @@ class FlowArrays:
         self.negligible_power, self.max_step_angle = of.negligible_power, options.max_step_angle
 
     def _place(self) -> int:
-        """A place for one more."""
+        """Place of a new flow: a free one, a new one, or that of the least recently used flow."""
         capacity = self.step.shape[0]
         most = max(int(self.max_bytes / (self.bytes() / capacity)), self.min_count)
         if self.count == capacity < most:
@@ -186,7 +186,7 @@ class FlowArrays:
         return int(self.count - 1)
 
     def _make_room(self, capacity: int) -> None:
-        """Arrays for so many flows, with those that are there; typed views of them for the kernels."""
+        """Enlarges the arrays to `capacity` flows, keeps the present ones, and renews the typed views."""
         old, made = self._pool, {}
         for name, shape in _shapes(self.linear, self.contacts, self.waves, self.taylor_size).items():
             made[name] = np.zeros((capacity, *shape), KINDS.get(name, np.float64))
@@ -209,7 +209,7 @@ class FlowArrays:
     @cython.nogil
     @cython.exceptval(check=False)
     def find(self, states: cython.schar[:, ::1], k: cython.Py_ssize_t) -> cython.Py_ssize_t:
-        """The flow of the states in row k, in the steps that they have at the frequency; -1 if there is none.
+        """Place of the flow for the states in row k, with steps valid at the frequency; -1 if there is none.
 
         Whichever flows there are, these steps are the same: the lengths of segments are counted in them.
         """
@@ -230,7 +230,7 @@ class FlowArrays:
 
 @cython.cclass
 class FlowSeries(FlowArrays):
-    """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
+    """Flows as power series of y' = A y, a whole series per call."""
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
         FlowArrays.__init__(self, matrices, options)
@@ -247,7 +247,7 @@ class FlowSeries(FlowArrays):
         z: cython.double[:, ::1],
         b: cython.Py_ssize_t,
     ) -> cython.void:
-        """Row b of z becomes A y, y being row a."""
+        """Sets row b of z to A y, with y the row a."""
         i: cython.Py_ssize_t
         for i in range(self.size):
             self._own[0, i] = y[a, i]
@@ -267,7 +267,7 @@ class FlowSeries(FlowArrays):
         y: cython.double[:, ::1],
         graded: cython.bint,
     ) -> cython.void:
-        """Taylor coefficients from row 0 of z on, by the position in a step of that length [s].
+        """Fills Taylor coefficients from row 0 of z on, by the position in a step of given length [s].
 
         If it is graded, those of the derivative by the frequency of the motion with the coefficients y:
         z[a + 1] = step / (a + 1) (A z[a] + dA / d omega y[a]).
@@ -293,7 +293,7 @@ class FlowSeries(FlowArrays):
 def structure(
     series: FlowSeries, z: cython.double[:, ::1], a: cython.Py_ssize_t, factor: cython.double
 ) -> cython.void:
-    """Row a + 1 of z becomes the factor times what modes and forces make of row a."""
+    """Sets row a + 1 of z to the factor times the effect of modes and forces on row a."""
     m: cython.Py_ssize_t = series.modes
     end: cython.Py_ssize_t = series.linear
     i: cython.Py_ssize_t
@@ -329,7 +329,7 @@ def spring(
     a: cython.Py_ssize_t,
     factor: cython.double,
 ) -> cython.void:
-    """Add what spring j does."""
+    """Adds the force of spring j."""
     m: cython.Py_ssize_t = series.modes
     i: cython.Py_ssize_t
     u: cython.double = 0.0
@@ -352,7 +352,7 @@ def contact(
     a: cython.Py_ssize_t,
     factor: cython.double,
 ) -> cython.void:
-    """Add what contact j does in a state, and how its forces change."""
+    """Adds the forces of contact j in a state, and the rates of its forces."""
     m: cython.Py_ssize_t = series.modes
     v: cython.double = factor * series.k_v[j] * velocity(series.normal, j, z, a)
     u: cython.double = 0.0
@@ -383,7 +383,7 @@ def grade(
     y: cython.double[:, ::1],
     factor: cython.double,
 ) -> cython.void:
-    """Add what the derivative of A by the frequency makes of the forces' phase in row a of y."""
+    """Adds the derivative of A by the frequency times the forces' phase in row a of y."""
     i: cython.Py_ssize_t
     h: cython.Py_ssize_t
     b: cython.Py_ssize_t = a + 1
@@ -405,7 +405,7 @@ def grade(
 def velocity(
     shape: cython.double[:, ::1], j: cython.Py_ssize_t, z: cython.double[:, ::1], a: cython.Py_ssize_t
 ) -> cython.double:
-    """The velocity of contact j along its shape, by row a of z."""
+    """Velocity of contact j along its shape, from row a of z."""
     m: cython.Py_ssize_t = shape.shape[1]
     half: cython.Py_ssize_t = m // 2
     i: cython.Py_ssize_t
@@ -430,7 +430,7 @@ def push(
     z: cython.double[:, ::1],
     b: cython.Py_ssize_t,
 ) -> cython.void:
-    """Take the force of contact j, by its shape over the masses, from the accelerations in row b of z."""
+    """Subtracts contact j's force, by its shape over the masses, from the accelerations in row b of z."""
     m: cython.Py_ssize_t = shape.shape[1]
     i: cython.Py_ssize_t
     if force != 0.0:
@@ -440,7 +440,7 @@ def push(
 
 @cython.cclass
 class ForcedFlows(FlowSeries):
-    """`refresh` makes the columns of a flow for `omega` [rad/s] and one step; as `FlowArrays`.
+    """`refresh` computes the force columns of a flow for `omega` [rad/s] and one step; see `FlowArrays`.
 
     Those for more are made where they are needed, by `reach`.
     """
@@ -453,7 +453,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def refresh(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Make the columns of the forces for the frequency, unless they are."""
+        """Computes the columns of the forces for the present frequency, unless they are there."""
         self.clock += 1
         self.used[slot] = self.clock
         if self.made_for[slot] == self.omega:
@@ -469,7 +469,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def _one_step(self, slot: cython.Py_ssize_t) -> cython.void:
-        """One step from sin(h theta) = 1 or cos(h theta) = 1 alone, and its derivative by omega.
+        """Response over one step to sin(h theta) = 1 or cos(h theta) = 1 alone, and its derivative by omega.
 
         The j-th derivative of the forces by time grows as (h omega)**j; what it does is known with the flow.
         """
@@ -482,7 +482,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def _sum_terms(self, slot: cython.Py_ssize_t, h: cython.Py_ssize_t) -> cython.void:
-        """The same of one harmonic."""
+        """Adds the one-step response to one harmonic, term by term until terms are negligible."""
         j: cython.int
         step: cython.double = self.harmonic[h] * self.step[slot]
         x: cython.double = self.omega * step
@@ -510,7 +510,10 @@ class ForcedFlows(FlowSeries):
         power: cython.double,
         slope: cython.double,
     ) -> cython.void:
-        """Add what the j-th derivative does, power times, and by omega, of which that is the slope."""
+        """Adds the effect of the forces' j-th derivative, `power` times, and its derivative by omega.
+
+        `slope` is the derivative of `power` by omega.
+        """
         i: cython.Py_ssize_t
         b: cython.Py_ssize_t = 4 * h
         square: cython.double = self.omega * self.omega
@@ -537,7 +540,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def _sized(self, slot: cython.Py_ssize_t) -> cython.void:
-        """The size of the first two terms of that step."""
+        """Sets the sizes of the first two terms of the one-step response."""
         i: cython.Py_ssize_t
         h: cython.Py_ssize_t
         b: cython.Py_ssize_t
@@ -561,7 +564,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
-        """Make the columns of the forces over 1, 2, 4 ... 2**last steps, those that are not made yet."""
+        """Computes the missing columns of the forces over 1, 2, 4 ... 2**last steps."""
         t: cython.double
         h: cython.Py_ssize_t
         while self.reached[slot] <= last:
@@ -581,7 +584,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def _double(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
-        """The columns over twice as many steps: C(2 t) = E C + C R, with the rotation R of the forces."""
+        """Columns over twice as many steps: C(2 t) = E C + C R, with the rotation R of the forces."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         h: cython.Py_ssize_t
@@ -616,7 +619,7 @@ class ForcedFlows(FlowSeries):
         y: cython.double[:, ::1],
         k: cython.Py_ssize_t,
     ) -> cython.void:
-        """Add to `whole` what row k of y becomes in 2**j steps without the forces."""
+        """Adds to `whole` the result of 2**j free steps (without forces) from row k of y."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t = 0
@@ -641,7 +644,7 @@ class ForcedFlows(FlowSeries):
 
 @cython.cclass
 class ExitFunctions(ForcedFlows):
-    """`watch` tells the exits on the steps of a block, `leave` their series in a step; see `FlowArrays`.
+    """`watch` evaluates the exits on the steps of a block, `leave` their series in a step; see `FlowArrays`.
 
     What these need for a new frequency is made where it is needed, by `make_columns` and `expand`.
     """
@@ -654,7 +657,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def refresh(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Make the columns of the forces for the frequency; of an exit the terms that tell most."""
+        """Computes the columns of the forces for the frequency, and the leading terms of the exits."""
         e: cython.Py_ssize_t
         exits: cython.Py_ssize_t = self.exits[slot]
         b: cython.int
@@ -681,7 +684,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def _angles(self, slot: cython.Py_ssize_t) -> cython.void:
-        """The powers of each harmonic's angle of a step, signed as the derivatives of sin from sin = 0."""
+        """Powers of each harmonic's angle of a step, signed as the derivatives of sin at 0."""
         h: cython.Py_ssize_t
         j: cython.int
         power: cython.double
@@ -696,7 +699,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def _of_exit(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t, a: cython.int) -> cython.void:
-        """The Taylor coefficient a > 0 of an exit in that step."""
+        """Taylor coefficient a > 0 of an exit in a step, by the forces."""
         h: cython.Py_ssize_t
         b: cython.Py_ssize_t
         k: cython.int
@@ -727,7 +730,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def expand(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.void:
-        """Make all Taylor coefficients of an exit, unless they are."""
+        """Computes all Taylor coefficients of an exit by the forces, unless they are there."""
         a: cython.int
         if self.spread[slot, e]:
             return
@@ -740,7 +743,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def make_columns(self, slot: cython.Py_ssize_t, steps: cython.Py_ssize_t) -> cython.void:
-        """Make the columns of the table of exits up to so many steps, those that are not made yet.
+        """Computes the missing columns of the table of exits up to a number of steps.
 
         T[k + 1] = T[k] exp(A h).
         """
@@ -784,7 +787,7 @@ class ExitFunctions(ForcedFlows):
         steps: cython.Py_ssize_t,
         seen: cython.double[::1],
     ) -> cython.void:
-        """g, g' h and g'''' h**4 of the exits at 0 to `steps` <= BLOCK steps from row k of y."""
+        """Evaluates g, g' h and g'''' h**4 of the exits at 0 to `steps` <= BLOCK steps from row k of y."""
         wide: cython.Py_ssize_t = (steps + 1) * 3 * self.exits[slot]
         n: cython.Py_ssize_t = self.linear
         w: cython.Py_ssize_t
@@ -826,7 +829,7 @@ class ExitFunctions(ForcedFlows):
         k: cython.Py_ssize_t,
         powers: cython.double[:, ::1],
     ) -> cython.void:
-        """Taylor coefficients (ORDER + 1,) of exit e in the step from row k of y, into its row."""
+        """Taylor coefficients (ORDER + 1,) of exit e in the step from row k of y, written to its row."""
         n: cython.Py_ssize_t = self.linear
         w: cython.Py_ssize_t = e * (SERIES_ORDER + 1)
         i: cython.Py_ssize_t
@@ -857,7 +860,7 @@ _SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!, as many terms as 
 @cython.nogil
 @cython.exceptval(check=False)
 def value(powers: cython.double[::1], order: cython.int, x: cython.double) -> cython.double:
-    """The polynomial or one of its derivatives."""
+    """Value of a polynomial or of one of its derivatives."""
     j: cython.int
     factor: cython.double
     total: cython.double = 0.0
@@ -875,7 +878,7 @@ def value(powers: cython.double[::1], order: cython.int, x: cython.double) -> cy
 def root(
     powers: cython.double[::1], order: cython.int, low: cython.double, high: cython.double
 ) -> cython.double:
-    """The root of a derivative with different signs at low and high: Newton's method between them."""
+    """Root of a derivative with different signs at low and high: Newton's method, bracketed."""
     sense: cython.double = value(powers, order, low)
     x: cython.double = 0.5 * (low + high)
     height: cython.double
@@ -902,7 +905,7 @@ def root(
 @cython.nogil
 @cython.exceptval(check=False)
 def needed(x: cython.double) -> cython.int:
-    """The terms beyond the first that a part x of a step takes, to rounding."""
+    """Number of terms beyond the first that a fraction x of a step needs, to rounding."""
     j: cython.int = 0
     size: cython.double = 1.0
     while size > _SERIES_END and j < SERIES_ORDER:
@@ -917,7 +920,7 @@ def needed(x: cython.double) -> cython.int:
 def summed(
     terms: cython.double[:, ::1], x: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
 ) -> cython.void:
-    """Row k of y becomes the sum of terms[j] x**j."""
+    """Sets row k of y to the sum of terms[j] x**j."""
     i: cython.Py_ssize_t
     j: cython.int
     n: cython.Py_ssize_t = terms.shape[1]
@@ -930,7 +933,7 @@ def summed(
 
 @cython.cclass
 class Flows(ExitFunctions):
-    """The flows of a scene, and their forced columns at the frequency `omega` [rad/s]; see `FlowArrays`."""
+    """The flows of a scene with their force columns at the frequency `omega` [rad/s]; see `FlowArrays`."""
 
     @cython.cfunc
     @cython.nogil
@@ -938,7 +941,7 @@ class Flows(ExitFunctions):
     def advance(
         self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t
     ) -> cython.int:
-        """Move row k of y by 2**j steps."""
+        """Advances row k of y by 2**j steps."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         h: cython.Py_ssize_t
@@ -969,7 +972,7 @@ class Flows(ExitFunctions):
     def carry(
         self, slot: cython.Py_ssize_t, position: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
     ) -> cython.int:
-        """Move row k of y by any number of steps."""
+        """Advances row k of y by any number of steps, whole or not."""
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
         j: cython.int
@@ -988,7 +991,7 @@ class Flows(ExitFunctions):
     def bound(
         self, slot: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t, out: cython.double[::1]
     ) -> cython.void:
-        """The size of the terms from which each component of row k of y is summed over a step."""
+        """Sizes of the terms that sum up to each component of row k of y over a step."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -1034,7 +1037,7 @@ class Flows(ExitFunctions):
         first: cython.Py_ssize_t,
         last: cython.Py_ssize_t,
     ) -> cython.void:
-        """Move the rows from the first to before the last of y by a part x of a step."""
+        """Advances the rows from first to before last of y by a fraction x of a step."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t

@@ -1,4 +1,4 @@
-"""The schedule of a scene for each of its curves."""
+"""Simulates the schedule of a scene for each of its curves."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fcm.time_domain.simulation import Progress
 
 
 class Histories(Frozen):
-    """A schedule simulated for each curve of a scene."""
+    """The schedule of a scene simulated for each of its curves."""
 
     scene: Scene
     plan: Plan
@@ -34,16 +34,16 @@ class Histories(Frozen):
 
 
 class SavedRecords(Protocol):
-    """What is kept of a run, by the number of the curve (`fcm.run.Results`)."""
+    """Protocol of the saved results of a run, by the number of the curve (`fcm.run.Results`)."""
 
     finished: dict[int, list[Any]]  # one `Record`
     states: dict[int, list[Any]]  # `CompletedPhase`, of the first phases
 
     def add(self, number: int, results: list[Any], /) -> None:
-        """A curve is finished."""
+        """Saves the results of a finished curve."""
 
     def save(self, number: int, state: Any, /) -> None:
-        """A phase of a curve is."""
+        """Saves the state at the end of a finished phase of a curve."""
 
 
 def histories(
@@ -93,7 +93,7 @@ def histories(
 
 
 def _without_rounding(record: Record) -> Record:
-    """The record with amplitudes of 0 where a degree of freedom moves by rounding alone, as of curves."""
+    """The record with amplitudes of 0 for degrees of freedom that move by rounding alone."""
     if not record.phases:
         return record
     rest = at_rest(np.fmax.reduce([phase.amplitude for phase in record.phases]))
@@ -110,7 +110,7 @@ def _record(
     kept: SavedRecords | None,
     options: TimeOptions = TIME,
 ) -> Record:
-    """The record of a curve, from what is kept of it on."""
+    """The record of a curve, continued from what is saved of it."""
     if kept is None:
         return record(curve, plan, progress, options=options)
     if number in kept.finished:
@@ -124,14 +124,14 @@ def _record(
 
 
 def _share(progress: Progress | None, number: int, count: int) -> Progress | None:
-    """The progress of one curve among several."""
+    """Progress callback of one curve among several."""
     if progress is None or count == 1:
         return progress
     return lambda part, text: progress((number + part) / count, f"curve {number + 1}, {text}")
 
 
 def not_begun(scene: Scene) -> Histories:
-    """The histories of a calculation that was interrupted before their turn."""
+    """Empty histories of a calculation that was interrupted before the schedule was simulated."""
     plan = _plan(scene)
     return Histories(scene, plan, [unfinished(curve, plan) for curve in scene.each_curve()], 0.0)
 

@@ -1,4 +1,4 @@
-"""Histories as the variables of a file, as CSV and as a summary."""
+"""Writes histories as variables of a file, as CSV and as a summary."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ MEANINGS = "not_reached separation stick positive_slip negative_slip"  # of -1 a
 
 
 def variables(found: Histories) -> dict[str, Variable]:
-    """Every variable that histories add to a file."""
+    """All variables that histories add to a file."""
     return _common(found) | _of_records(found) | _of_phases(found)
 
 
 def _common(found: Histories) -> dict[str, Variable]:
-    """What is the same for every curve: the instants, the cycles, the phases."""
+    """Variables equal for every curve: the instants, the cycles, the phases."""
     plan, phases = found.plan, found.scene.schedule
     units = CF_UNIT[found.scene.frequency_unit]
     frequency = in_unit([phase.frequency for phase in phases], found.scene.frequency_unit)
@@ -53,7 +53,7 @@ def _variable(dims: str, values: npt.NDArray[Any], text: str, **attributes: Any)
 
 
 def _of_records(found: Histories) -> dict[str, Variable]:
-    """What was simulated of each curve."""
+    """Variables simulated for each curve: displacements, states, cycle measures and transitions."""
     flags: dict[str, Any] = {
         "flag_values": np.arange(NOT_REACHED, len(LETTERS), dtype=np.int8),
         "flag_meanings": MEANINGS,
@@ -82,7 +82,7 @@ def _of_records(found: Histories) -> dict[str, Variable]:
 
 
 def _of_phases(found: Histories) -> dict[str, Variable]:
-    """One number for each curve and phase: settling, transitions, energy."""
+    """Variables with one number for each curve and phase: settling, transitions, energy."""
 
     def each(pick: Callable[[PhaseResult], float], text: str) -> Variable:
         values = np.full((len(found.records), len(found.scene.schedule)), np.nan)
@@ -107,7 +107,7 @@ def _of_phases(found: Histories) -> dict[str, Variable]:
 
 
 def _stacked(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Arrays of one kind and different length stacked; padded with NaN or -1."""
+    """Arrays of one kind and different lengths, stacked and padded with NaN or -1."""
     longest = max(part.shape[0] for part in parts)
     empty = np.nan if parts[0].dtype.kind == "f" else NOT_REACHED
     out = np.full((len(parts), longest, *parts[0].shape[1:]), empty, dtype=parts[0].dtype)
@@ -117,7 +117,7 @@ def _stacked(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
 
 
 def summary(found: Histories) -> list[dict[str, Any]]:
-    """What ``fcm respond --json`` prints of the schedule, one entry for each curve."""
+    """The schedule part of the output of ``fcm respond --json``, one entry for each curve."""
     return [_of_record(found, record) for record in found.records]
 
 
@@ -160,13 +160,13 @@ def _of_energy(balance: Energy) -> dict[str, float]:
 
 
 def _of_state(end: State) -> dict[str, Any]:
-    """In the keys of a scene's [start]."""
+    """A state with the keys of a scene's [start]."""
     arrays = {"displacement": end.q, "velocity": end.velocity, "friction": end.friction}
     return {name: array.tolist() for name, array in arrays.items()} | {"angle": end.angle}
 
 
 def _shortened(states: str, options: TimeOptions = TIME) -> str:
-    """A sequence of states that a line can hold.
+    """A sequence of states, shortened to fit a line.
 
     >>> _shortened("SPEN"), _shortened("EP" * 100)
     ('SPEN', 'EPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEP... (200)')
@@ -179,7 +179,7 @@ def _shortened(states: str, options: TimeOptions = TIME) -> str:
 
 
 def write_csv(found: Histories, path: str | Path) -> None:
-    """Write the sampled displacements as CSV, a row for each instant."""
+    """Writes the sampled displacements as CSV, one row for each instant."""
     scene = found.scene
     names = [contact.name for contact in scene.contacts]
     header = ["curve", *found.records[0].parameters, "phase", "cycles", "time [s]"]

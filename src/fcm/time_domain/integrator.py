@@ -1,4 +1,4 @@
-"""From transition to transition: the first exit that is passed, and which combination of states follows.
+"""Marches from transition to transition: finds the first exit passed and the states that follow.
 
 Of the exits none is missed, and most steps are not looked at one by one. They are known on up to `BLOCK`
 steps at once; a cubic and a bound of what it leaves out say in which of these steps one may be passed, and
@@ -57,7 +57,7 @@ _UNDECIDED = cython.declare(cython.int, Stopped.UNDECIDED)
 
 
 def _weights(degree: int) -> FloatArray:
-    """Of the powers in the Bernstein coefficients of a degree: (power, coefficient)."""
+    """Weights (power, coefficient) that turn powers into Bernstein coefficients of a degree."""
     weights = np.zeros((ORDER + 1, ORDER + 1))
     for i in range(degree + 1):
         weights[i, i : degree + 1] = [comb(j, i) / comb(degree, i) for j in range(i, degree + 1)]
@@ -68,12 +68,12 @@ _WEIGHTS = cython.declare(cython.double[:, :, ::1], np.array([_weights(n) for n 
 
 
 def workspace(max_halvings: int) -> FloatArray:
-    """Room for `first_descent`: the coefficients at every depth of halving."""
+    """Work array for `first_descent`: the coefficients at every depth of halving."""
     return np.zeros((max_halvings + 2, ORDER + 1))
 
 
 def first_descent_of(powers: FloatArray, floor: float) -> float | None:
-    """Where sum powers[i] x**i, not negative at 0, first descends through zero to below -floor.
+    """First point where sum powers[i] x**i, not negative at 0, descends through zero to below -floor.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def first_descent(
     negligible: cython.double,
     work: cython.double[:, ::1],
 ) -> cython.double:
-    """The root for row k of the powers, -1 where there is none.
+    """Root of the first descent for row k of the powers, -1 where there is none.
 
     Powers above the last that is more than `negligible` of what they add up to are left out.
     """
@@ -148,7 +148,9 @@ def _search(
     floor: cython.double,
     work: cython.double[:, ::1],
 ) -> cython.double:
-    """Depth first, left before right; row i of work has the coefficients of what waits at depth i.
+    """Finds the first descent by halving, depth first and left before right.
+
+    Row i of work has the coefficients of the interval that waits at depth i.
 
     An interval at depth i begins at an even multiple of its length 2**-i if it is a left half.
     """
@@ -179,7 +181,7 @@ def _search(
 @cython.nogil
 @cython.exceptval(check=False)
 def _odd(low: cython.double, depth: cython.int) -> cython.bint:
-    """Whether the interval at low, 2**-depth long, is a right half."""
+    """Whether the interval at low, of length 2**-depth, is a right half."""
     half: cython.double = ldexp(low, depth - 1)
     return half != cython.cast(cython.double, cython.cast(cython.longlong, half))
 
@@ -190,7 +192,7 @@ def _odd(low: cython.double, depth: cython.int) -> cython.bint:
 def _interval_kind(
     work: cython.double[:, ::1], degree: cython.int, depth: cython.int, floor: cython.double
 ) -> cython.int:
-    """0: no descent; 1: exactly one root; 2: it descends at its start; 3: to be halved."""
+    """Kind of an interval: 0 no descent, 1 exactly one root, 2 descends at its start, 3 to be halved."""
     i: cython.int
     first: cython.int = 0
     last: cython.int = 0
@@ -218,7 +220,7 @@ def _interval_kind(
 @cython.nogil
 @cython.exceptval(check=False)
 def _halve(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -> cython.void:
-    """Row depth + 1 becomes the left half of row depth, which keeps the right one (de Casteljau)."""
+    """Sets row depth + 1 to the left half of row depth, which keeps the right one (de Casteljau)."""
     i: cython.int
     j: cython.int
     for j in range(degree + 1):
@@ -231,7 +233,7 @@ def _halve(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -
 @cython.nogil
 @cython.exceptval(check=False)
 def _mirror(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -> cython.void:
-    """Row depth becomes the right half that its parent keeps."""
+    """Sets row depth to the right half that its parent keeps."""
     i: cython.int
     for i in range(degree + 1):
         work[depth, i] = work[depth - 1, i]
@@ -248,7 +250,7 @@ def _root(
     high: cython.double,
     ends: cython.double[::1],
 ) -> cython.double:
-    """Newton's method, kept inside a bracket with the only root: positive at low, negative at high.
+    """Newton's method, bracketed around the only root: positive at low, negative at high.
 
     The first of `ends` and that of the degree are the values there, but for rounding; it begins on the line
     between, away from low, where there may be a root as well, of a touch.
@@ -288,7 +290,9 @@ _WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 
 @cython.cclass
 class EventDetector:
-    """Goes along the flow `slot`; of exits that are zero at its start, `touched`, the series are in `powers`.
+    """Follows the flow `slot` until an exit is passed.
+
+    Of exits that are zero at its start, `touched`, the series are in `powers`.
 
     Where the segment ends, `there` is the state before the last part of a step, which is `inside`, at the
     position `base` + that part; `exit` is what ends it, or -1 where `left` steps have gone by. `slack` is a
@@ -313,7 +317,7 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(check=False)
     def begin(self, y: cython.double[:, ::1], left: cython.double) -> cython.void:
-        """Begin a segment of at most so many steps at y, the powers of the exits touched there known."""
+        """Begins a segment at y of at most `left` steps; the powers of the touched exits are known."""
         i: cython.Py_ssize_t
         e: cython.Py_ssize_t
         self.base, self.left, self._doubled = 0.0, left, self.flows.first_doublings
@@ -328,7 +332,10 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def block(self) -> cython.bint:
-        """Look for an exit in the next steps, more of them each time; whether the segment has ended."""
+        """Looks for an exit in the next block of steps; returns whether the segment has ended.
+
+        Each block has more steps than the last.
+        """
         k: cython.Py_ssize_t
         e: cython.Py_ssize_t
         whole: cython.int
@@ -385,7 +392,7 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(check=False)
     def _floor(self, e: cython.Py_ssize_t) -> cython.double:
-        """The depth of exit e that is rounding: of its size in this segment, so far."""
+        """Depth of exit e below zero that is rounding, from its size in this segment so far."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         w: cython.Py_ssize_t
@@ -407,7 +414,7 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _stand(self, steps: cython.int) -> cython.int:
-        """Go to so many steps from the start of the block."""
+        """Advances to a number of steps from the start of the block."""
         i: cython.Py_ssize_t
         j: cython.int
         for i in range(self.flows.size):
@@ -421,7 +428,7 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(check=False)
     def _passed(self, before: cython.double) -> cython.bint:
-        """Whether a marked exit is passed in the step from there, as many before it; ends the segment."""
+        """Whether a marked exit is passed in the present step; if so, the segment ends there."""
         e: cython.Py_ssize_t
         at: cython.double
         best: cython.double = 2.0
@@ -442,7 +449,7 @@ class EventDetector:
 
 @cython.cclass
 class Successor:
-    """Sets `states` (1, contact) to what lasts from `y` (1, d) on, and the detector `ahead` to its flow."""
+    """Sets `states` (1, contact) to those that last from `y` (1, d) on, and the flow of detector `ahead`."""
 
     def __init__(self, ahead: EventDetector, y: FloatArray, states: npt.NDArray[np.int8]) -> None:
         self.flows, self.ahead, self.y, self.states = ahead.flows, ahead, y, states
@@ -455,14 +462,14 @@ class Successor:
     @cython.cfunc
     @cython.exceptval(check=False)
     def begins(self) -> cython.void:
-        """Stand at the start of a motion: of its rounding nothing is known, and no exit has been passed."""
+        """Starts a motion: its rounding is unknown, and no exit has been passed."""
         self._passes, self._fresh, self.ahead.exit = 0, True, -1
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def rounded(self, y: cython.double[:, ::1]) -> cython.void:
-        """Take the rounding of a state after a step of the present flow that begins at row 0 of y."""
+        """Bounds the rounding of a state after a step of the present flow from row 0 of y."""
         i: cython.Py_ssize_t
         self.flows.bound(self.ahead.slot, y, 0, self._noise)
         for i in range(self.flows.size):
@@ -472,7 +479,7 @@ class Successor:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def settle(self) -> cython.int:
-        """Find the combination of states that lasts from y on; DONE when it is found."""
+        """Finds the combination of states that lasts from y on; DONE when it is found."""
         i: cython.Py_ssize_t
         slot: cython.Py_ssize_t
         while self._passes < self.flows.max_passes:
@@ -497,7 +504,9 @@ class Successor:
     @cython.nogil
     @cython.exceptval(check=False)
     def _fails(self, slot: cython.Py_ssize_t) -> cython.bint:
-        """Mark the exits whose first coefficient beyond rounding is negative; set those before it to zero.
+        """Marks exits whose first coefficient beyond rounding is negative; whether there is any.
+
+        Coefficients before it are set to zero.
 
         The coefficients beyond the first are asked for only where that is rounding.
         """
@@ -525,7 +534,7 @@ class Successor:
     @cython.nogil
     @cython.exceptval(check=False)
     def _descends(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.void:
-        """Mark exit e, zero here, if the first of its further coefficients beyond rounding is negative."""
+        """Marks exit e, zero here, if the first further coefficient beyond rounding is negative."""
         powers: cython.double[:, ::1] = self.ahead.powers
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
@@ -552,7 +561,7 @@ class Successor:
     @cython.nogil
     @cython.exceptval(check=False)
     def _switch(self, slot: cython.Py_ssize_t) -> cython.void:
-        """Let the contacts take their failed exits, and put the friction where the new state wants it."""
+        """Switches the contacts by their failed exits, and sets the friction of each new state."""
         j: cython.Py_ssize_t
         e: cython.Py_ssize_t
         wanted: cython.int
@@ -583,7 +592,7 @@ _LONG = cython.declare(cython.int, Stopped.LONG)
 
 @cython.cclass
 class March:
-    """The motion from a state on: its `segments`, and `y` and `states` to which it has come."""
+    """Marches a motion from a state on: its `segments`, and `y` and `states` at its present end."""
 
     def __init__(self, flows: Flows) -> None:
         self.flows, self._ahead = flows, EventDetector(flows)
@@ -592,7 +601,7 @@ class March:
         self._next, self.segments = Successor(self._ahead, self.y, self.states), Segments(d, c)
 
     def begins(self, y: cython.double[::1], states: cython.schar[::1], duration: float, limit: int) -> None:
-        """Set the state vector (d,), the contacts' states (contact,) and the time to march [s]."""
+        """Sets the state vector (d,), the contact states (contact,) and the time to march [s]."""
         i: cython.Py_ssize_t
         for i in range(self.flows.size):
             self.y[0, i] = y[i]
@@ -601,7 +610,9 @@ class March:
         self.lasts(duration, limit)
 
     def enters(self, x: cython.double[::1], angle: cython.double, level: cython.double) -> bool:
-        """Set y and states from x = (q, q', f), the forces' angle and level; f is brought into its limits.
+        """Sets y and states from x = (q, q', f), the forces' angle and level; f is clipped to its limits.
+
+        Returns whether all of these numbers are finite.
 
         Whether all of these numbers are finite.
         """
@@ -631,7 +642,7 @@ class March:
 
     @cython.cfunc
     def _enter(self, j: cython.Py_ssize_t) -> cython.void:
-        """The state of a contact by its load and its friction force."""
+        """Sets the state of a contact by its load and its friction force."""
         f: cython.Py_ssize_t = 2 * self.flows.modes + j
         load: cython.double = self.flows.n_0[j] + self.y[0, f + self.flows.contacts]
         limit: cython.double = self.flows.mu[j] * load
@@ -646,14 +657,14 @@ class March:
             self.y[0, f] = limit if self.y[0, f] > 0.0 else -limit
 
     def lasts(self, duration: float, limit: int) -> None:
-        """Set the time to march [s] from y and states as they stand."""
+        """Sets the time to march [s] from the present y and states."""
         self.duration, self.limit, self.time = duration, limit, 0.0
         self.segments = Segments(self.flows.size, self.flows.contacts, max(self.segments.count + 8, 16))
         self._next.begins()
         self._settled = False
 
     def go(self) -> int:
-        """March on; returns why it has stopped, a `Stopped`."""
+        """Marches on; returns the reason for stopping, a `Stopped`."""
         stopped: cython.int
         if self.segments.count == self.segments.start.shape[0]:
             self.segments = self.segments.room(2 * self.segments.count)
@@ -662,7 +673,7 @@ class March:
         return int(stopped)
 
     def rate(self) -> float:
-        """The rate of the present flow [1/s]."""
+        """Rate of the present flow [1/s], one over its step."""
         return 1.0 / float(self.flows.step[self._ahead.slot])
 
     @cython.cfunc
@@ -696,7 +707,7 @@ class March:
     @cython.nogil
     @cython.exceptval(check=False)
     def _open_segment(self) -> cython.void:
-        """Note the segment that begins."""
+        """Records the start of a segment."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t = self.segments.count
         self._settled = True
@@ -711,7 +722,7 @@ class March:
     @cython.nogil
     @cython.exceptval(check=False)
     def _close_segment(self) -> cython.void:
-        """Note how the segment ends, and go there."""
+        """Records the end of the segment, and advances to it."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t = self.segments.count
         slot: cython.Py_ssize_t = self._ahead.slot

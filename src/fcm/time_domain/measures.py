@@ -1,4 +1,4 @@
-"""What is measured of a motion: integrals of its modal displacements, and extremes of any rows of its state.
+"""Measures of a motion: integrals of its modal displacements, extremes of any rows of its state, powers.
 
 The integrals are also those of products with sin and cos (`Integrals`). Over a step a displacement is the
 polynomial with its first `TERMS` Taylor coefficients at both ends; that and its integrals times exp(i theta)
@@ -58,7 +58,7 @@ _POWER_NODES = cython.declare(cython.int, POWER_NODES)
 
 @cython.cclass
 class Powers(Walk):
-    """Work of the forces, dissipation by slip and by damping, and the sum of all magnitudes, over a motion.
+    """Work of the forces, dissipation by slip and by damping, and the sum of their magnitudes over a motion.
 
     `slips` and `paths` (contact,): the dissipation by each contact, and the way that it slips.
 
@@ -92,12 +92,12 @@ class Powers(Walk):
         self._none()
 
     def begins(self, segments: Segments) -> None:
-        """See `Walk`; nothing is done yet."""
+        """Stands before the first segment, with all integrals zero."""
         Walk.begins(self, segments)
         self._none()
 
     def _none(self) -> None:
-        """Nothing was done."""
+        """Sets all integrals to zero."""
         self.work = self.slip = self.damping = self.turnover = 0.0
         self.slips[:] = 0.0
         self.paths[:] = 0.0
@@ -106,7 +106,7 @@ class Powers(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Step by step, each a polynomial."""
+        """Integrates along the present segment, step by step."""
         left: cython.double = self.segments.length[self.at]
         length: cython.double
         i: cython.Py_ssize_t
@@ -131,7 +131,7 @@ class Powers(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _add(self, weight: cython.double) -> cython.void:
-        """The powers at an instant; w' of a slipping contact is (6), (8)."""
+        """Adds the weighted powers at an instant; w' of a slipping contact is that of (6), (8)."""
         m: cython.Py_ssize_t = self.flows.modes
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
@@ -176,7 +176,7 @@ _NODES = cython.declare(cython.int, NODES)
 
 
 def _basis(x: FloatArray) -> FloatArray:
-    """Hermite's polynomials on [0, 1], with one Taylor coefficient at 0 or 1 that is 1: (x, 2 TERMS)."""
+    """Values (x, 2 TERMS) of Hermite polynomials on [0, 1], each with one Taylor coefficient 1 at an end."""
     columns = []
     for end in (x, 1.0 - x):
         for k in range(TERMS):
@@ -191,7 +191,7 @@ _ON_ONE = 0.5 * (_PLACES + 1.0), 0.5 * _SHARES[:, None] * _basis(0.5 * (_PLACES 
 
 @cython.cclass
 class Integrals(Walk):
-    """`sums` (3, mode): the integrals over time of q, q sin(theta) and q cos(theta)."""
+    """Time integrals of q, q sin(theta) and q cos(theta) over a motion, in `sums` (3, mode)."""
 
     def __init__(self, flows: Flows) -> None:
         Walk.__init__(self, flows)
@@ -201,7 +201,7 @@ class Integrals(Walk):
         self._there, self._sums = np.zeros((2, flows.size)), np.zeros((6, flows.size))
 
     def begins(self, segments: Segments) -> None:
-        """Stand before the first segment, with nothing summed."""
+        """Stands before the first segment, with all sums zero."""
         i: cython.Py_ssize_t
         b: cython.int
         Walk.begins(self, segments)
@@ -213,7 +213,7 @@ class Integrals(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Over all whole steps, and over what is left of one."""
+        """Integrates along the present segment: over its whole steps, then over the last part of one."""
         h: cython.double = self.flows.step[slot]
         whole: cython.longlong = cython.cast(cython.longlong, self.segments.length[self.at])
         x: cython.double = self.segments.length[self.at] - whole
@@ -244,7 +244,7 @@ class Integrals(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _steps(self, slot: cython.Py_ssize_t, whole: cython.longlong) -> cython.int:
-        """Sum the state vectors at both ends of whole steps, times 1, sin(theta), cos(theta) at the first."""
+        """Sums the states at both ends of whole steps, times 1, sin(theta) and cos(theta) of the first."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         while self.span > 0 and whole >= self.span:
@@ -271,7 +271,7 @@ class Integrals(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _gather(self, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
-        """Add the step from row k of y to the next."""
+        """Adds the step from row k of y to the next row."""
         i: cython.Py_ssize_t
         sine: cython.double = y[k, self.flows.linear]
         cosine: cython.double = y[k, self.flows.linear + 1]
@@ -287,7 +287,7 @@ class Integrals(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _weigh(self, angle: cython.double) -> cython.void:
-        """The weights of the coefficients in the integrals of q times 1, sin(angle x), cos(angle x)."""
+        """Sets the weights of the coefficients in the integrals of q times 1, sin(angle x), cos(angle x)."""
         i: cython.int
         j: cython.int
         real: cython.double
@@ -317,7 +317,10 @@ class Integrals(Walk):
         sine: cython.double,
         cosine: cython.double,
     ) -> cython.void:
-        """Add what row k of y does at the first (0) or last (1) end of steps of length h [s].
+        """Adds the contribution of row k of y at the first (0) or last (1) end of steps of length h [s].
+
+        Row k is a state vector, or a sum over steps of it times sin or cos of the forces' angle at the first
+        end.
 
         It is what it is, or a sum over steps of it times sin or cos of the forces' angle at the first end.
         """
@@ -343,7 +346,7 @@ class Integrals(Walk):
 
 @cython.cclass
 class Rows:
-    """Rows (row, linear) without their zeros, of the state vector without the forces' phases."""
+    """Sparse rows (row, linear) acting on the state vector without the forces' phases."""
 
     def __init__(self, rows: FloatArray) -> None:
         places = np.nonzero(rows)
@@ -356,7 +359,7 @@ class Rows:
     @cython.nogil
     @cython.exceptval(check=False)
     def dot(self, r: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.double:
-        """Of row r with row k of y."""
+        """Product of row r with row k of y."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
         other: cython.double = 0.0  # two sums, for one would wait for each addition
@@ -379,7 +382,7 @@ class Rows:
         out: cython.double[:, ::1],
         b: cython.Py_ssize_t,
     ) -> cython.void:
-        """Of all rows with row k of y, into row b of out."""
+        """Products of all rows with row k of y, written to row b of out."""
         p: cython.Py_ssize_t
         r: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -399,7 +402,7 @@ _SPAN = cython.declare(cython.int, SPAN)
 
 @cython.cclass
 class Scan(Walk):
-    """`greatest` and `least` (row,), the extremes of rows @ y.
+    """Extremes of rows @ y over a motion, in `greatest` and `least` (row,).
 
     `place` (2 rows, 2) is where they are: segment and position of all the least, then of the greatest.
     """
@@ -415,7 +418,7 @@ class Scan(Walk):
         self._first, self._length = 0.0, 0.0
 
     def begins(self, segments: Segments) -> None:
-        """Stand before the first segment, with no extreme so far."""
+        """Stands before the first segment, with no extreme so far."""
         r: cython.Py_ssize_t
         Walk.begins(self, segments)
         for r in range(self._rows.count):
@@ -425,7 +428,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Some steps after the other: the greatest and least of their ends, and then what is beyond these."""
+        """Scans the present segment, some steps at a time: first the step ends, then extremes between."""
         left: cython.double = self.segments.length[self.at]
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -449,7 +452,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _steps(self, slot: cython.Py_ssize_t, left: cython.double) -> cython.Py_ssize_t:
-        """Make the next of the steps that are left, and what is looked at there; how many they are."""
+        """Computes the next steps and the rows at their ends; returns how many steps."""
         i: cython.Py_ssize_t
         count: cython.Py_ssize_t = 0
         if self.span > 0 and left >= self.span:
@@ -471,7 +474,7 @@ class Scan(Walk):
         return count
 
     def values(self, slot: cython.Py_ssize_t) -> None:
-        """Displacements and velocities that the state vectors `ahead` have."""
+        """Fills the rows' values and slopes at the state vectors `ahead`."""
         n: cython.Py_ssize_t = self.flows.linear
         rows, y = np.asarray(self._rows.dense), np.asarray(self.ahead)
         out, forces = np.asarray(self._values), np.zeros((2 * self.flows.waves, 2, self.flows.size))
@@ -486,7 +489,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _rows_at(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """The rows where step k begins, and their slopes by the position."""
+        """Fills the rows' values and slopes (by the position) at the start of step k."""
         self._spread(slot, k, 1)
         self._rows.all(self._there, 0, self._values[0], k)
         self._rows.all(self._there, 1, self._values[1], k)
@@ -495,7 +498,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _spread(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.void:
-        """The Taylor coefficients by the position where step k begins, up to the last."""
+        """Fills the Taylor coefficients, by the position, at the start of step k up to the last wanted."""
         i: cython.Py_ssize_t
         for i in range(self.flows.size):
             self._there[0, i] = self._path[k, i]
@@ -505,7 +508,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _note_ends(self, count: cython.Py_ssize_t, last: cython.double) -> cython.void:
-        """Take the values at the ends of so many steps, the last one of that length."""
+        """Takes the values at the ends of `count` steps, the last one of length `last`."""
         k: cython.Py_ssize_t
         r: cython.Py_ssize_t
         for k in range(count + 1):
@@ -516,7 +519,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _step(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """Over step k."""
+        """Looks for extremes of all rows within step k."""
         r: cython.Py_ssize_t
         expanded: cython.bint = False
         for r in range(self.greatest.shape[0]):
@@ -530,7 +533,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _may_exceed(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
-        """Whether step k may go beyond the extremes so far, by the slopes at its ends.
+        """Whether the motion within step k may exceed the extremes so far, by the slopes at its ends.
 
         With r the greater slope per step at the ends, no slope within the step exceeds 2 r: the step is a
         short part of the fastest motion. So the motion goes no further than r from the mean of its ends.
@@ -545,7 +548,7 @@ class Scan(Walk):
     def _has_extreme(
         self, slot: cython.Py_ssize_t, r: cython.Py_ssize_t, k: cython.Py_ssize_t
     ) -> cython.bint:
-        """Whether step k may hold an extreme of its own."""
+        """Whether step k may contain an extreme inside."""
         first: cython.double = self._values[1, k, r]
         bend: cython.double
         if first * self._values[1, k + 1, r] < 0.0:
@@ -561,7 +564,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _extremes(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """Those of row r in step k, whose terms are there."""
+        """Takes the extremes of row r within step k, whose Taylor terms are known."""
         first: cython.double = self._values[1, k, r]
         j: cython.int
         inflection: cython.double
@@ -581,7 +584,7 @@ class Scan(Walk):
     def _extreme_between(
         self, r: cython.Py_ssize_t, k: cython.Py_ssize_t, low: cython.double, high: cython.double
     ) -> cython.void:
-        """Take the value where the velocity changes its sign in step k."""
+        """Takes the value where the velocity changes sign in a part of step k."""
         x: cython.double = root(self._powers, 1, low, high)
         self._note(r, k + x, value(self._powers, 0, x))
 
@@ -589,7 +592,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _note(self, r: cython.Py_ssize_t, x: cython.double, here: cython.double) -> cython.void:
-        """Take a value, x steps from the first of those that are looked at, if it is an extreme so far."""
+        """Takes a value, x steps from the first step of the block, if it is an extreme so far."""
         if here > self.greatest[r]:
             self.greatest[r] = here
             self._put(self._rows.count + r, x)
@@ -601,5 +604,5 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _put(self, k: cython.Py_ssize_t, x: cython.double) -> cython.void:
-        """Take x for a place."""
+        """Records segment and position x of an extreme."""
         self.place[k, 0], self.place[k, 1] = self.at, self._first + x

@@ -6,20 +6,30 @@ from fcm.frozen import Frozen
 
 
 class SimulationOptions(Frozen):
-    """The exact motion.
+    """Options on how the exact motion is simulated.
 
-    max_transitions: of contacts in one cycle, at most; with more they chatter.
+    Attributes
+    ----------
+    max_transitions : int
+        Most transitions of contacts in one cycle; with more they chatter, and the simulation stops.
     """
 
     max_transitions: int = 200_000
 
 
 class SettlingOptions(Frozen):
-    """Whether a transient has settled.
+    """Options on when a transient counts as settled.
 
-    cycles: whose amplitudes are compared with those of as many before. min_change: relative change that is
-    none. min_amplitude: part of the greatest amplitude; smaller ones are not judged. tolerance: relative
-    change of the amplitudes that is still to come, up to which the motion is periodic.
+    Attributes
+    ----------
+    cycles : int
+        Number of cycles whose range of amplitudes is compared with that of as many before.
+    min_change : float
+        Range of amplitudes, relative to the last, up to which they no longer change.
+    min_amplitude : float
+        Amplitude, relative to the greatest, that changes of smaller ones are referred to.
+    tolerance : float
+        Relative change of the amplitudes that is still to come, up to which the motion is periodic.
     """
 
     cycles: int = 10
@@ -29,11 +39,18 @@ class SettlingOptions(Frozen):
 
 
 class HistoryOptions(Frozen):
-    """What is kept of a schedule.
+    """Options on how much of a schedule is kept.
 
-    max_samples, min_samples: of a cycle, at most and at least. max_displacements: that are sampled, of all
-    curves; 32 MB before compression. max_transitions: kept with their times; all are counted. max_letters: of
-    a sequence of states in a summary.
+    Attributes
+    ----------
+    max_samples, min_samples : int
+        Most and fewest samples of a cycle.
+    max_displacements : int
+        Most displacements that are sampled of all curves; 32 MB before compression.
+    max_transitions : int
+        Most transitions that are kept with their times; all are counted.
+    max_letters : int
+        Most letters of a sequence of states in a summary.
     """
 
     max_samples: int = 64
@@ -44,15 +61,31 @@ class HistoryOptions(Frozen):
 
 
 class TransitionOptions(Frozen):
-    """How the transitions of contacts are found in a motion.
+    """Options on how the transitions of contacts are found in a motion.
 
-    rounding: of a state after a step, relative to its terms. depth: an exit that is passed by less, relative
-    to its size, is not. grazing: rate of an exit where it is passed, relative to its terms; with less the
-    instant does not move. max_passes: until a combination of states agrees with itself. max_steps: in one
-    segment. max_blocks: of steps until signals are looked at. max_halvings: of a step in which an exit is
-    sought. negligible_power: of a series, over what it adds up to; the last of its powers that are less are
-    left out. first_doublings: steps of a segment's first look, as a power of two, for many are short.
-    max_order: of the derivatives of an exit that may tell which combination follows.
+    Attributes
+    ----------
+    rounding : float
+        Rounding error of a state after a step, relative to the terms that it is summed of.
+    depth : float
+        Distance past an exit, relative to its size, up to which the exit is not passed.
+    grazing : float
+        Rate of an exit where it is passed, relative to its terms, up to which the instant does not move with
+        the state.
+    max_passes : int
+        Most combinations of states that are tried at one instant until one is consistent.
+    max_steps : float
+        Most steps in one segment; with more the motion is given up as too long.
+    max_blocks : int
+        Number of blocks of steps after which signals are looked at.
+    max_halvings : int
+        Most bisections of a step in which an exit is looked for.
+    negligible_power : float
+        Size of a power in a series, relative to its sum, below which it and the higher powers are left out.
+    first_doublings : int
+        Number of steps of a segment that are looked at first, as a power of two: many segments are short.
+    max_order : int
+        Highest derivative of an exit by which it is decided which combination of states follows.
     """
 
     rounding: float = 3e-14
@@ -70,10 +103,22 @@ class TransitionOptions(Frozen):
 class FlowOptions(Frozen):
     """The flows of a scene, each of one combination of contact states.
 
-    min_count: that are kept at least. max_bytes: memory of those that are kept otherwise. dense_size:
-    components of the state from which on matrices are multiplied by BLAS. taylor_size: components up to which
-    Taylor coefficients are kept. few_rows: derivatives that are sooner moved one by one. max_step_angle: of
-    the highest harmonic of the forces in a step [rad]: one, and rounding. transitions: how they are found.
+    Attributes
+    ----------
+    min_count : int
+        Number of flows that are kept in any case.
+    max_bytes : float
+        [byte] Memory of the flows that are kept beyond them.
+    dense_size : int
+        Number of state components from which on matrices are multiplied by BLAS.
+    taylor_size : int
+        Number of state components up to which Taylor coefficients are kept.
+    few_rows : int
+        Number of derivatives below which they are propagated one by one.
+    max_step_angle : float
+        [rad] Angle of the highest harmonic of the forces in a step, at most: one, and rounding.
+    transitions : TransitionOptions
+        How transitions are found.
     """
 
     min_count: int = 8
@@ -86,7 +131,7 @@ class FlowOptions(Frozen):
 
 
 class TimeOptions(Frozen):
-    """All of the package, by what they are for: see the class of each field."""
+    """All options of the time simulation, grouped by purpose; see the class of each field."""
 
     simulation: SimulationOptions = SimulationOptions()
     settling: SettlingOptions = SettlingOptions()

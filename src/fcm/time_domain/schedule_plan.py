@@ -1,4 +1,4 @@
-"""What is kept of a schedule: its cycles, and the instants at which the displacements are sampled.
+"""Plan of what is kept of a schedule: its cycles, and the instants of sampled displacements.
 
 Both are known before anything is simulated, and are the same for every curve of a sweep.
 """
@@ -18,7 +18,7 @@ IntArray = npt.NDArray[np.intp]
 
 
 class Plan:
-    """The cycles of a schedule one after the other; the last of a phase may be a part of one.
+    """The cycles of a schedule one after the other; the last of a phase may be incomplete.
 
     Parameters
     ----------
@@ -58,42 +58,42 @@ class Plan:
 
     @property
     def instants(self) -> int:
-        """All that are sampled, the end included."""
+        """Number of sampled instants, including the end."""
         return int(self.sampled.sum()) + 1
 
     @cached_property
     def time(self) -> FloatArray:
-        """Of each instant [s], from the start of the schedule."""
+        """Time [s] of each instant from the start of the schedule."""
         owner, inside = self._inside
         begun = self.start[owner] + inside * self.period[self.phase[owner]]
         return np.append(begun, self.phase_start[-1] + self.length[-1] * self.period[-1])
 
     @cached_property
     def cycles(self) -> FloatArray:
-        """Cycles that have passed at each instant."""
+        """Number of cycles passed at each instant."""
         owner, inside = self._inside
         return np.append(self.elapsed[owner] + inside, self.length.sum())
 
     @cached_property
     def _inside(self) -> tuple[IntArray, FloatArray]:
-        """For each instant but the last its cycle, and how much of it has passed."""
+        """Cycle of each instant but the last, and the fraction of the cycle that has passed."""
         owner = np.repeat(np.arange(self.sampled.size), self.sampled)
         return owner, (np.arange(owner.size) - self.first[owner]) / self.samples
 
     @property
     def sentence(self) -> str:
-        """How much the displacements are decimated."""
+        """Text on the sampling density of the displacements."""
         of = f" of every {self.every}th cycle" if self.every > 1 else " a cycle"
         return f"{self.samples} samples{of}"
 
 
 def _before(values: FloatArray | IntArray) -> FloatArray:
-    """The sum of all values before each."""
+    """Cumulative sum of the values before each one."""
     return np.concatenate(([0.0], np.cumsum(values)[:-1]))
 
 
 def _density(cycles: int, columns: int, options: TimeOptions = TIME) -> tuple[int, int]:
-    """Samples in a cycle, and of so many cycles one is sampled."""
+    """Samples in a cycle, and the interval of sampled cycles (every n-th cycle is sampled)."""
     samples = options.history.max_samples
     while (
         samples > options.history.min_samples

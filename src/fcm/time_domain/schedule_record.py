@@ -1,4 +1,4 @@
-"""A schedule simulated cycle by cycle; of each cycle only what is reported is kept."""
+"""Simulates a schedule cycle by cycle, and keeps of each cycle only what is reported."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ByteArray = npt.NDArray[np.int8]
 
 
 class PhaseResult(Frozen):
-    """What one phase of a schedule came to; displacements are of its last whole cycle."""
+    """Result of one phase of a schedule; displacements are those of its last whole cycle."""
 
     frequency: float  # [rad/s]
     cycles: float  # that were simulated
@@ -50,7 +50,7 @@ class PhaseResult(Frozen):
 
 @dataclass
 class Record:
-    """One schedule of one curve; NaN and -1 stand for what was not reached."""
+    """The simulated schedule of one curve; NaN and -1 stand for what was not reached."""
 
     parameters: dict[str, float]
     amplitude: FloatArray  # (cycle, dof) half the peak-to-peak
@@ -75,7 +75,7 @@ class Record:
 
     @property
     def cycles(self) -> float:
-        """Cycles that were simulated."""
+        """Number of simulated cycles."""
         return sum(phase.cycles for phase in self.phases)
 
     @property
@@ -85,7 +85,7 @@ class Record:
 
 
 class CompletedPhase(Frozen):
-    """What is reported of a whole phase, and the state at its end: the schedule can go on from there."""
+    """Results of a whole phase and the state at its end, from which the schedule can go on."""
 
     measures: FloatArray  # (4, cycle, dof) amplitude, mean, greatest and least displacement
     displacement: FloatArray  # (instant, dof)
@@ -106,7 +106,7 @@ def record(
     save: Callable[[CompletedPhase], None] | None = None,
     options: TimeOptions = TIME,
 ) -> Record:
-    """Simulate the schedule of a scene, and keep what is reported of it.
+    """Simulates the schedule of a scene, and keeps what is reported of it.
 
     An interruption, contacts that chatter without end, or static loads that nothing holds, leave it
     incomplete with a reason. It goes on after the phases that are passed, to the same record; every further
@@ -150,7 +150,7 @@ def unfinished(scene: Scene, plan: Plan) -> Record:
 
 
 def total(parts: Sequence[Energy]) -> Energy:
-    """The balance of successive motions."""
+    """Energy balance of successive motions together."""
     work, slip, damping, stored = (sum((part[i] for part in parts), 0.0) for i in range(4))
     turnover = sum((part.turnover - abs(part.stored) for part in parts), abs(stored))
     return Energy(work, slip, damping, stored, turnover)
@@ -158,7 +158,7 @@ def total(parts: Sequence[Energy]) -> Energy:
 
 @dataclass
 class _Tally:
-    """What is counted in a phase."""
+    """Running totals of a phase."""
 
     first: int  # its first cycle
     kept: int  # transitions before it that are kept with their times
@@ -168,7 +168,7 @@ class _Tally:
 
 
 class _Transitions:
-    """All changes of state are counted; their times are kept while there is room."""
+    """Counts all changes of contact states, and keeps their times while there is room."""
 
     def __init__(self, options: TimeOptions) -> None:
         self.options = options
@@ -176,7 +176,7 @@ class _Transitions:
         self.letters = ""  # the states until now
 
     def count(self, cycle: Cycle, start: float) -> int:
-        """Transitions of a cycle that begins at a time [s]."""
+        """Number of transitions of a cycle that begins at a time [s]."""
         found = 0
         for begun, after in zip(np.asarray(cycle.segments.start).tolist(), cycle.letters, strict=True):
             for j, (before, letter) in enumerate(zip(self.letters, after, strict=False)):
@@ -203,7 +203,7 @@ class _Recorder:
         self.tallies: list[_Tally] = []
 
     def add(self, phase: int, cycle: Cycle, end: State) -> None:
-        """Keep what is reported of the next cycle; nothing of it if that is interrupted."""
+        """Keeps what is reported of the next cycle; nothing of it if that is interrupted."""
         found = measure(cycle)
         balance = energy(Motion(self.scene, (cycle,), end))
         self._sample(cycle)
@@ -218,7 +218,7 @@ class _Recorder:
         self.end, self.done = end, self.done + 1
 
     def passed(self) -> CompletedPhase:
-        """The last phase, which is whole, and not the last of the schedule."""
+        """The last phase as a `CompletedPhase`; it is whole, and not the last of the schedule."""
         tally, found = self.tallies[-1], self.transitions
         cycles, instants = slice(tally.first, self.done), self._instants(tally.first, self.done)
         times, contacts, states = (
@@ -231,7 +231,7 @@ class _Recorder:
         )  # fmt: skip
 
     def take(self, passed: CompletedPhase) -> None:
-        """A phase that was simulated before."""
+        """Takes over a phase that was simulated before."""
         found, first = self.transitions, self.done
         tally = _Tally(first, len(found.times), passed.energy, passed.count, passed.states)
         self.tallies.append(tally)
@@ -246,7 +246,7 @@ class _Recorder:
         found.letters = passed.letters
 
     def _instants(self, first: int, end: int) -> slice:
-        """Those of the cycles from one to before another, which is not beyond the last."""
+        """Slice of the instants of the cycles from `first` to before `end`, at most the last cycle."""
         return slice(int(self.plan.first[first]), int(self.plan.first[end]))
 
     def _sample(self, cycle: Cycle) -> None:
@@ -293,7 +293,7 @@ class _Recorder:
 
 
 def unsettled(amplitude: FloatArray, options: TimeOptions = TIME) -> float:
-    """Relative change that is still to come, were what is left to decay as it did of late.
+    """Estimated relative change of amplitudes still to come, extrapolated from the recent decay.
 
     With the ranges d_1 and d_2 of the amplitude over the last WINDOW cycles and the ones before, what is
     left of a transient that decays as a power is d_1 rho / (1 - rho), rho = d_1 / d_2.

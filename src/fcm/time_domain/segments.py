@@ -1,4 +1,4 @@
-"""The segments of a motion: what happens between two transitions.
+"""The segments of a motion, each between two transitions.
 
 `Walk` goes through them, one after the other, `Steps` step by step, each step as a polynomial; `sample` has
 the motion at given instants. `SegmentSequence` is their sequence of contact states.
@@ -50,7 +50,7 @@ SPAN = 2**DOUBLINGS
 
 @cython.cclass
 class Segments:
-    """Arrays over segments, of which the first `count` are there.
+    """Arrays over segments, of which the first `count` are used.
 
     A segment begins at the time `start` [s] with the state vector `y` (d,). It lasts for `length` steps of
     the flow of its `states` (contact,). `ended` is the exit that ends it, -1 where the motion ends. While it
@@ -65,7 +65,7 @@ class Segments:
 
     @cython.cfunc
     def _part(self, size: cython.Py_ssize_t) -> cython.void:
-        """Name the columns of the numbers, which are one array so that it is soon made."""
+        """Names the columns of the array of numbers; a single array is quick to allocate."""
         wide: cython.Py_ssize_t = self._numbers.shape[1]
         self.y, self.slack = self._numbers[:, :size], self._numbers[:, size : wide - 3]
         self.start, self.length = self._numbers[:, wide - 3], self._numbers[:, wide - 2]
@@ -75,7 +75,7 @@ class Segments:
         return self.count
 
     def largest(self) -> FloatArray:
-        """The greatest magnitude of each component at the ends of segments: (d,)."""
+        """Greatest magnitude of each state component over the starts of segments: (d,)."""
         greatest = np.zeros(self.y.shape[1])
         out: cython.double[::1] = greatest
         k: cython.Py_ssize_t
@@ -90,7 +90,7 @@ class Segments:
         per_unit: cython.double[::1],
         flows: FlowArrays,
     ) -> FloatArray:
-        """The size of the displacements, velocities and friction forces: (2 modes + contacts,).
+        """Sizes of the displacements, velocities and friction forces: (2 modes + contacts,).
 
         A mode's is the greatest displacement by the one that its shape gives, a contact's the greatest of its
         force and of the smaller of its limit and of the force of that displacement.
@@ -115,7 +115,7 @@ class Segments:
         return whole
 
     def length_by(self, rates: cython.double[::1]) -> float:
-        """The greatest displacement of any mode, or velocity over the mode's own rate (mode,) [1/s]."""
+        """Greatest displacement of any mode, or velocity over the mode's own rate (mode,) [1/s]."""
         m: cython.Py_ssize_t = rates.shape[0]
         y: cython.double[::1] = self.largest()
         length: cython.double = TINY
@@ -125,7 +125,7 @@ class Segments:
         return float(length)
 
     def lasting(self, duration: cython.double, least: cython.double) -> bytes:
-        """The states in the segments that last longer than the least [s], of all those of a duration."""
+        """State codes of all segments that last longer than `least` [s], for a motion of a given duration."""
         codes = []
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -138,7 +138,7 @@ class Segments:
         return bytes(codes)
 
     def held(self, j: int) -> float:
-        """A lower bound of the exits of contact j over all segments."""
+        """Lower bound of the exits of contact j over all segments."""
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t = j
         least: cython.double = self.slack[0, i]
@@ -147,7 +147,7 @@ class Segments:
         return float(least)
 
     def seen(self) -> list[int]:
-        """For each contact the sum of 2**code of the states that it has been in."""
+        """States that each contact has been in, as the sum of 2**code."""
         found: list[int] = []
         seen: cython.int
         k: cython.Py_ssize_t
@@ -160,13 +160,13 @@ class Segments:
         return found
 
     def trim(self) -> Segments:
-        """These segments without room for more."""
+        """Removes the spare room of these segments, and returns them."""
         self._numbers, self.states = self._numbers[: self.count], self.states[: self.count]
         self._part(self.y.shape[1])
         return self
 
     def room(self, capacity: int) -> Segments:
-        """The same segments with room for more."""
+        """A copy of the segments with room for more."""
         made = Segments(self.y.shape[1], self.states.shape[1], capacity)
         k = made.count = self.count
         np.asarray(made._numbers)[:k], np.asarray(made.states)[:k] = (
@@ -178,7 +178,7 @@ class Segments:
 
 @cython.cclass
 class Walk:
-    """`visit` is what is done along each segment that lasts; `at` is the one where it is.
+    """Base class of kernels that go through segments: `visit` is called along each one; `at` is its number.
 
     Of a large system `ahead` are the state vectors on a `span` of so many steps; else that is 0.
     """
@@ -189,11 +189,11 @@ class Walk:
         self.ahead = np.zeros((self.span + 1, flows.size))
 
     def begins(self, segments: Segments) -> None:
-        """Stand before the first segment."""
+        """Stands before the first segment."""
         self.segments, self.at = segments, -1
 
     def go(self) -> int:
-        """Go through all segments: 0 when done, -1 where the flow of the next one is missing."""
+        """Goes through all segments: 0 when done, -1 where the flow of the next one is missing."""
         stopped: cython.int
         with cython.nogil:
             stopped = self._go()
@@ -217,7 +217,7 @@ class Walk:
         return 0
 
     def reach(self, slot: cython.Py_ssize_t) -> None:
-        """Fill the rows of `ahead` after the first, each time as many as there are."""
+        """Fills the rows of `ahead` after the first, doubling the number of steps each time."""
         self.flows.reach(slot, DOUBLINGS)
         n, y = self.flows.linear, np.asarray(self.ahead)
         powers, waves = np.asarray(self.flows.power)[slot], self.flows.waves
@@ -237,7 +237,7 @@ class Walk:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Along the segment `at`, whose flow is in that place of the pool."""
+        """Hook called along the segment `at`, whose flow is at `slot` of the pool."""
         return 0
 
 
@@ -246,7 +246,10 @@ MISSING = -1
 
 @cython.cclass
 class Steps:
-    """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j, x to `length` of `h` [s]."""
+    """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j.
+
+    x runs up to `length`, in units of `h` [s].
+    """
 
     def __init__(self, flows: Flows, segments: Segments) -> None:
         self.flows, self.segments = flows, segments
@@ -258,7 +261,7 @@ class Steps:
     @cython.nogil
     @cython.exceptval(-2, check=False)
     def next(self) -> cython.int:
-        """Go to the next step: 1 if there is one, 0 at the end, -1 if segment at + 1 has no flow yet."""
+        """Goes to the next step: 1 if there is one, 0 at the end, -1 if segment at + 1 has no flow yet."""
         i: cython.Py_ssize_t
         slot: cython.Py_ssize_t
         self.left -= self.length
@@ -289,7 +292,8 @@ class Steps:
 def sample(
     steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
 ) -> int:
-    """State vectors at increasing times [s], into the rows of out from `done` on; returns how many there are.
+    """Fills out from row `done` on with state vectors at increasing times [s]; returns how many rows are
+    filled.
 
     Fewer than all where a flow is missing; the last step serves later times too.
     """
@@ -332,7 +336,7 @@ def _sample(
 
 @cython.cclass
 class SegmentSequence(StateSequence):
-    """`take` segments of a motion that repeats after them; angles are counted from their start to 2 pi.
+    """State sequence of a periodic motion, taken from its segments; angles run from their start to 2 pi.
 
     The contacts that are held follow those that are computed, and never change their state.
 
@@ -357,7 +361,7 @@ class SegmentSequence(StateSequence):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def take(self, segments: Segments, duration: cython.double) -> cython.int:
-        """Segments that last for a duration [s]."""
+        """Takes segments that last for a duration [s]."""
         k: cython.Py_ssize_t
         c: cython.int
         last: cython.Py_ssize_t = segments.count - 1
@@ -381,7 +385,7 @@ class SegmentSequence(StateSequence):
     @cython.cfunc
     @cython.exceptval(check=False)
     def _state(self, segments: Segments, k: cython.Py_ssize_t, c: cython.int) -> cython.int:
-        """The state of a contact in a segment, as a `StateSequence` has it."""
+        """State of contact c in segment k, in the codes of a `StateSequence`."""
         state: cython.int = segments.states[k, c]
         if state == STATE_SEPARATED:
             return SEPARATION
@@ -399,7 +403,7 @@ class SegmentSequence(StateSequence):
         c: cython.int,
         angle: cython.double,
     ) -> cython.void:
-        """A contact's state in segment k is not that of the segment before.
+        """Adds the change of a contact's state at the start of segment k.
 
         `along` as of a `StateSequence`: at the end of a slip the place is a limit's. At a closing w = u where
         the load vanishes, and that moves by -dn / n'.
@@ -422,7 +426,7 @@ class SegmentSequence(StateSequence):
     def _velocity(
         self, shape: cython.double[:, ::1], segments: Segments, k: cython.Py_ssize_t, c: cython.int
     ) -> cython.double:
-        """The velocity of a contact along its shape, where segment k begins."""
+        """Velocity of a contact along its shape, at the start of segment k."""
         i: cython.Py_ssize_t
         m: cython.Py_ssize_t = shape.shape[1]
         total: cython.double = 0.0

@@ -1,4 +1,4 @@
-"""Simulation from a state: at one frequency, or through the phases of the scene's schedule."""
+"""Simulates from a state: at one frequency, or through the phases of the scene's schedule."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def simulate_phases(
 def cycles_from(
     system: System, cycles: float, state: State, options: TimeOptions = TIME
 ) -> Iterator[tuple[Cycle, State]]:
-    """The cycles from a state on, each with the state at its end; the last one may be a part."""
+    """Yields the cycles from a state on, each with the state at its end; the last may be incomplete."""
     y, states = entry(system, state)
     for k in range(int(np.ceil(cycles))):
         part = min(1.0, cycles - k)
@@ -130,7 +130,7 @@ def cycles_from(
 def march(
     system: System, y: FloatArray, states: Codes, duration: float, options: TimeOptions = TIME
 ) -> tuple[Segments, FloatArray, Codes]:
-    """The segments of the motion over a duration [s], the state vector and the states at its end."""
+    """Segments of the motion over a duration [s], with the state vector and states at its end."""
     march = system.march()
     march.begins(y, states, duration, options.simulation.max_transitions)
     segments = _marched(system, march, options)
@@ -140,7 +140,7 @@ def march(
 def march_from(
     system: System, x: FloatArray, duration: float, options: TimeOptions = TIME
 ) -> tuple[Segments, FloatArray]:
-    """The segments from x = (q, q', f) at the forces' angle 0 on, and the state vector at their end."""
+    """Segments from x = (q, q', f) at the forces' angle 0 on, with the state vector at their end."""
     march = entered(system, x)
     march.lasts(duration, options.simulation.max_transitions)
     segments = _marched(system, march, options)
@@ -152,7 +152,10 @@ def _at(system: System) -> str:
 
 
 def _marched(system: System, march: March, options: TimeOptions = TIME) -> Segments:
-    """The segments of a march to its end."""
+    """Runs a march to its end, makes missing flows, and returns its segments.
+
+    Raises CycleError for chatter, undecidable states or too long a cycle.
+    """
     while (stopped := march.go()) != Stopped.DONE:
         if stopped == Stopped.MISSING:
             system.make(np.asarray(march.states)[0])

@@ -15,7 +15,7 @@ from fcm.time_domain.system import System
 
 
 class State(Frozen):
-    """Everything that the motion from an instant on depends on.
+    """The state at an instant: everything that the later motion depends on.
 
     The slip motion of each contact is w = u - friction / k_u (2); its normal load follows from the
     displacements. A friction force beyond the limit mu n is brought back to it.
@@ -58,7 +58,7 @@ class State(Frozen):
 
     @staticmethod
     def start(scene: Scene) -> State:
-        """Where the scene's schedule starts from: rest, unless the scene says otherwise."""
+        """The state in which the scene's schedule begins: rest, unless the scene says otherwise."""
         given = scene.start
         if given is None:
             return State.rest(scene)
@@ -67,7 +67,7 @@ class State(Frozen):
 
 
 def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
-    """The state vector of a state, and a combination of contact states for the march to begin with."""
+    """The state vector of a state, and contact states for the march to begin with."""
     x = np.zeros(system.unknowns)
     try:
         x[system.q], x[system.p], x[system.f] = state.q, state.velocity, state.friction
@@ -81,7 +81,7 @@ def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
 
 
 def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
-    """The march, to go on from x = (q, q', f) at an angle of the forces."""
+    """The march of a system, set to go on from x = (q, q', f) at an angle of the forces."""
     march = system.march()
     if not march.enters(x, angle, system.level):
         raise SimulationError("the state to start from has numbers that are not finite")
@@ -89,11 +89,11 @@ def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
 
 
 def leave(system: System, y: FloatArray, angle: float) -> State:
-    """The state of a state vector, at an angle of the forces."""
+    """The `State` of a state vector, at an angle of the forces."""
     return State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), angle)
 
 
 def set_angle(system: System, y: FloatArray, angle: float) -> None:
-    """Set the phases of the forces by their angle."""
+    """Sets the phases of the forces in a state vector by their angle [rad]."""
     angles = angle * np.array(system.harmonics)
     y[system.linear :: 2], y[system.linear + 1 :: 2] = np.sin(angles), np.cos(angles)

@@ -1,4 +1,4 @@
-"""Why a march from transition to transition has stopped."""
+"""Reasons for which a march from transition to transition stops."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Stopped(IntEnum):
-    """Why a march has stopped, and what lets it go on."""
+    """Reason for which a march has stopped, and what lets it go on."""
 
     DONE = 0  # its time is over
     MISSING = 1  # the flow of a combination of states has to be made

@@ -1,4 +1,4 @@
-"""A scene as what its motion in time depends on: modes, contacts, forces; one at each frequency."""
+"""A scene prepared for motion in time: modes, contacts and forces at a frequency."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OWN = ("scene", "omega")  # what systems of a scene do not have in common, or mu
 
 
 class ReportedRows(NamedTuple):
-    """Rows of what is reported of a motion."""
+    """Slices of the rows of reported quantities of a motion."""
 
     displaced: slice  # of each degree of freedom
     forces: slice  # k_v v of each contact, then f
@@ -99,7 +99,7 @@ class System:
         return other
 
     def at_level(self, level: float, by_level: bool = False) -> System:
-        """The same at another level of the forces, which may be the parameter, with the same flows."""
+        """The same scene at another force level, with the same flows; the level may be the parameter."""
         other = self.at(self.omega)
         other.level, other.by_level = level, by_level
         return other
@@ -136,7 +136,7 @@ class System:
         return self._along
 
     def make(self, states: Codes) -> int:
-        """Put the flow of a combination of states into the pool; returns its place."""
+        """Makes the flow of a combination of states and puts it into the pool; returns its place."""
         return int(self.flows.add(made(self, states)))
 
     def steps(self, segments: Segments) -> Steps:
@@ -144,7 +144,7 @@ class System:
         return Steps(self.tuned(), segments)
 
     def run(self, kernel: Walk, segments: Segments) -> None:
-        """Let a kernel go through segments at this frequency, making the flows that are missing."""
+        """Runs a kernel through segments at this frequency, and makes the flows that are missing."""
         self.tuned()
         kernel.begins(segments)
         while kernel.go() < 0:
@@ -155,7 +155,7 @@ class System:
         return self.preload + y[self.n]
 
     def _scans(self) -> tuple[Scan, Scan, Scan, ReportedRows]:
-        """Of the displacements alone, of the limits of slip, and of all that is reported with its parts."""
+        """Scans of the displacements, of the slip limits and of all reported rows, with their slices."""
         displacements = np.zeros((self.scene.modal.shapes.shape[1], self.linear))
         displacements[:, self.q] = self.scene.modal.shapes.T
         parts = displacements, self._force_rows(), held_limits(self), held_rows(self)
@@ -165,14 +165,14 @@ class System:
         return first, second, third, ReportedRows(*(slice(a, b) for a, b in pairwise(ends)))
 
     def _force_rows(self) -> FloatArray:
-        """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""
+        """Rows of k_v v, then of f, of all contacts, for y without the forces' angle."""
         c = len(self.contacts)
         rows = np.zeros((2 * c, self.linear))
         rows[:c, self.n], rows[c:, self.f] = np.eye(c), np.eye(c)
         return rows
 
     def _limit_rows(self) -> FloatArray:
-        """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
+        """Rows of mu n - f and mu n + f of each contact, for y without the forces' angle."""
         c, each = len(self.contacts), np.arange(len(self.contacts))
         rows = np.zeros((c, 2, self.linear))
         for i, sign in enumerate((-1.0, 1.0)):
@@ -182,22 +182,24 @@ class System:
 
 
 class _Latest(local):
-    """What the systems of the scene that this thread came to last have in common, as long as that is there:
-    flows are expensive to make."""
+    """What the systems of this thread's latest scene share, as flows are expensive to make.
+
+    It is dropped with the scene.
+    """
 
     of: Callable[[], Scene | None] = staticmethod(lambda: None)
     common: dict[str, Any] | None = None
 
     def known(self, scene: Scene) -> dict[str, Any] | None:
-        """That of a scene, if it is the one that was come to last."""
+        """What systems of a scene share, if it is the latest one; else None."""
         return self.common if self.of() is scene else None
 
     def keep(self, scene: Scene, common: dict[str, Any]) -> None:
-        """Until the scene goes, or another comes."""
+        """Keeps what systems of a scene share, until the scene is deleted or another comes."""
         self.of, self.common = ref(scene, lambda gone: self.drop(gone)), common
 
     def drop(self, gone: object) -> None:
-        """That of a scene that goes."""
+        """Drops what is kept of a deleted scene."""
         if self.of is gone:
             self.common = None
 

@@ -84,7 +84,7 @@ class Motion(Frozen):
         return out
 
     def measures(self, last: int | None = None) -> list[Measure]:
-        """Amplitudes and means of each cycle, or of the last ones.
+        """Measures (amplitudes, means) of each cycle, or of the last ones only.
 
         A cycle that ends a phase early is measured as far as it goes.
         """
@@ -131,7 +131,7 @@ def friction_rows(system: System) -> FloatArray:
 
 
 def _instants(cycle: Cycle, samples: int) -> FloatArray:
-    """Times within the cycle at steps of 1 / samples of a period, its end left out."""
+    """Times within the cycle at steps of 1 / samples of a period, without its end."""
     step = cycle.system.period / samples
     count = int(np.ceil(cycle.duration / step - 1e-9))
     return step * np.arange(count, dtype=np.float64)

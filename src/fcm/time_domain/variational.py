@@ -1,4 +1,4 @@
-"""The derivative of the motion by its start, and by the frequency or the level of the forces.
+"""The derivative of the motion by its initial state, and by the frequency or the level of the forces.
 
 Along a flow it is moved as by `VariationalFlow`. Across a transition whose instant moves with the start or
 with the frequency it is the saltation matrix
@@ -73,7 +73,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.int:
-        """Along a flow, to a position in steps."""
+        """Moves the derivatives along a flow, by a position in steps."""
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
         j: cython.int
@@ -90,7 +90,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _whole(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.int:
-        """By 2**j steps."""
+        """Moves the derivatives by 2**j steps."""
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
         i: cython.Py_ssize_t
@@ -126,7 +126,7 @@ class VariationalFlow:
     def _rotate(
         self, h: cython.Py_ssize_t, c: cython.double, s: cython.double, time: cython.double
     ) -> cython.void:
-        """Rotate a harmonic's forces by the angle with that cosine and sine, which takes that time [s]."""
+        """Rotates a harmonic's forces by an angle (cosine c, sine s) that takes `time` [s]."""
         n: cython.Py_ssize_t = self.flows.linear + 2 * h
         u: cython.Py_ssize_t = self.unknowns
         k: cython.Py_ssize_t
@@ -143,7 +143,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _times(self, matrix: cython.double[:, ::1], rows: cython.Py_ssize_t) -> cython.int:
-        """Multiply so many of the derivatives by the matrix of a flow."""
+        """Multiplies the first so many derivatives by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         k: cython.Py_ssize_t
         done: cython.Py_ssize_t = 0
@@ -165,7 +165,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(check=False)
     def _row_times(self, matrix: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
-        """Multiply one of the derivatives by the matrix of a flow."""
+        """Multiplies one of the derivatives by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t = 0
@@ -201,7 +201,10 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.int:
-        """Those by the start by a part x of a step: by its matrix or, where that is more work, row by row."""
+        """Moves the derivatives by the initial state over a fraction x of a step.
+
+        By its matrix or, where that is more work, row by row.
+        """
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -244,7 +247,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.int:
-        """By a part x < 1 of a step."""
+        """Moves all derivatives by a fraction x < 1 of a step."""
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
         size: cython.double
@@ -285,8 +288,7 @@ class VariationalFlow:
 
 @cython.cclass
 class Derivative(VariationalFlow):
-    """The derivative of a motion by x = (q, q', f) at its start, and by the frequency or by the level of the
-    forces.
+    """Derivative of a motion by its initial x = (q, q', f), and by the frequency or the level of the forces.
 
     Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
     them that by the frequency, at a fixed time, or by the level; the last row is the state vector itself;
@@ -299,7 +301,7 @@ class Derivative(VariationalFlow):
         self.rate, self._rates = np.zeros(flows.size), np.zeros((2, flows.size))
 
     def begins(self, segments: Segments, by_level: bool = False) -> None:
-        """Put the derivative at the start of the segments, at the forces' angle 0 if it is by the level."""
+        """Sets the derivative at the start of the segments; by the level, at the forces' angle 0."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -320,7 +322,7 @@ class Derivative(VariationalFlow):
     @cython.nogil
     @cython.exceptval(check=False)
     def _stand(self, segments: Segments) -> cython.void:
-        """At the start of the first segment, with the friction that its states want."""
+        """Sets the derivative at the start of the first segment, with the friction of its states."""
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         self.at, self.position = 0, 0.0
@@ -330,7 +332,10 @@ class Derivative(VariationalFlow):
             self.columns[self.unknowns + 1, i] = segments.y[0, i]
 
     def go(self, segments: Segments, last: int, position: float) -> int:
-        """On to a position in a segment; the segment whose flow is missing, or -1 when it is there."""
+        """Moves the derivative to a position in a segment.
+
+        Returns the segment whose flow is missing, or -1 when it is there.
+        """
         segment: cython.Py_ssize_t = last
         end: cython.double = position
         missing: cython.Py_ssize_t
@@ -345,7 +350,9 @@ class Derivative(VariationalFlow):
         by_state: cython.double[:, ::1],
         by_parameter: cython.double[::1],
     ) -> int:
-        """Fill the derivatives of x at the end of segments that last for periods; frequency shortens them.
+        """Fills the derivatives of x at the end of segments that last for periods.
+
+        A higher frequency shortens the periods.
 
         By x at their start, (unknown, unknown), and by the frequency or the level (unknown,); returns what
         `go` does.
@@ -387,7 +394,7 @@ class Derivative(VariationalFlow):
     def _reach(
         self, segments: Segments, last: cython.Py_ssize_t, position: cython.double
     ) -> cython.Py_ssize_t:
-        """On to a position in a segment, of the state vector only the forces' angle."""
+        """Moves the derivative to a position in a segment; of the state vector only the forces' angle."""
         slot: cython.Py_ssize_t
         new: cython.Py_ssize_t
         while True:
@@ -411,7 +418,7 @@ class Derivative(VariationalFlow):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _arrive(self, segments: Segments, slot: cython.Py_ssize_t) -> cython.int:
-        """Put the state vector at the position in the segment into its row."""
+        """Sets the state vector's row to the present position in the segment."""
         i: cython.Py_ssize_t
         u: cython.Py_ssize_t = self.unknowns
         for i in range(self.flows.size):
@@ -425,7 +432,10 @@ class Derivative(VariationalFlow):
     def _across(
         self, segments: Segments, i: cython.Py_ssize_t, old: cython.Py_ssize_t, new: cython.Py_ssize_t
     ) -> cython.void:
-        """Across the transition that ends segment i: the state is continuous, only its rate jumps."""
+        """Carries the derivative across the transition that ends segment i.
+
+        The state is continuous there, only its rate jumps.
+        """
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
         k: cython.Py_ssize_t
@@ -465,7 +475,7 @@ class Derivative(VariationalFlow):
         i: cython.Py_ssize_t,
         every: cython.bint,
     ) -> cython.void:
-        """Put the friction in row k where segment i wants it, of all contacts or of those that changed."""
+        """Sets the friction in row k as segment i demands, for all contacts or those that changed."""
         j: cython.Py_ssize_t
         c: cython.Py_ssize_t = self.flows.contacts
         f: cython.Py_ssize_t = 2 * self.flows.modes
@@ -484,7 +494,9 @@ class Derivative(VariationalFlow):
 
 @cython.cclass
 class Directional(Derivative):
-    """Along a direction of x = (q, q', f), the first row of `columns`, while the frequency changes by `pace`.
+    """Derivative along one direction of x = (q, q', f), while the frequency changes by `pace`.
+
+    It is the first row of `columns`.
 
     `done` is how many instants have been come to.
     """
@@ -495,7 +507,7 @@ class Directional(Derivative):
         self.pace, self.done = 0.0, 0
 
     def begins_along(self, segments: Segments, direction: cython.double[::1], pace: float) -> None:
-        """Put the derivative along a direction (unknown,) at the start of the segments."""
+        """Sets the derivative along a direction (unknown,) at the start of the segments."""
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.flows.modes
@@ -510,7 +522,7 @@ class Directional(Derivative):
         self.pace, self.done = pace, 0
 
     def at_places(self, segments: Segments, places: cython.double[:, ::1], out: cython.double[:, ::1]) -> int:
-        """Fill rows of out with the change of q at places (segment, position), which are in their order.
+        """Fills rows of out with the change of q at ordered places (segment, position).
 
         The segment whose flow is missing, or -1 when all are filled.
         """
@@ -546,7 +558,7 @@ class Directional(Derivative):
     @cython.nogil
     @cython.exceptval(check=False)
     def _expand(self, slot: cython.Py_ssize_t) -> cython.void:
-        """The series of the change in the step that begins here."""
+        """Expands the change as a series in the step that begins here."""
         n: cython.Py_ssize_t = self.flows.linear
         h: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -571,7 +583,7 @@ class Directional(Derivative):
     @cython.nogil
     @cython.exceptval(check=False)
     def _sum(self, x: cython.double, out: cython.double[:, ::1]) -> cython.void:
-        """The change of the displacements a part x of the step further."""
+        """Change of the displacements at a fraction x of the step."""
         i: cython.Py_ssize_t
         j: cython.int
         k: cython.Py_ssize_t = self.done

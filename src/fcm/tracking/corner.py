@@ -1,4 +1,4 @@
-"""Where the special point of a response is a corner: at the onset of something a contact does.
+"""Corners of a response as special points: at the onset of something a contact does.
 
 The response then turns, or is greatest, at the corner itself as long as what is special of it has opposite
 signs on both sides. Another equation holds there: that the onset's function is zero.
@@ -17,7 +17,7 @@ from fcm.tracking.parameter_line import VariedBalance
 
 
 class Corner:
-    """A corner of a tracked point: the problem with the onset's equation, and what is on its sides."""
+    """A corner of a tracked point: the problem with the onset's equation, and the conditions on its sides."""
 
     def __init__(self, tracked: ExtendedSystem, at: Condition) -> None:
         self.of, self.at, self.options = tracked, at, tracked.options.corner
@@ -62,7 +62,7 @@ class Corner:
         return at
 
     def special(self, z: FloatArray, aside: float = 0.0) -> float:
-        """What is special beside the corner, along the response as the onset's function rises.
+        """The special-point condition beside the corner, along the response as the onset's function rises.
 
         The rise of the frequency, or the growth of the amplitude; aside in the extent of the unknowns.
         """
@@ -74,12 +74,12 @@ class Corner:
         return float(np.sign(normal @ t) * found)
 
     def sides(self, z: FloatArray) -> FloatArray:
-        """What is special before and after the corner, (2,)."""
+        """Values of the special-point condition before and after the corner, (2,)."""
         side = self.options.side_distance
         return np.array([self.special(z, -side), self.special(z, side)])
 
     def holds(self, z: FloatArray) -> bool:
-        """Whether the corner is what is tracked."""
+        """Whether the corner is the special point that is tracked."""
         before, after = self.sides(z)
         return bool(before * after < 0.0)
 

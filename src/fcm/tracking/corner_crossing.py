@@ -1,4 +1,4 @@
-"""How the smooth pieces of a curve of special points are joined: along corners, across them, past kinks."""
+"""Joins of the smooth pieces of a curve of special points: along corners, across them, past kinks."""
 
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup, kink
 
 
 class CornerCrossing:
-    """z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit
-    vector; points: all points until now; first: the first step of the next piece."""
+    """The way of a curve of special points along corners of the response, across them, and past kinks.
+
+    z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit vector;
+    points: all points until now; first: the first step of the next piece.
+    """
 
     z: FloatArray
     t: FloatArray
@@ -40,7 +43,7 @@ class CornerCrossing:
         self.newton = Newton(self.smooth if self.corner is None else self.corner.problem)
 
     def _holds(self) -> bool:
-        """Whether the point found is a corner that is what is tracked; any is, that is not a corner."""
+        """Whether the point found is one of the tracked curve: at a corner, if that is the special point."""
         return self.corner is None or self.corner.holds(np.array(self.newton.z))
 
     def solve(self, guess: FloatArray, row: FloatArray) -> bool:
@@ -48,7 +51,7 @@ class CornerCrossing:
         return bool(self.newton.correct(1e-3)) and bool(np.isfinite(self.newton.z).all())
 
     def measure_at(self, z: FloatArray) -> None:
-        """Units, and the row of the tangent, at a point."""
+        """Set the units, and the row of the tangent, at a point."""
         self.smooth.measure(z)
         if self.corner is not None:
             self.corner.problem.offset = 0.0
@@ -57,7 +60,7 @@ class CornerCrossing:
         self.newton.scale[:] = self.smooth.scale
 
     def accept(self) -> None:
-        """Go on from the point found."""
+        """Go on from the point that Newton's method has found."""
         self._go_to(np.array(self.newton.z), np.asarray(self.newton.tangent) * np.asarray(self.newton.scale))
 
     def _go_to(self, z: FloatArray, direction: FloatArray) -> None:
@@ -150,7 +153,7 @@ class CornerCrossing:
             self.points.pop()
 
     def _keep_until(self, corner: FloatArray, at: Condition) -> Ending | bool:
-        """As `_keep_values`, by the equations of the smooth curve, up to a corner."""
+        """Keep points up to a corner as `_keep_values`, by the equations of the smooth curve."""
         if not any(self._values_between(self.z, corner)):
             return True
         self.switch_equations(None)
@@ -161,7 +164,7 @@ class CornerCrossing:
         return ending
 
     def _is_ahead(self, corner: FloatArray) -> bool:
-        """Whether a corner lies where the curve leads."""
+        """Whether a corner lies in the direction of the curve."""
         off = (corner - self.z) / np.asarray(self.newton.scale)
         far = float(np.linalg.norm(off))
         return far < self.options.corner_distance and (
@@ -219,9 +222,10 @@ class CornerCrossing:
         return False
 
     def _leave_along_smooth(self) -> bool | Ending:
-        """The corner is no more what is tracked ahead: go on with the smooth curve on the side that has it.
+        """Leave a corner that is no more the special point ahead, by the smooth curve.
 
-        Where its other side has it, behind, it has been come to.
+        It is left on the side that has the special point. Where its other side, behind, has it, the curve has
+        come from there.
         """
         assert self.corner is not None
         z, before = self.z, float(self.t[-1])
@@ -285,8 +289,10 @@ class CornerCrossing:
         return ending or None
 
     def _keep_values(self, step: float, other: FloatArray) -> Ending | bool:
-        """Keep what lies on the short way to a point; how the curve ends there, if it does. Else whether that
-        could be: an end that is passed must be landed on."""
+        """Keep the points at special values on the short way to a point; how the curve ends there.
+
+        If it does not end there, whether it could: an end that is passed must be landed on.
+        """
         one, known = self.z, len(self.points)
         for part, i, value in sorted(self._values_between(one, other)):
             ending = self._ends(i, value, other[i] - one[i])
@@ -303,14 +309,17 @@ class CornerCrossing:
         return True
 
     def _values_between(self, one: FloatArray, other: FloatArray) -> Iterator[tuple[float, int, float]]:
-        """Values of s asked for, and ends of the range of frequencies: where on the way, and of what."""
+        """Special values between two points: the part of the way, the index of the number, and the value.
+
+        They are values of s asked for, and ends of the range of frequencies.
+        """
         for i, wanted in ((-1, self.values), (-2, [self.low, self.high])):
             for value in wanted:
                 if (value - one[i]) * (value - other[i]) < 0.0 or value == other[i] != one[i]:
                     yield (value - one[i]) / (other[i] - one[i]), i, value
 
     def _ends(self, i: int, value: float, rise: float) -> Ending | None:
-        """How the curve ends where s (-1) or the frequency (-2) passes a value, rising or falling."""
+        """The ending of the curve where s (-1) or the frequency (-2) passes a value, rising or falling."""
         low, high = self.setup.span if i == -1 else (self.low, self.high)
         if value != (high if rise > 0.0 else low):
             return None

@@ -19,7 +19,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 class SpecialPointCurve(Frozen):
-    """One curve: points in the order along it."""
+    """One curve of special points, in the order along it."""
 
     condition: Condition
     points: tuple[TrackedPoint, ...]
@@ -31,11 +31,11 @@ class SpecialPointCurve(Frozen):
 
     @property
     def whole(self) -> bool:
-        """Whether there is no more of it."""
+        """Whether the curve was followed to its ends."""
         return all(ending.whole for ending in self.endings)
 
     def turns(self, cusp: float = TRACKING.curves.cusp_tolerance) -> list[tuple[int, str]]:
-        """Points at which the number turns back, and what they are; cusp as of `CurveOptions`."""
+        """Points at which the number turns back, and their kinds; cusp as of `CurveOptions`."""
         other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
         fold, turns = (
             self.condition.kind is Kind.FOLD,
@@ -44,7 +44,9 @@ class SpecialPointCurve(Frozen):
         return [(i, self._turn_of_fold(i, cusp) if fold else other) for i in turns]
 
     def _turn_of_fold(self, i: int, cusp: float) -> str:
-        """A cusp where two folds meet with one tangent; an isola where the frequency passes on.
+        """Kind of a turn of a curve of folds: "cusp", where two folds meet with one tangent, or "isola".
+
+        At an isola the frequency passes on.
 
         Along a curve of folds w . R_omega omega' + w . R_s s' = 0, with w the adjoint null vector. At a cusp
         omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
@@ -58,7 +60,7 @@ class SpecialPointCurve(Frozen):
 
 
 def both_ways(setup: TrackingSetup, condition: Condition, point: TrackedPoint) -> SpecialPointCurve:
-    """The curve through a point, both ways."""
+    """The curve of special points through a point, followed both ways."""
     tracked_points, ending = follow_special_point(setup, condition, point, True)
     endings = (ending, ending)
     if ending is not Ending.CLOSED:
@@ -74,7 +76,7 @@ def recorded(
     tracked_points: list[TrackedPoint],
     endings: tuple[Ending, Ending],
 ) -> SpecialPointCurve:
-    """A curve with what is reported of its points."""
+    """A curve with the reported quantities of its points."""
     problem = setup.tracked(condition)
     return _joined(
         condition, tracked_points, [_reported(problem, point) for point in tracked_points], endings
@@ -93,7 +95,7 @@ def with_points(
 
 
 def _reported(problem: ExtendedSystem, point: TrackedPoint) -> tuple[FloatArray, bool]:
-    """The amplitudes of a point, and whether it is no trough."""
+    """The amplitudes at a point, and whether it is no trough."""
     problem.measure(point.z)
     amplitude = problem.along(point.z)[1]
     return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, point)

@@ -23,18 +23,18 @@ T = TypeVar("T")
 
 
 class CachedSteps(Protocol):
-    """Takes a costly step, or knows already what comes of it: of the first, the second, ..."""
+    """A function that takes a costly step, or has its result already: of the first, the second, ..."""
 
     def __call__(self, step: Callable[[], T], /) -> T: ...
 
 
 def uncached(step: Callable[[], T], /) -> T:
-    """Takes every step."""
+    """Take a step, whatever was taken before; a `CachedSteps` without a cache."""
     return step()
 
 
 class TrackedCurves(Frozen):
-    """All curves, and what could not be followed."""
+    """All curves of special points, and what could not be followed."""
 
     curves: tuple[SpecialPointCurve, ...]
     problems: tuple[str, ...] = ()
@@ -52,7 +52,7 @@ def tracked_curves(
     progress: Progress | None = None,
     once: CachedSteps = uncached,
 ) -> TrackedCurves:
-    """The curves of conditions, from ordinary curves at some values of s, and at more of them.
+    """The curves of conditions, from special points of ordinary curves at some values of s.
 
     An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
     returns the curves that are finished. once takes each costly step. Of the way the system, the line, the
@@ -96,7 +96,7 @@ def _follow_all(
 
 
 class _CurveCollection:
-    """The curves so far."""
+    """The curves that were followed so far."""
 
     def __init__(self, setup: TrackingSetup, once: CachedSteps = uncached) -> None:
         self.setup, self.once = setup, once
@@ -106,7 +106,7 @@ class _CurveCollection:
         self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
 
     def from_points(self, points: list[tuple[Condition, FloatArray]]) -> None:
-        """Follow those that no curve has passed; z = (x, omega, s)."""
+        """Follow curves from those points that no curve has passed; z = (x, omega, s)."""
         for condition, z in points:
             point = land(self.setup, condition, z)
             if point is None or not self._is_top(condition, point):

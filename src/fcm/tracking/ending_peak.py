@@ -1,4 +1,4 @@
-"""Where a higher peak ends, and so the least peak is: how far off the number is at which it does."""
+"""The end of a higher peak, which makes a peak the least: how far off the number is at which it lies."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from fcm.tracking.tracked_point import Ending, TrackingSetup
 
 
 class EndingPeak(NamedTuple):
-    """error: relative, of the number at which it ends, NaN where that is unknown; beside: a number where
-    it still is; leaves_range: the frequency [rad/s] at which it leaves the range that is traced, or NaN."""
+    """The end of the higher peak that ends nearest to a least one.
+
+    error: relative, of the number at which it ends, NaN where that is unknown; beside: a number where it
+    still is; leaves_range: the frequency [rad/s] at which it leaves the range that is traced, or NaN.
+    """
 
     error: float
     beside: float
@@ -26,7 +29,7 @@ class EndingPeak(NamedTuple):
 def ending_peak(
     setup: TrackingSetup, curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum
 ) -> EndingPeak:
-    """Of the higher peak that ends nearest to a least one.
+    """The end, and its error, of the higher peak that ends nearest to a least one.
 
     Where its curve turns there, the error is that of the turn: the curve with more harmonics is followed to
     its own. Where it ends otherwise nothing tells it.
@@ -72,7 +75,7 @@ def _ends(curve: SpecialPointCurve) -> list[int]:
 
 
 def _turned(curve: SpecialPointCurve) -> SpecialPointCurve:
-    """The same in the other order."""
+    """The curve in the opposite order."""
     points = tuple(replace(one, direction=-one.direction) for one in curve.points[::-1])
     return replace(
         curve,

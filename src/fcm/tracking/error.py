@@ -1,4 +1,4 @@
-r"""What the harmonics left out would change at chosen points of a tracked curve.
+r"""Truncation errors at chosen points of a tracked curve, by the harmonics left out.
 
 The same extended system with the harmonics of the reference's reference is solved at the same value of the
 number. Where the number turns back that has no solution on one side: there the curve with more harmonics is
@@ -25,8 +25,10 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 
 class TruncationError(NamedTuple):
-    """The error by more harmonics: relative of a peak's amplitude, else of the frequency; of the number at a
-    turn."""
+    """Error by the harmonics left out: relative, and that of the number at a turn.
+
+    The relative one is that of a peak's amplitude, else of the frequency.
+    """
 
     relative: float
     number: float  # 0 where the number is given; NaN both where it is unknown
@@ -37,13 +39,13 @@ UNKNOWN = TruncationError(np.nan, np.nan)
 
 @dataclass
 class _RefinedPoint:
-    """A point of the same curve with some harmonics."""
+    """A point of a tracked curve with the harmonics of its setup."""
 
     setup: TrackingSetup
     point: TrackedPoint
 
     def value(self, condition: Condition) -> float:
-        """What the error is of."""
+        """The quantity whose error is estimated: the amplitude of a peak, or else the frequency."""
         if condition.kind is not Kind.PEAK:
             return float(self.point.z[-2])
         problem = self.setup.tracked(condition)
@@ -52,7 +54,7 @@ class _RefinedPoint:
 
 
 def error_points(track: SpecialPointCurve) -> dict[int, str]:
-    """Points at which the error is known, with what they are."""
+    """Numbers of the points at which the error is estimated, with their kinds."""
     ends = [] if Ending.CLOSED in track.endings else [0, len(track.points) - 1]
     marks = [*((i, "end") for i in dict.fromkeys(ends)), *((i, kind) for i, kind in track.turns())]
     if track.condition.kind is Kind.PEAK and track.greatest.any():
@@ -67,8 +69,10 @@ def error_points(track: SpecialPointCurve) -> dict[int, str]:
 def truncation_error(
     setup: TrackingSetup, track: SpecialPointCurve, i: int, begin: int | None = None
 ) -> TruncationError:
-    """The error at one point: the difference from the reference. Of a turn this is sought from a point
-    before, by default one that is near."""
+    """The error at one point: the difference from the reference with more harmonics.
+
+    That of a turn is looked for from a point before, by default one that is near.
+    """
     condition, here = track.condition, _RefinedPoint(setup, track.points[i])
     value, number = here.value(condition), float(here.point.z[-1])
     begin = beginning(track, i, setup.options) if begin is None else begin

@@ -1,4 +1,4 @@
-r"""A point of a response that is special - its fold, its peak, an onset - as the solution of more equations.
+r"""Special points of a response - a fold, a peak, an onset - as solutions of an extended system of equations.
 
 The unknowns are those of the balance and its frequency, y = (x, omega); the parameter s moves numbers of the
 scene. One equation g = 0 is added to the balance R = 0. With the tangent t of the response curve,
@@ -27,7 +27,7 @@ from fcm.tracking.parameter_line import VariedBalance
 
 
 class Kind(Enum):
-    """What is special of a point."""
+    """Kinds of special points."""
 
     FOLD = "fold"
     PEAK = "peak"
@@ -36,7 +36,7 @@ class Kind(Enum):
 
 
 class Condition(NamedTuple):
-    """What is tracked: the fold, the peak of a degree of freedom, an onset of a contact, a frequency."""
+    """The condition of a special point: a fold, a peak of a degree of freedom, an onset, a frequency."""
 
     kind: Kind
     which: int = -1  # degree of freedom, or contact
@@ -66,7 +66,8 @@ class Tangent:
 
 
 class Evaluation(NamedTuple):
-    """The balance at a place: its Jacobian, by s, and the slopes of ln amplitude of a peak by (y, s)."""
+    """The balance evaluated at a place: its derivatives, and the slopes of a peak's ln amplitude by (y,
+    s)."""
 
     jacobian: FloatArray  # (unknown, unknown + 1)
     by_s: FloatArray  # (unknown,)
@@ -74,7 +75,10 @@ class Evaluation(NamedTuple):
 
 
 class ExtendedSystem(Problem):
-    """See the module; y, s are the numbers z (unknown + 2,) of a problem, s the last."""
+    """The extended system of a special point, see the module.
+
+    y, s are the numbers z (unknown + 2,) of a problem, s the last.
+    """
 
     def __init__(
         self, varied: VariedBalance, condition: Condition, span: float, options: TrackingOptions = TRACKING
@@ -89,7 +93,10 @@ class ExtendedSystem(Problem):
         self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last
 
     def evaluate(self, z: FloatArray) -> int:
-        """Residual and derivatives; no numbers where the response crosses itself: nothing is found there."""
+        """Fill residual and derivatives.
+
+        They are nan where the response crosses itself: nothing is found there.
+        """
         z = np.asarray(z)
         self.varied.set_parameter(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
@@ -107,7 +114,7 @@ class ExtendedSystem(Problem):
         return 0
 
     def surface(self, z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-        """Residual and derivatives by z of the balance alone, scaled, and what is special of the point."""
+        """Residual and derivatives by z of the balance alone, scaled, and the special-point condition."""
         z, scale = np.asarray(z), np.asarray(self.scale)
         self.varied.set_parameter(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
@@ -116,7 +123,7 @@ class ExtendedSystem(Problem):
         return np.array(self.varied.balance.residual) / scale[:n], matrix, self._special(y, here)
 
     def _special(self, y: FloatArray, here: Evaluation) -> float:
-        """What `_condition` says, without its derivatives; of the tangent of length 1."""
+        """The value of `_condition` without its derivatives, with a tangent of length 1."""
         if self.condition.kind not in (Kind.FOLD, Kind.PEAK):
             return self._condition(y, here)[0]
         scale = np.asarray(self.scale)[:-1]
@@ -125,7 +132,7 @@ class ExtendedSystem(Problem):
         return float(t[-1] if self.condition.kind is Kind.FOLD else here.growth[:-1] @ (scale * t))
 
     def _evaluated(self, y: FloatArray) -> Evaluation:
-        """The balance at a place."""
+        """The balance evaluated at a place, with its derivative by s."""
         balance = self.varied.balance
         balance.evaluate(y)
         by_s, growth = self.varied.by_s(y), np.zeros(self.n + 2)
@@ -136,7 +143,9 @@ class ExtendedSystem(Problem):
         return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
-        """The scale is that of the balance, of s the span. The row becomes the tangent of the response curve.
+        """Fill the units: those of the balance, and the span for s.
+
+        The row becomes the tangent of the response.
 
         A peak is from here on the peak of those extremes that are the greatest of the cycle here. The
         amplitude itself has a kink where others become greater.
@@ -175,7 +184,7 @@ class ExtendedSystem(Problem):
         return Tangent(np.concatenate((scaled, self.row[None])))
 
     def _condition(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
-        """g, without a unit, and its derivatives by (y, s)."""
+        """The special-point condition g, without a unit, and its derivatives by (y, s)."""
         kind = self.condition.kind
         if kind is Kind.END:
             gradient = np.zeros(self.n + 2)
@@ -214,7 +223,7 @@ class ExtendedSystem(Problem):
         return value, gradient
 
     def _difference_length(self, y: FloatArray, ahead: FloatArray) -> float:
-        """How far to go along the tangent so that no margin changes its sign, not even nearly."""
+        """Length of a difference along the tangent, so short that no margin nearly changes its sign."""
         signs, step = self._margins(y), self.options.special.difference_length
         for there in (self._margins(y + step * ahead), self._margins(y - step * ahead)):
             crossed = signs * there < 0.0
@@ -239,12 +248,12 @@ class ExtendedSystem(Problem):
         return values(balance.laws, y, self.varied.harmonics, self.options)
 
     def _special_at(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """What changes along the tangent, (unknown + 2,), at a place on it."""
+        """Derivatives (unknown + 2,) of the condition at a place, the tangent held."""
         here = self._evaluated(y)
         return here.growth - np.append(adjoint @ here.jacobian, adjoint @ here.by_s)
 
     def onset_at(self, z: FloatArray, condition: Condition) -> float:
-        """The function of an onset."""
+        """Value of an onset's function at z."""
         self.varied.set_parameter(float(z[-1]))
         c, width = condition.which, self.varied.balance.width
         block = np.ascontiguousarray(z[c * width : (c + 1) * width])

@@ -1,4 +1,4 @@
-"""Costly steps of a search, each known by what it is of: what an earlier run has taken is not taken again."""
+"""Costly steps of a search whose results are kept by their keys: an earlier run's are not taken again."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class KeptSteps:
-    """What comes of steps, by their keys.
+    """Results of costly steps, kept by their keys.
 
     Parameters
     ----------
@@ -31,13 +31,16 @@ class KeptSteps:
         self._known, self._save = dict(known), save
 
     def of(self, what: str) -> KeptSteps:
-        """Those of a part of the search, which have keys of their own."""
+        """The steps of a part of the search, with keys of their own."""
         start, save = f"{what}: ", self._save
         known = [(key.removeprefix(start), one) for key, one in self._known.items() if key.startswith(start)]
         return KeptSteps(known, None if save is None else lambda step: save((start + step[0], step[1])))
 
     def __call__(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
-        """The result of a step; of another kind than it has, a known one is none."""
+        """The result of a step, kept or computed.
+
+        A kept one of another kind than it has counts as none.
+        """
         known = self._known.get(key)
         if isinstance(known, kind):
             return known
@@ -48,5 +51,5 @@ class KeptSteps:
 
 
 def steps_of(states: Iterable[Any]) -> list[tuple[str, Any]]:
-    """The keys and results among what was read from a file."""
+    """Keys and results among what was read from a file."""
     return [one for one in states if isinstance(one, tuple) and len(one) == 2 and isinstance(one[0], str)]

@@ -1,4 +1,4 @@
-r"""How a curve of special points goes on from a point at which its equations have a kink.
+r"""Continues a curve of special points past a point at which its equations have a kink.
 
 The solutions of the balance at all frequencies and values of s are a surface, and the condition of a special
 point is zero along lines on it. Where a contact begins to slip, open or close within its cycle, the slopes of
@@ -39,7 +39,7 @@ class Circle:
         self.axes = np.stack((ahead @ plane, np.array([-ahead[1], ahead[0]]) @ plane))
 
     def changes(self, back: FloatArray) -> list[CircleCrossing]:
-        """All changes of sign but that nearest to a point on the way back, the furthest from it first.
+        """All changes of sign of the condition but that nearest to the way back, the furthest from it first.
 
         None where there is no motion on a part of the circle.
         """
@@ -62,11 +62,11 @@ class Circle:
         return found[:-1]
 
     def special(self, angle: float) -> float:
-        """What is special at an angle."""
+        """Value of the special-point condition at an angle."""
         return self.at(angle)[1]
 
     def at(self, angle: float) -> tuple[FloatArray, float]:
-        """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none.
+        """The point at an angle, 0 is straight ahead, and the condition there; NaN where there is none.
 
         It is sought across the plane of the circle.
         """
@@ -83,7 +83,7 @@ class Circle:
         return z, np.nan
 
     def _change(self, low: float, high: float, most: float) -> CircleCrossing:
-        """The change of sign between two angles."""
+        """The change of sign of the condition between two angles."""
         angle = float(
             brentq(
                 self.special, low, high, xtol=self.options.angle_tolerance, rtol=self.options.angle_tolerance

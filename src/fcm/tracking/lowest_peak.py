@@ -47,7 +47,10 @@ MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)
 
 
 class LowestPeak(Frozen):
-    """The least peak, None where there is none; what was followed; whether it is known to be least."""
+    """The least peak of a search, or None, with the curves that were followed.
+
+    checked: whether it is known to be least.
+    """
 
     best: EnvelopeMinimum | None
     curves: tuple[SpecialPointCurve, ...]
@@ -57,7 +60,7 @@ class LowestPeak(Frozen):
 
 @dataclass
 class LowestPeakSearch:
-    """The search of one scene and its targets, with the curves that are known."""
+    """The search for the least peak of one scene and its targets, with the curves that are known."""
 
     system: System
     line: ParameterLine
@@ -81,7 +84,7 @@ class LowestPeakSearch:
         )
 
     def conditions(self) -> list[Condition]:
-        """What may be greatest."""
+        """Conditions of the special points that may be greatest: peaks, and ends of the range."""
         found = [Condition(Kind.PEAK, dof) for dof in sorted({target.dof for target in self.targets})]
         if any(target.ends for target in self.targets):
             found += [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
@@ -118,7 +121,7 @@ class LowestPeakSearch:
         return LowestPeak(best, tuple(self.curves), checked, self.system.harmonics)
 
     def best(self) -> EnvelopeMinimum | None:
-        """Of what was followed, and of what is met where nothing was."""
+        """The least value of the envelope, after following curves wherever none was followed."""
         while True:
             best = envelope_minimum(self.setup, self.pieces())
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
@@ -151,11 +154,11 @@ class LowestPeakSearch:
         return [s for s, top in self.visited_values.items() if 0.0 < top.value < below]
 
     def pieces(self) -> list[MonotonePiece]:
-        """The parts of the curves that count."""
+        """The monotone pieces of the curves that count for the targets."""
         return [piece for target in self.targets for piece in pieces_of(self.setup, self.curves, target)]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
-        """The least of the responses traced until now, and its number; None where none has a peak."""
+        """The least peak of the responses traced until now, and its number; None where none has a peak."""
         peaks = {s: top for s, top in self.visited_values.items() if top.value > 0.0}
         if not peaks:
             return None
@@ -164,11 +167,12 @@ class LowestPeakSearch:
 
     @property
     def responses(self) -> int:
-        """How many were traced until now."""
+        """Number of responses traced until now."""
         return len(self.visited_values)
 
     def visit(self, value: float) -> float:
-        """Trace the response at a value; follow what is high and not known; the greatest of it."""
+        """Trace the response at a value, and follow what is high and not known; returns its greatest
+        height."""
         self.visited.add(value)
         found = self.greatest_at(value)
         top = self.visited_values[value].value
@@ -183,7 +187,7 @@ class LowestPeakSearch:
         return top
 
     def greatest_at(self, value: float) -> list[tuple[Condition, PieceHeight]]:
-        """What may be greatest of the response at a value, with its heights."""
+        """Special points of the response at a value that may be greatest, with their heights."""
         if value not in self.known_points:
             here = for_scene(self.system, self.line.scene(self.system.scene, value))
             points = self._step(
@@ -211,7 +215,7 @@ class LowestPeakSearch:
         return self.steps(f"{self.system.harmonics} {key}", kind, step)
 
     def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
-        """The greatest of the targets at a place; 0 where it is none of them."""
+        """Height of the greatest target at a point; 0 where it is none of them."""
         problem = self.setup.tracked(condition)
         problem.measure(z)
         amplitude = problem.along(z)[1]

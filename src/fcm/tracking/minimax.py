@@ -42,7 +42,7 @@ Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of fre
 
 
 class LineMinimum(NamedTuple):
-    """The least over the range of one number, scaled; and whether all higher peaks could be followed."""
+    """The least peak over the range of one number, scaled, and whether all higher peaks could be followed."""
 
     q: FloatArray
     value: float
@@ -51,11 +51,11 @@ class LineMinimum(NamedTuple):
 
 
 class LeftRangeError(Exception):
-    """A peak is beyond the end of the range of frequencies."""
+    """A peak has left the range of frequencies."""
 
 
 class PeakEnvelope:
-    """Peaks at numbers q (number,), scaled to 0 and 1 at their bounds."""
+    """Peaks of a response at numbers q (number,), scaled to 0 and 1 at their bounds."""
 
     responses = 0  # that were traced until now
 
@@ -78,7 +78,7 @@ class PeakEnvelope:
         return ParameterLine(self.numbers, self.low + q * self.width, direction * self.width)
 
     def setup(self, q: FloatArray, direction: FloatArray) -> TrackingSetup:
-        """The same, to the end of the direction."""
+        """The tracking setup on the line from q, to the end of the direction."""
         return TrackingSetup(
             self.system,
             self.line(q, direction),
@@ -89,7 +89,7 @@ class PeakEnvelope:
         )
 
     def peaks(self, q: FloatArray) -> list[Member]:
-        """All that counts for the targets of the response at q, by tracing it."""
+        """Special points of the response at q that count for the targets, by tracing it."""
         ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
         here = for_scene(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
         setup, found = self.setup(q, np.zeros(q.size)), []
@@ -106,7 +106,10 @@ class PeakEnvelope:
         return [(condition, dof, point.z[:-1]) for condition, dof, point in found]
 
     def traced(self, q: FloatArray) -> tuple[float, list[Member]]:
-        """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
+        """The greatest height of the response at q, and all members that count there.
+
+        It is infinite where nothing has a peak.
+        """
         heights = [(self.height(member, q)[0], member) for member in self.peaks(q)]
         value, top = max(heights, key=lambda one: one[0], default=(np.inf, None))
         self.responses += 1
@@ -115,7 +118,7 @@ class PeakEnvelope:
         return value, [member for _, member in heights]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
-        """The least of them, and its numbers; None where none has a peak."""
+        """The least peak of the responses traced until now, and its numbers; None where none has a peak."""
         if self.lowest is None:
             return None
         q, value, (_, dof, z) = self.lowest
@@ -123,7 +126,7 @@ class PeakEnvelope:
         return self.low + q * self.width, EnvelopeMinimum(np.nan, value, (top,), INCOMPLETE)
 
     def moved(self, member: Member, q: FloatArray, to: FloatArray) -> Member | None:
-        """A member at other numbers; None where it is no more.
+        """A member of the envelope at other numbers; None where it is no more.
 
         Raises
         ------
@@ -145,7 +148,7 @@ class PeakEnvelope:
         return (condition, dof, last.z[:-1]) if whole else None
 
     def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
-        """The height of a member, with its slopes by q."""
+        """Height of a member of the envelope, with its slopes by q."""
         condition, dof, z = member
         slopes, value = np.empty(q.size), 0.0
         for k, direction in enumerate(np.eye(q.size)):
@@ -165,7 +168,7 @@ class PeakEnvelope:
 def descend(
     valley: PeakEnvelope, near: FloatArray | None = None, progress: Progress | None = None
 ) -> tuple[FloatArray, EnvelopeMinimum] | None:
-    """The optimum: the numbers, and what is least there; None where nothing has a peak.
+    """The optimum over the numbers: their values, and the least peak there; None where nothing has a peak.
 
     With numbers near it, as fewer harmonics find them, the way leads down from there.
     """
@@ -206,7 +209,7 @@ def descend(
 def _flat_at(
     valley: PeakEnvelope, q: FloatArray, value: float, lines: Sequence[LineMinimum]
 ) -> tuple[tuple[int, float, float], ...]:
-    """The numbers on which the least does not depend at q, and between which values of each."""
+    """Numbers on which the least peak does not depend at q, with the range of each."""
     found = []
     for k, line in enumerate(lines):
         same = abs(line.value - value) <= valley.options.height_tolerance * value
@@ -217,7 +220,7 @@ def _flat_at(
 
 
 def _starts(valley: PeakEnvelope, near: FloatArray | None) -> list[FloatArray]:
-    """Numbers from which the way leads down: the lowest of a coarse grid where none are known."""
+    """Numbers from which a descent starts: the lowest of a coarse grid where none are known."""
     if near is not None:
         return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
     grid = map(np.array, product(valley.options.grid, repeat=len(valley.numbers)))
@@ -226,7 +229,7 @@ def _starts(valley: PeakEnvelope, near: FloatArray | None) -> list[FloatArray]:
 
 
 def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
-    """The least over the range of one number, the others as they are."""
+    """The least peak over the range of one number, with the others as they are."""
     origin, direction = np.array(q), np.eye(q.size)[k]
     origin[k] = 0.0
     line, options = valley.line(origin, direction), valley.options.search
@@ -241,7 +244,7 @@ def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
 
 
 def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
-    """Down from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
+    """Descend from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
     value, members = valley.traced(q)
     for _ in range(valley.options.max_rounds):
         end = _minimax(valley, q, members, value)
@@ -258,7 +261,7 @@ def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, li
 
 
 def _minimax(valley: PeakEnvelope, q: FloatArray, members: list[Member], unit: float) -> FloatArray:
-    """Where the greatest of some members is least."""
+    """Numbers at which the greatest of some members is least."""
     memory: dict[bytes, tuple[FloatArray, FloatArray]] = {}
     here: tuple[FloatArray, list[Member | None]] = (q, list(members))
 

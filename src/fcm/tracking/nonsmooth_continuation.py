@@ -1,4 +1,4 @@
-"""A special point of a response as a curve in a number of its scene: smooth pieces, and how these are joined.
+"""Continuation of a special point in a number of its scene: smooth pieces, and how these are joined.
 
 Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
 value of the number where they have a kink, at a corner of the response, or where another extreme of the cycle
@@ -24,7 +24,7 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 def follow_special_point(
     setup: TrackingSetup, condition: Condition, start: TrackedPoint, forward: bool
 ) -> tuple[list[TrackedPoint], Ending]:
-    """The curve from a point, which is the first of the list, with s rising or falling at first."""
+    """The curve of special points from one of them, with s rising or falling at first."""
     return Pieces(setup, condition).run(start, forward)
 
 
@@ -34,17 +34,18 @@ def land(setup: TrackingSetup, condition: Condition, z: FloatArray) -> TrackedPo
 
 
 class _End(Frozen):
-    """What may end a piece: a function of z, not negative as long as the equations hold, and what follows."""
+    """An end of a smooth piece: a function of z, negative where the equations do not hold, and what
+    follows."""
 
     holds: End
     then: Callable[[], bool | Ending]
 
 
 class Pieces(CornerCrossing):
-    """The smooth pieces of one curve, one after the other."""
+    """Follows the smooth pieces of one curve of special points, one after the other."""
 
     def land(self, z: FloatArray) -> TrackedPoint | None:
-        """See `land`."""
+        """The point near z = (x, omega, s) at the same s, see the function `land`."""
         point = self._landed(z)
         if point is not None and overtaken(self.smooth, point.z):
             point = self._landed(
@@ -72,12 +73,12 @@ class Pieces(CornerCrossing):
         return None
 
     def _held(self, z: FloatArray) -> TrackedPoint:
-        """The point found with s held, which is as it was but for rounding."""
+        """The point found with s held, which is exactly as it was."""
         self.newton.z[-1] = z[-1]
         return self.point_at(np.array(self.newton.z), np.array(self.newton.tangent))
 
     def run(self, start: TrackedPoint, forward: bool) -> tuple[list[TrackedPoint], Ending]:
-        """See `follow_special_point`."""
+        """Follow the curve from a point, see `follow_special_point`."""
         self.switch_equations(start.corner)
         self.measure_at(start.z)
         row, z = self.held if forward else -self.held, np.array(start.z)
@@ -118,7 +119,7 @@ class Pieces(CornerCrossing):
         return self.points, Ending.LONG
 
     def _piece(self) -> bool | Ending:
-        """Follow the equations in force to where they hold no more; whether a way leads on, or the end."""
+        """Follow the present equations to where they hold no more; whether a way leads on, or the end."""
         problem, s = self.newton.problem, float(self.z[-1])
         low = max([k for k in self.kinks if k < s] + [self.setup.span[0]])
         high = min([k for k in self.kinks if k > s] + [self.setup.span[1]])
@@ -161,7 +162,7 @@ class Pieces(CornerCrossing):
         return ending or True
 
     def _ends_of_piece(self) -> list[_End]:
-        """What ends a piece: the range of frequencies; of what is smooth another extreme, or a corner."""
+        """The ends of a piece: the range of frequencies; of a smooth one another extreme, or a corner."""
         ends = [
             _End(End(lambda z: z[-2] - self.low), lambda: self._at_end_of_range(self.low)),
             _End(End(lambda z: self.high - z[-2]), lambda: self._at_end_of_range(self.high)),
@@ -179,7 +180,7 @@ class Pieces(CornerCrossing):
         return ends
 
     def _keep(self, path: Path) -> None:
-        """Take the points of a path but the first, and go to the last."""
+        """Keep the points of a path but the first, and go to the last."""
         at = None if self.corner is None else self.corner.at
         for z, way, mark in zip(path.z[1:], path.direction[1:], path.mark[1:].tolist(), strict=True):
             user_point = z[-1] in self.values and bool(mark & (Mark.USER_POINT | Mark.END))
@@ -188,12 +189,12 @@ class Pieces(CornerCrossing):
         self.first = self.options.step.initial_step
 
     def _off(self, way: FloatArray) -> FloatArray:
-        """A way in the problem's scale."""
+        """A difference of two points in the problem's scale."""
         off: FloatArray = way / np.asarray(self.newton.scale)
         return off
 
     def _at_end_of_range(self, omega: float) -> Ending:
-        """The curve leaves the range of frequencies: there it is landed on exactly."""
+        """End the curve at the end of the range of frequencies, and land on that exactly."""
         row = np.zeros(self.z.size)
         row[-2] = np.sign(self.t[-2]) or 1.0
         guess = np.array(self.z)
@@ -205,15 +206,17 @@ class Pieces(CornerCrossing):
         return Ending.RANGE
 
     def _overtaken(self) -> Ending:
-        """Extremes other than those of the peak become the greatest of the cycle.
+        """End the curve where other extremes than those of the peak become the greatest of the cycle.
 
         There the amplitude has a kink that is a trough: it meets a peak, and takes the place of a trough.
         """
         return Ending.MET if is_top(self.smooth, self.points[-1]) else Ending.TROUGH
 
     def _closed(self, first: FloatArray, heading: FloatArray, known: int) -> int | None:
-        """The first point, of those beyond so many, that is past the one where the curve began, in the same
-        direction; None if none is."""
+        """Index of the first point past the one where the curve began, in its direction; None if none is.
+
+        known: the number of points before those that are looked at.
+        """
         scale = np.asarray(self.newton.scale)
         heading = heading / scale
         heading = heading / np.linalg.norm(heading)

@@ -1,4 +1,4 @@
-r"""Signed functions that tell what a contact does over a cycle, of any number of harmonics.
+r"""Onset functions: signed functions of what a contact does over a cycle, for any number of harmonics.
 
 With the load n = n_0 + k_v v before it is cut at 0 and p = k_u u:
 
@@ -39,7 +39,10 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Onset(NamedTuple):
-    """A function of a contact: its value, and its slopes by its unknowns (width,) and mu, k_u, k_v, n_0."""
+    """Value of an onset function of a contact, and its slopes.
+
+    By the contact's unknowns (width,), and by mu, k_u, k_v, n_0.
+    """
 
     value: float
     slope: FloatArray
@@ -49,7 +52,7 @@ class Onset(NamedTuple):
 def onset(
     law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> Onset:
-    """One of `kinds_of` a contact at its unknowns."""
+    """One of the onset functions of a contact at its unknowns, see `kinds_of`."""
     if isinstance(law, PlanarLaw) and kind in ("slip", START):
         return _in_plane(law, x, kind, harmonics)
     load = _polynomial(x, law, NORMAL) * law.k_v
@@ -83,7 +86,7 @@ def onset(
 def values(
     laws: list[Law], x: FloatArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> FloatArray:
-    """The functions of all contacts at all unknowns: separation and closing, slip, and limits if none slips.
+    """Values of the onset functions of all contacts: separation and closing, slip, and limits if none slips.
 
     They include contacts that cannot slip, or whose load does not vary, as a number may pass through the
     value at which that is so. Their functions are then negative, or change sign with another one.
@@ -114,7 +117,7 @@ def values(
 def _all_least(
     c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> FloatArray:
-    """The least value of each row of c as of `_least`."""
+    """Least value over the cycle for each row of coefficients c, as `_least`."""
     h, wave = np.array(harmonics), c[:, 1:]
     if h.size == 1:
         return c[:, 0].real - np.abs(wave[:, 0])
@@ -136,14 +139,14 @@ def _all_least(
 def _values_in_plane(
     law: Law, x: FloatArray, i: int, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> FloatArray:
-    """The functions of contact number i."""
+    """Values of the onset functions of contact number i in a plane."""
     block = np.ascontiguousarray(x[i * law.width : (i + 1) * law.width])
     open_, shut, slip, start = (onset(law, block, kind, harmonics, options).value for kind in (*KINDS, START))
     return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
 
 
 def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
-    """The functions of the discs that hold a slider in a plane.
+    """The onset function of the discs that hold a slider in a plane.
 
     Those that hold the place which all miss least do so with weights by which their directions vanish, and
     with the same weights the distances change; the place may move, and makes no difference.
@@ -178,14 +181,14 @@ def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ..
 
 
 def _weights(e: FloatArray) -> FloatArray:
-    """Weights, of sum 1, with which directions (disc, 2) vanish."""
+    """Weights, of sum 1, with which the sum of directions (disc, 2) vanishes."""
     matrix = np.vstack((e.T, np.ones(len(e))))
     found: FloatArray = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
     return found if len(e) > 1 else np.ones(len(e))
 
 
 def kinds_of(law: Law) -> tuple[str, ...]:
-    """The kinds of functions that a contact can have."""
+    """The kinds of onset functions that a contact can have."""
     if isinstance(law, PlanarLaw):
         return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
@@ -205,7 +208,7 @@ def _polynomial(x: FloatArray, law: Law, direction: int) -> ComplexArray:
 
 
 def _waves(theta: float, harmonics: tuple[int, ...]) -> FloatArray:
-    """The derivatives of a displacement at an angle by its numbers."""
+    """Derivatives of a displacement at an angle by its coefficients: mean, then Re, Im of each harmonic."""
     h = np.array(harmonics) * theta
     return np.concatenate(([1.0], np.stack((np.cos(h), -np.sin(h)), axis=1).ravel()))
 
@@ -213,7 +216,7 @@ def _waves(theta: float, harmonics: tuple[int, ...]) -> FloatArray:
 def _least(
     c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> tuple[float, float]:
-    """The least value of c_0 + Re sum c_h exp(i h theta), and where it is."""
+    """Least value of c_0 + Re sum c_h exp(i h theta), and the angle there."""
     h, wave = np.array(harmonics), c[1:]
     if h.size == 1:
         return float(c[0].real - abs(wave[0])), float(np.pi - np.angle(wave[0]))

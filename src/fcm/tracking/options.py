@@ -13,44 +13,46 @@ PIECE_STEPS = StepOptions(initial_step=1e-3, min_step=1e-7, max_steps=3000, retr
 
 
 class PieceOptions(Frozen):
-    """Of the smooth pieces of a tracked curve, and how they are joined. Lengths are in the problem's scale.
+    """The smooth pieces of a tracked curve, and how they are joined; lengths are in the problem's scale.
 
     Attributes
     ----------
     step : StepOptions
-        First, shortest and most of a piece.
+        Options of the step control of a piece.
     max_points, max_pieces : int
-        Of a curve, at most.
+        Most points, and most pieces, of a curve; with more it ends as too long.
     max_correction : float
-        A start that is corrected by more is none.
+        Length of the correction of a start from which on it is no start of this curve.
     short_steps : int
-        Steps in a row that may be short.
+        Number of steps in a row that may be short.
     short_step : float
-        A step below which a corner of the response is looked for ahead.
+        Length of a step below which a corner of the response is looked for ahead.
     max_factor : float
-        Of a step to the next after short ones, at most.
+        Length of the first step after short ones, relative to the last of them.
     reached_distance : float
-        Distance to a corner that has been reached, or passed by a step too short to tell.
+        Distance up to which a corner counts as reached, or as passed by a step too short to tell.
     corner_distance : float
-        A corner further away does not end a piece.
+        Distance above which a corner does not end a piece.
     departure_lengths : tuple of float
-        Beyond a corner at which what is tracked is looked for again.
+        Lengths beyond a corner at which the curve is looked for again, in turn.
     least_departure : float
-        Along the curve; what is less far ahead of a corner is looked at last.
+        Length along the curve below which a way on is tried last.
     max_jump : float
-        Of what is special; less is no jump at a corner.
+        Value of the special-point condition on the far side of a corner, above which it jumps there.
     min_cosine_ahead : float
-        Cosine of the angle with the direction of what lies ahead.
+        Cosine between the curve's direction and the way to a corner, above which the corner lies ahead.
     max_move : float
-        What is found beside a corner is moved by less.
+        Length of the correction of a point beside a corner from which on it is not accepted.
     kink_length : float
-        Of the span of the number, by which a kink is passed.
+        Change of the number by which a kink is passed, relative to its span.
     kink_radii : tuple of float
-        Of circles about a kink on which the curve is looked for.
+        Radii of the circles about a kink on which the way on is looked for, in turn.
     radius_tolerance : float
-        Of such a radius, by which the point found there may be wrong.
+        Length of the correction of a point on such a circle, relative to the radius, above which it is not
+        accepted.
     min_radial_cosine : float
-        Cosine of the angle of the way on with its radius; other lines cross the circle anyhow.
+        Cosine between the curve's direction at that point and the radius, below which another curve crosses
+        the circle.
     """
 
     step: StepOptions = PIECE_STEPS
@@ -79,15 +81,17 @@ class SpecialPointOptions(Frozen):
     Attributes
     ----------
     min_amplitude : float
-        Amplitude; lower ones count as this in a division.
+        Least amplitude that is divided by.
     difference_length : float
-        Along the response, of its extent, by which its Jacobian is evaluated for a difference.
+        Step of the difference quotient of the Jacobian along the response, relative to the extent of the
+        response.
     min_difference_fraction : float
-        Of that distance, where a corner is near.
+        Least such step, where a corner is near.
     corner_fraction : float
-        Of the way to a corner, which the distance is at most, as derivatives change there like a root.
+        Longest such step relative to the way to a corner, as derivatives change there like a root.
     max_tangent : float
-        Times as long as the row; a longer one is nearly across it.
+        Length of the computed tangent, relative to the row that closes the equations, from which on the row
+        is nearly across it. The tangent is then taken from singular vectors.
     """
 
     min_amplitude: float = 1e-150
@@ -103,13 +107,13 @@ class CornerOptions(Frozen):
     Attributes
     ----------
     max_iterations : int
-        Of Newton's method, and of the secant, at most.
+        Most steps of Newton's method, and of the secant method.
     tolerance : float
-        Length of a step that ends them.
+        Length of a step below which it is the last.
     first_step : float
-        Step of the secant.
+        Length of the first step of the secant method.
     max_distance : float
-        Along a corner, that what is special of it is sought.
+        Greatest length along a corner at which its special point is looked for.
     side_distance : float
         Distance from a corner at which its two sides are evaluated.
     rounding : float
@@ -130,15 +134,17 @@ class KinkOptions(Frozen):
     Attributes
     ----------
     min_angle, max_angle : float
-        [rad] angles from the way back, with which the way on may make a narrow one.
+        [rad] Least and greatest of the angles from the way back that are tried closely, where the way on may
+        make a narrow angle with it.
     max_iterations : int
-        Of Newton's method to the surface.
+        Most Newton steps to the surface of solutions.
     tolerance : float
-        Length of a step that ends them.
+        Length of a Newton step below which it is the last.
     angle_tolerance : float
-        [rad] to which the change of a sign is found.
+        [rad] Error of the angle at which the special-point condition changes its sign.
     jump_fraction : float
-        Part of the greatest value on the circle; what is more on a side of a change is no zero.
+        Value of the condition beside a change of its sign, relative to the greatest on the circle, above
+        which it jumps there and has no zero.
     """
 
     min_angle: float = 1e-3
@@ -150,14 +156,14 @@ class KinkOptions(Frozen):
 
 
 class OnsetOptions(Frozen):
-    """The extremes within a cycle of what a contact does.
+    """Options on how the extremes within a cycle are found that decide on the state of a contact.
 
     Attributes
     ----------
     samples_per_period : int
-        Of a period of the highest harmonic, among which an extreme is sought.
+        Number of samples for each period of the highest harmonic, among which an extreme is looked for.
     max_iterations : int
-        Of Newton's method from there.
+        Number of Newton steps from the extreme sample.
     """
 
     samples_per_period: int = 24
@@ -165,23 +171,24 @@ class OnsetOptions(Frozen):
 
 
 class CurveOptions(Frozen):
-    """All curves over a range of the number.
+    """Options on how all tracked curves over a range of the number are found.
 
     Attributes
     ----------
     start_values : int
-        Values of the number, evenly spaced, at which ordinary curves are traced.
+        Number of values, evenly spaced, at which responses are traced for starts.
     value_tolerance : float
-        Part of the range, by which values of the number are one.
+        Difference of two values of the number, relative to its range, below which they are the same.
     frequency_tolerance : float
-        Part of it, to which a point is on a curve.
+        Relative difference of frequencies below which a point is on a curve.
     max_peaks : int
-        Curves of peaks along which onsets are looked for.
+        Most curves of peaks along which onsets are looked for.
     min_height : float
-        Part of the greatest amplitude of a degree of freedom; lower peaks are not tracked.
+        Height of a peak, relative to the greatest amplitude of its degree of freedom, up to which it is not
+        tracked.
     cusp_tolerance : float
-        Part of the frequency's rate next to a turn; at a turn where the frequency turns back, too, it is
-        less.
+        Rate of the frequency at a turn of the number, relative to that beside it, below which the turn is a
+        cusp: the frequency turns back, too.
     """
 
     start_values: int = 13
@@ -198,12 +205,12 @@ class KnownCurveOptions(Frozen):
     Attributes
     ----------
     point_tolerance : float
-        Distance in the problem's scale; points nearer than this are one.
+        Distance in the problem's scale below which two points are the same.
     max_chord_part : float
-        Part of a chord; what is further from it is not on its part of the curve, which turns by 90
-        degrees.
+        Distance of a point from a chord, relative to the chord, from which on it is not on that part of the
+        curve: it would turn by 90 degrees.
     nearest_chords : int
-        Nearest ones that are looked at.
+        Number of chords, the nearest ones, on which the point is looked for.
     """
 
     point_tolerance: float = 1e-5
@@ -217,11 +224,12 @@ class TurnErrorOptions(Frozen):
     Attributes
     ----------
     points_before : int
-        Before a turn, from which the turn with more harmonics is sought.
+        Number of points before a turn from which the turn with more harmonics is looked for.
     span_factor : float
-        Times the way of the number from there to the turn, up to which it is sought.
+        Range of the number in which it is looked for, relative to the way from there to the turn.
     before_end : float
-        Of the number at which a peak ends: way back, from where the end with more harmonics is sought.
+        Distance from the value at which a peak ends, relative to that value, from which the end with more
+        harmonics is looked for.
     """
 
     points_before: int = 3
@@ -235,26 +243,27 @@ class EnvelopeOptions(Frozen):
     Attributes
     ----------
     brackets : int
-        Of the lowest points, in which the least value is sought.
+        Number of the lowest points about which the least value is looked for.
     value_tolerance : float
-        Part of the range, to which the number is known.
+        Error of the number at the least value, relative to its range.
     chord_fraction : float
-        Part of the highest by the chords; what is lower is not looked at.
+        Height of a peak by the chords, relative to the highest, below which it is not computed.
     min_gap : float
-        Part of the range, in which no piece is known.
+        Width of a range in which no piece is known, relative to the whole range, above which it is looked at.
     height_tolerance : float
-        Relative; peaks nearer than this are one at a crossing.
+        Relative difference of two peaks up to which they are equal, as at a crossing.
     unknown_factor : float
-        Times the highest; counts where no peak is known, as differences of infinities are none.
+        Height that stands for an unknown one, relative to the highest, as differences of infinities are none.
     extreme_tolerance : float
-        Relative; extremes of a cycle nearer than this are one.
+        Relative difference of two extremes of a cycle up to which they are equal.
     flat_slope : float
-        Relative change over the whole range by the slope; a peak that changes by less does not depend on the
+        Relative change of a peak over the whole range, by its slope, up to which it does not depend on the
         number.
     flat_height : float
-        Relative; how far above the least such a stretch may be, as the onset of slip lowers peaks a little.
+        Height of such a stretch above the least value, relative to that, up to which it counts as the least:
+        the onset of slip lowers peaks a little.
     min_flat : float
-        Part of the range over which it has to be so.
+        Width of such a stretch, relative to the range, at least.
     """
 
     brackets: int = 4
@@ -270,14 +279,15 @@ class EnvelopeOptions(Frozen):
 
 
 class TrackedStabilityOptions(Frozen):
-    """Where stability changes along a tracked curve.
+    """Options on where stability changes along a tracked curve.
 
     Attributes
     ----------
     corner_side : float
-        Part of the response's extent to either side of a corner, where it may turn back.
+        Distance to either side of a corner at which the sign of the determinant is taken, relative to the
+        response's extent: the response may turn back there.
     halvings : int
-        Of a step between points, within which the motion ceases to be stable.
+        Number of bisections of a step in which the motion ceases to be stable.
     """
 
     corner_side: float = 1e-6
@@ -290,15 +300,16 @@ class TrialOptions(Frozen):
     Attributes
     ----------
     values : int
-        Over the range, both ends among them.
+        Number of values over the range that are tried first, both ends among them.
     minima, closer_values : int, int
-        About so many of the values that are lower than their neighbours so many further ones are tried.
+        Number of local minima of these values that are refined, and most further values for each.
     min_distance : float
-        Part of the range, between two values that are tried.
+        Distance of two values, relative to the range, at which a refinement ends.
     same_height : float
-        Relative; peaks nearer than this are as high.
+        Relative difference of two peaks up to which they are as high.
     min_flat : float
-        Part of the range over which peaks as high are said not to depend on the number.
+        Width of a stretch of peaks as high, relative to the range, from which on they do not depend on the
+        number.
     """
 
     values: int = 5
@@ -310,7 +321,7 @@ class TrialOptions(Frozen):
 
 
 class TrackingOptions(Frozen):
-    """All of tracked curves, by what they are for: see the class of each field."""
+    """All options of tracked curves, grouped by purpose; see the class of each field."""
 
     pieces: PieceOptions = PieceOptions()
     special: SpecialPointOptions = SpecialPointOptions()
@@ -327,18 +338,18 @@ class TrackingOptions(Frozen):
 
 
 class SearchOptions(Frozen):
-    """Over the range of one number, see `fcm.tracking.lowest_peak`.
+    """The search for the least peak over the range of one number; see `fcm.tracking.lowest_peak`.
 
     Attributes
     ----------
     max_visits : int
-        Of lowest points, and of values about which nothing is followed, at most.
+        Most values of the number at which a response is traced.
     height_tolerance : float
-        A peak that is this much higher, relative, was not followed.
+        Relative height of a peak above the least one, above which it has not been followed.
     high_fraction : float
-        Of the highest, relative; peaks from there on are followed from where they are met.
+        Height relative to the highest peak, from which on peaks are followed where they are met.
     tracking : TrackingOptions
-        Of the curves.
+        Options of the tracked curves.
     """
 
     max_visits: int = 12
@@ -348,36 +359,39 @@ class SearchOptions(Frozen):
 
 
 class DescentOptions(Frozen):
-    """Over two or three numbers, see `fcm.tracking.minimax`.
+    """The search for the least peak over two or three numbers; see `fcm.tracking.minimax`.
 
     Attributes
     ----------
     grid : tuple of float
-        Of each range, at which the first responses are traced.
+        Places in each range, relative to it, at which the first responses are traced.
     starts : int
-        Of the lowest of them, from which the way leads down.
+        Number of the lowest of them from which a descent starts.
     max_rounds : int
-        Of descending and tracing anew, at most.
+        Most rounds of descending and of tracing anew.
     max_halvings : int
-        Of a way at whose end other peaks are higher, at most.
+        Most times that a step is halved at whose end other peaks are higher.
     max_iterations : int
-        Of one descent, after which the responses are traced anew, as at some kinks it goes to and fro.
+        Most iterations of one descent, after which the responses are traced anew, as at some kinks it goes to
+        and fro.
     min_change : float
-        Change of the greatest height, relative, that ends a descent.
+        Relative change of the greatest height in an iteration below which a descent ends.
     min_improvement : float
-        Less of it along a single number, relative, is worth another way down.
+        Relative improvement along a single number above which a further descent begins.
     height_tolerance : float
-        What is higher than this, relative, has not been followed.
+        Relative height above the expected one, above which another peak has not been followed.
     out_of_range_height : float
-        Relative height of a peak that has left the range of frequencies, so that no step leads there.
+        Relative height that stands for a peak that has left the range of frequencies, so that no step leads
+        there.
     kink_tolerance : float
-        Peaks within this, relative, are one kink.
+        Relative difference of two peaks up to which they meet in one kink.
     value_rounding : float
-        Of a range of numbers.
+        Distance from an end of a number's range, relative to it, below which the number is put there: it is
+        rounding.
     bound_tolerance : float
-        Of a range; a number nearer to its end is there.
+        Distance from an end of a number's range, relative to it, below which the optimum lies at that end.
     search : SearchOptions
-        Along a single number.
+        Options of the search along a single number.
     """
 
     grid: tuple[float, ...] = (0.1, 0.5, 0.9)

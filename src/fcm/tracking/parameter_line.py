@@ -20,14 +20,14 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class ParameterLine(NamedTuple):
-    """Numbers of a scene and how they move together with the parameter s."""
+    """A line in the space of some numbers of a scene: how they move together with the parameter s."""
 
     numbers: tuple[Number, ...]
     origin: FloatArray  # (number,)
     direction: FloatArray  # (number,)
 
     def values(self, s: float) -> FloatArray:
-        """The values (number,) of the numbers."""
+        """Values (number,) of the numbers at s."""
         values: FloatArray = self.origin + s * self.direction
         return values
 
@@ -50,21 +50,24 @@ def along(number: Number) -> ParameterLine:
 
 
 class ParameterRates(NamedTuple):
-    """Rates by s: of residual and contacts' forces (unknown,); by a structure of X (harmonic, dof)."""
+    """Rates of the balance by s.
+
+    Of residual and contacts' forces (unknown,); by a structure of X (harmonic, dof).
+    """
 
     residual: FloatArray
     force: FloatArray
     displacements: ComplexArray | None
 
     def of(self, one: Amplitude) -> float:
-        """Rate of an amplitude."""
+        """Rate of an amplitude by s."""
         if self.displacements is None:
             return float(one.of_forces @ self.force)
         return float((one.weights @ self.displacements[:, one.dof]).real)
 
 
 def _excitation(system: System, line: ParameterLine) -> list[tuple[ComplexArray, ComplexArray]]:
-    """Of the forces on the modes, and of those that grow with omega^2: at s = 0, and their rates by s."""
+    """Forces on the modes at s = 0 and their rates by s; then the same of those that grow with omega^2."""
     origin, one = (linear_of(line.scene(system.scene, s)) for s in (0.0, 1.0))
     return [(origin.force, one.force - origin.force), (origin.square, one.square - origin.square)]
 
@@ -95,7 +98,7 @@ class VariedBalance:
         self.numbers = contact_numbers(system.scene)  # mu, k_u, k_v, n_0 (contact, 4) where they are
 
     def another(self) -> VariedBalance:
-        """The same with a balance of its own; what is the same everywhere is found once for all."""
+        """The varied balance with a balance of its own; what is the same everywhere is computed once."""
         if not self.structure and self._constant:
             self._numbers(0.0)
         made = copy(self)
@@ -104,7 +107,7 @@ class VariedBalance:
 
     @property
     def system(self) -> System:
-        """The system with the numbers where they are."""
+        """The system with the numbers at the present s."""
         if self._system is None:
             self._system = copy(self.base)
             object.__setattr__(self._system, "scene", self.line.scene(self.base.scene, self.s))
@@ -113,7 +116,7 @@ class VariedBalance:
         return self._system
 
     def set_parameter(self, s: float) -> None:
-        """Move the numbers."""
+        """Sets the varied numbers to parameter s of the line, and updates the balance."""
         if s == self.s:
             return
         self.s, self._system = s, None
@@ -133,7 +136,10 @@ class VariedBalance:
             self._contact_rates = None
 
     def _numbers(self, s: float) -> FloatArray:
-        """Of the contacts (contact, 4) at s: on a line where their rates are the same everywhere."""
+        """Parameters of the contacts (contact, 4) at s.
+
+        On a line where their rates are the same everywhere they follow from those.
+        """
         if self.structure or not self._constant:
             return contact_numbers(self.system.scene)
         if self._at_zero is None:
@@ -176,7 +182,7 @@ class VariedBalance:
 
     @property
     def rates(self) -> list[Rates]:
-        """The rate of each of the numbers."""
+        """Rates of the balance by each of the numbers."""
         self._rates = self._rates or [rates_of(self.system, number.key) for number in self.line.numbers]
         return self._rates
 

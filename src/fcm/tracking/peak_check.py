@@ -1,4 +1,4 @@
-"""Whether a tracked peak is one: no trough, and of the greatest extremes of a cycle."""
+"""Checks of a tracked peak: that it is no trough, and is among the greatest extremes of a cycle."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def is_top(problem: ExtendedSystem, point: TrackedPoint) -> bool:
 
 
 def overtaken(problem: ExtendedSystem, z: FloatArray) -> bool:
-    """Whether other extremes than those of the place that was measured last are the greatest of a cycle."""
+    """Whether other extremes than those of the place measured last are the greatest of a cycle."""
     if problem.angles is None:
         return False
     problem.varied.set_parameter(float(z[-1]))

@@ -1,4 +1,4 @@
-r"""The least of the greatest: where the highest of several tracked peaks is lowest over a range of a number.
+r"""The envelope of several tracked peaks over a number, and its least value.
 
 A curve of peaks is cut into pieces on which the number rises or falls, and each piece is a function of the
 number, evaluated by Newton's method to rounding. The greatest of all is piecewise smooth: its least value is
@@ -25,14 +25,14 @@ INCOMPLETE = "unfinished"  # what the least so far is of, where it was still sou
 
 
 class Target(NamedTuple):
-    """What is to be least: of a degree of freedom, and whether the ends of the range count."""
+    """A quantity to be minimised: a degree of freedom, and whether the ends of the range count."""
 
     dof: int
     ends: bool = False
 
 
 class PieceHeight(NamedTuple):
-    """A piece at a value of the number."""
+    """Height of a piece at a value of the number, with its slope."""
 
     value: float
     slope: float
@@ -41,7 +41,7 @@ class PieceHeight(NamedTuple):
 
 
 class EnvelopeMinimum(Frozen):
-    """The optimum on a line: the value of s, the greatest amplitude there, and which pieces have it."""
+    """The least value of an envelope on a line: the value of s, the amplitude, and which pieces have it."""
 
     s: float
     value: float
@@ -68,15 +68,15 @@ class MonotonePiece:
         self._heights: dict[float, PieceHeight] = {}
 
     def covers(self, s: float) -> bool:
-        """Whether it is a function there."""
+        """Whether the piece has a height at s."""
         return bool(self.s[0] <= s <= self.s[-1])
 
     def roughly(self, s: float) -> float:
-        """The height between two points, by the chord."""
+        """Height at s by the chord between two points."""
         return float(np.interp(s, self.s, self.height))
 
     def at(self, s: float) -> PieceHeight:
-        """Exactly, or by the chord where Newton's method does not come to it."""
+        """Height at s exactly, or by the chord where Newton's method does not converge."""
         if s not in self._heights:
             self._heights[s] = self._at(s)
         return self._heights[s]
@@ -99,7 +99,8 @@ class MonotonePiece:
         return TrackedPoint(z, t if t[-1] * rising > 0.0 else -t, self._guess(s)[3])
 
     def _guess(self, s: float) -> tuple[FloatArray, int, float, Condition | None]:
-        """A guess by the chord: z, which chord, which part of it, and the corner that is tracked there."""
+        """A guess at s by the chord: z, which chord, which part of it, and the corner that is tracked
+        there."""
         i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
         one, other = self.tracked_points[i], self.tracked_points[i + 1]
         part = (s - self.s[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
@@ -122,7 +123,7 @@ class MonotonePiece:
         return self._problems[corner]
 
     def _height(self, problem: ExtendedSystem, newton: Newton) -> PieceHeight:
-        """The amplitude, and its rate by s along the curve."""
+        """Amplitude at a point, and its rate by s along the curve."""
         z, t = np.array(newton.z), np.asarray(newton.tangent) * np.asarray(newton.scale)
         value, slope = problem.amplitude_along(z, t / t[-1], self.dof)
         return PieceHeight(value, slope, z, self.dof)
@@ -131,7 +132,7 @@ class MonotonePiece:
 def pieces_of(
     setup: TrackingSetup, tracks: Sequence[SpecialPointCurve], target: Target
 ) -> list[MonotonePiece]:
-    """The monotone pieces of the curves that count for a target, of peaks where they are greatest."""
+    """The monotone pieces of the curves that count for a target; of peaks where they are greatest."""
     found = []
     for track in tracks:
         kind, which = track.condition.kind, track.condition.which
@@ -142,7 +143,7 @@ def pieces_of(
 
 
 def _monotone(track: SpecialPointCurve) -> list[list[int]]:
-    """Indices of points of which s rises or falls, and that are greatest."""
+    """Indices of runs of points along which s rises or falls, and that are greatest."""
     parts: list[list[int]] = [[]]
     for i in range(len(track.s)):
         if not track.greatest[i] and not track.points[i].turn:
@@ -158,7 +159,7 @@ def _monotone(track: SpecialPointCurve) -> list[list[int]]:
 
 
 def envelope_minimum(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum | None:
-    """The optimum; None where there is no piece."""
+    """The least value of the envelope of pieces; None without a piece."""
     if not pieces:
         return None
     low, high = setup.span
@@ -174,13 +175,13 @@ def envelope_minimum(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> E
 
 
 class _Envelope:
-    """The greatest of the pieces as a function of s, exactly."""
+    """The envelope of the pieces: the greatest as a function of s, exactly."""
 
     def __init__(self, pieces: Sequence[MonotonePiece], setup: TrackingSetup) -> None:
         self.pieces, self.options = pieces, setup.options.envelope
 
     def highest(self, s: float) -> tuple[PieceHeight, MonotonePiece]:
-        """The highest piece there; infinite where none is known."""
+        """The highest piece at s; infinite where none is known."""
         rough = {piece: piece.roughly(s) for piece in self.pieces if piece.covers(s)}
         if not rough:
             return PieceHeight(np.inf, 0.0, np.zeros(0), -1), self.pieces[0]
@@ -193,7 +194,7 @@ class _Envelope:
         return max(heights, key=lambda pair: pair[0].value)
 
     def active(self, s: float, value: float) -> tuple[PieceHeight, ...]:
-        """All that are as high as a value there."""
+        """Heights of all pieces at s that reach a value."""
         heights = (piece.at(s) for piece in self.pieces if piece.covers(s))
         return tuple(one for one in heights if one.value >= value * (1.0 - self.options.height_tolerance))
 
@@ -201,7 +202,7 @@ class _Envelope:
 def _where_flat(
     envelope: _Envelope, setup: TrackingSetup, grid: FloatArray, best: EnvelopeMinimum
 ) -> EnvelopeMinimum:
-    """The middle of the stretch on which the greatest does not depend on the number; else what was found."""
+    """The middle of the stretch on which the envelope does not depend on the number; else best."""
     span, options = setup.span[1] - setup.span[0], setup.options.envelope
 
     def flat(s: float) -> bool:
@@ -252,7 +253,7 @@ def uncovered_values(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> l
 
 
 def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[float, float, float]:
-    """A value of s between its neighbours, among which those of the highest piece itself."""
+    """A value of s and its neighbours, among which those of the highest piece itself."""
     s = float(grid[i])
     top = max((p for p in pieces if p.covers(s)), key=lambda p: p.roughly(s))
     low, high = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, len(grid) - 1)])
@@ -265,7 +266,7 @@ def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[
 def _refined(
     envelope: _Envelope, setup: TrackingSetup, low: float, middle: float, high: float
 ) -> EnvelopeMinimum:
-    """The least value between two values of s."""
+    """The least value of the envelope between two values of s."""
     span, options = setup.span[1] - setup.span[0], setup.options.envelope
     pieces, highest = envelope.pieces, envelope.highest
     if high > low:
@@ -301,7 +302,7 @@ def _refined(
 
 
 def _ends_higher(piece: MonotonePiece, s: float, value: float, width: float) -> bool:
-    """Whether a piece that is not there ends higher than a value close by."""
+    """Whether a piece that does not cover s ends higher than a value close by."""
     ends = ((piece.s[0], piece.height[0]), (piece.s[-1], piece.height[-1]))
     near = any(abs(end - s) < width and height > value for end, height in ends)
     return near and not piece.s[0] < s < piece.s[-1]
@@ -313,7 +314,7 @@ def _turned(
     between: tuple[float, float],
     setup: TrackingSetup,
 ) -> tuple[str, float]:
-    """Where the greatest turns between two values of s: where pieces cross, or one has its least value."""
+    """The value of s where the envelope turns: where pieces cross, or one has its least value."""
     (one, other), span = pieces, setup.span[1] - setup.span[0]
     fine = setup.options.envelope.value_tolerance * span
     if one is not other:
@@ -325,7 +326,7 @@ def _turned(
 
 
 def _root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
-    """A change of sign, or the end with the lesser value where there is none."""
+    """A zero of a function between two ends, or the end with the lesser value where it keeps its sign."""
     if function(low) * function(high) > 0.0:
         return low if abs(function(low)) < abs(function(high)) else high
     return float(brentq(function, low, high, xtol=tolerance))

@@ -1,4 +1,4 @@
-"""Whether the motion is stable at the points of a tracked curve: at a peak where it is not, none stays."""
+"""Stability of the motion at the points of a tracked curve: at a peak where it is unstable, none stays."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Seen = tuple[TrackedPoint, float]  # a point, and what is said of it
 
 
 def stability_along(setup: TrackingSetup, track: SpecialPointCurve) -> tuple[SpecialPointCurve, FloatArray]:
-    """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it is unknown.
+    """The curve and the stability of its points (point,): 1 stable, 0 unstable, NaN where it is unknown.
 
     As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
     curve is that with two more points wherever this changes, one on either side.
@@ -28,7 +28,7 @@ def stability_along(setup: TrackingSetup, track: SpecialPointCurve) -> tuple[Spe
 
 
 class _StabilityAlongCurve:
-    """The points of one curve."""
+    """Computes the stability of the points of one curve."""
 
     def __init__(self, setup: TrackingSetup, track: SpecialPointCurve) -> None:
         self.setup, self.track, self.problem = setup, track, setup.tracked(track.condition)
@@ -46,7 +46,7 @@ class _StabilityAlongCurve:
         return track, np.array([stable for _, stable in found])
 
     def _limit(self, one: Seen, other: Seen) -> list[Seen]:
-        """Points on both sides of where what is said of two changes; none if it does not."""
+        """Points on both sides of where stability changes between two; none if it does not."""
         before, ends = one[1], [one, other]
         if _same(before, other[1]):
             return []
@@ -89,7 +89,7 @@ class _StabilityAlongCurve:
         return self._multipliers().classify(np.array(point.z[:-1]), at_fold).stable
 
     def _multipliers(self) -> Multipliers:
-        """The multipliers with the numbers as the problem has them."""
+        """The workspace for multipliers with the numbers as the problem has them."""
         varied = self.problem.varied
         if self.known is None or varied.structure:
             known = multipliers_of(varied.system, self.highest, self.setup.options.floquet)
@@ -100,7 +100,7 @@ class _StabilityAlongCurve:
 
 
 def _same(one: float, other: float) -> bool:
-    """Whether two classifications are one, not to be told among them."""
+    """Whether two values of stability are the same, or both unknown."""
     return one == other or bool(np.isnan(one) and np.isnan(other))
 
 

@@ -1,4 +1,4 @@
-"""Where tracked curves begin: the special points of ordinary curves at some values of the number."""
+"""Starts of tracked curves: the special points of ordinary curves at some values of the number."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ from fcm.tracking.options import TRACKING, TrackingOptions
 
 
 class SpecialPoints(NamedTuple):
-    """Points z (unknown + 1,) at which conditions nearly hold; what is wrong with their curves; and
-    at which frequencies [rad/s] the level, or a fold of it, was not followed to its end, so that branches may
-    be missing."""
+    """Points z (unknown + 1,) at which conditions nearly hold, and what may be missing.
+
+    faults: what is wrong with their curves; uncertain: frequencies [rad/s] at which the level, or a fold of
+    it, was not followed to its end, so that branches may be missing.
+    """
 
     points: list[tuple[Condition, FloatArray]]
     faults: str
@@ -60,7 +62,7 @@ def special_points(
 
 
 def _amplitudes(quantities: Sequence[ReportedQuantities]) -> list[FloatArray]:
-    """Along each path, (point, dof), 0 of what moves by rounding alone."""
+    """Amplitudes along each path, (point, dof), 0 of what moves by rounding alone."""
     every = [one.amplitude for one in quantities]
     moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0)) if every else 0.0
     return [one * moves for one in every]
@@ -84,7 +86,7 @@ def _points(
 
 
 def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
-    """Points higher than their neighbours."""
+    """Indices of the points higher than their neighbours."""
     inner = amplitude[1:-1]
     tops = 1 + np.flatnonzero((inner >= amplitude[:-2]) & (inner > amplitude[2:]))
     high: npt.NDArray[np.intp] = tops[
@@ -96,7 +98,7 @@ def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDA
 def _onsets(
     system: System, path: Path, condition: Condition, options: TrackingOptions = TRACKING
 ) -> Iterator[FloatArray]:
-    """Onsets, where a function of a contact changes its sign between points, by the chord."""
+    """Points of onsets, where a function of a contact changes its sign between points, by the chord."""
     law, c = system.laws()[condition.which], condition.which
     blocks = [np.ascontiguousarray(z[c * law.width : (c + 1) * law.width]) for z in path.z]
     value = np.array([onset(law, x, condition.onset, system.harmonics, options).value for x in blocks])

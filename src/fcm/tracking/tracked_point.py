@@ -16,7 +16,7 @@ from fcm.tracking.parameter_line import ParameterLine, VariedBalance
 
 
 class Ending(Enum):
-    """How a tracked curve ended."""
+    """Reasons why a tracked curve ended."""
 
     SPAN = "the number reached an end of its range"
     RANGE = "its frequency left the range that is traced"
@@ -30,12 +30,12 @@ class Ending(Enum):
 
     @property
     def whole(self) -> bool:
-        """Whether there is no more of the curve, or none that was asked for."""
+        """Whether the curve was followed to its end, or to the end that was asked for."""
         return self not in (Ending.CORNER, Ending.STALLED, Ending.LONG)
 
 
 class TrackedPoint(Frozen):
-    """A point of a tracked curve: z = (x, omega, s), its direction in units of z, and what it is."""
+    """A point of a tracked curve: z = (x, omega, s), its direction in units of z, and marks."""
 
     z: FloatArray
     direction: FloatArray
@@ -46,7 +46,7 @@ class TrackedPoint(Frozen):
 
 
 class TrackingSetup(Frozen):
-    """What all curves of one run share."""
+    """The setup that all curves of one run share."""
 
     system: System
     line: ParameterLine
@@ -58,16 +58,16 @@ class TrackingSetup(Frozen):
 
     @cached_property
     def varied(self) -> VariedBalance:
-        """The balance that is moved along the line, as it is before."""
+        """The balance that is moved along the line."""
         return VariedBalance(self.system, self.line)
 
     def tracked(self, condition: Condition) -> ExtendedSystem:
-        """The problem of a condition, with a balance of its own."""
+        """The extended system of a condition, with a balance of its own."""
         return ExtendedSystem(self.varied.another(), condition, self.span[1] - self.span[0], self.options)
 
 
 def kinks(setup: TrackingSetup) -> list[float]:
-    """Values of s at which a preload changes sign: what the structure at rest bears has a kink there."""
+    """Values of s at which a preload changes sign: there the forces at rest have a kink."""
     loads = np.array([[c.n_0 for c in setup.line.scene(setup.system.scene, s).contacts] for s in setup.span])
     found = set()
     for low, high in loads.T:

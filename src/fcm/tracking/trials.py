@@ -16,7 +16,7 @@ from fcm.tracking.peak_envelope import EnvelopeMinimum
 
 
 def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
-    """The least of the greatest at the values that were tried; None where nothing has a peak."""
+    """The least of the greatest peaks at the values that were tried; None where nothing has a peak."""
     low, high = search.span
     options = search.options.tracking.trials
     for value in np.linspace(low, high, options.values).tolist():
@@ -65,7 +65,7 @@ def error_of_higher(search: LowestPeakSearch, best: EnvelopeMinimum) -> tuple[fl
 
 
 def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | None:
-    """The values that were tried about one between which all have its height; None where few have."""
+    """Range of the tried values about one between which all have its height; None where few have."""
     options = search.options.tracking
     tried = sorted(search.visited_values)
     least = search.visited_values[s].value
@@ -82,7 +82,7 @@ def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | Non
 
 
 def _greatest(search: LowestPeakSearch, value: float) -> float:
-    """The greatest at a value; where there is no peak, none that could be least."""
+    """Greatest height at a value; a height that cannot be the least where there is no peak."""
     if value not in search.visited_values:
         search.greatest_at(value)
     unknown = search.options.tracking.envelope.unknown_factor * max(
@@ -101,7 +101,7 @@ def _local_minima(search: LowestPeakSearch) -> list[float]:
 
 
 def _neighbours(search: LowestPeakSearch, s: float) -> tuple[float, float]:
-    """The values on either side of one that were tried."""
+    """The tried values next to a value, on either side."""
     tried = sorted(search.visited_values)
     i = tried.index(s)
     return tried[max(i - 1, 0)], tried[min(i + 1, len(tried) - 1)]

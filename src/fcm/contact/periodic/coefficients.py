@@ -11,7 +11,7 @@ from fcm.contact.periodic.forces import PeriodicContact
 
 
 class PeriodicGradients(NamedTuple):
-    """Coefficients of `periodic_forces` with their derivatives."""
+    """Coefficients of `periodic_forces` and their derivatives."""
 
     f: ComplexArray  # (..., harmonic)
     n: ComplexArray  # (..., harmonic)
@@ -131,14 +131,14 @@ def periodic_gradients(
 def one_motion(
     u: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
 ) -> tuple[PeriodicContact, FloatArray, FloatArray]:
-    """A contact for one motion, its unknowns and its parameters, as the kernel takes them."""
+    """The kernel, unknowns and parameters of a single contact motion."""
     motion = KernelArguments.of({"u": u, "v": v}, None, numbers)
     motion.check_single()
     return PeriodicContact(motion.harmonics, motion.outputs), motion.unknowns[0], motion.parameters[0]
 
 
 def _evaluated(motion: KernelArguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
-    """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
+    """Forces (point, equation) and, if wanted, their derivatives (point, equation, unknown)."""
     contact = PeriodicContact(motion.harmonics, motion.outputs)
     forces, jacobian = motion.room(contact.equations, gradient)
     contact.all(motion.unknowns, motion.parameters, forces, jacobian)

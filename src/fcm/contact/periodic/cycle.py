@@ -109,7 +109,7 @@ class Slider(Events):
         rest: float,
         cause: cython.int,
     ) -> None:
-        """The next piece, unless it goes on with the last."""
+        """Appends a piece, unless the last one has the same state."""
         i: cython.int = self.pieces
         if i > 0 and self.state[i - 1] == state:
             return
@@ -118,7 +118,7 @@ class Slider(Events):
         self.pieces += 1
 
     def close(self) -> None:
-        """(20) to (22): what follows the separation."""
+        """Sets the slider where the contact closes, and whether it slips at once, (20) to (22)."""
         self.w, self.span_cause, self.slipping = self.moved[self.span], SEPARATION, 0
         if self.pushes(POSITIVE):
             self.slipping = POSITIVE
@@ -126,7 +126,7 @@ class Slider(Events):
             self.slipping = NEGATIVE
 
     def pushes(self, side: cython.int) -> bool:
-        """Whether a limit that has met the slider goes on to push it, beyond rounding."""
+        """Whether a limit that has met the slider goes on to push it, by more than rounding."""
         if side == 0:
             return False
         rate: float = self.lower_rate[self.span] if side > 0 else -self.upper_rate[self.span]
@@ -134,7 +134,7 @@ class Slider(Events):
         return rate > rounding
 
     def advance(self, end: cython.int, theta: float, kind: cython.int) -> None:
-        """One span, to a cut at which the contact is closed or opens."""
+        """Passes one span, up to a cut at which the contact is closed or opens."""
         if kind == OPENS:
             self.lower[end] = self.upper[end] = self.moved[end]
         self.margin[end] = self.w - self.upper[end] if kind == BOTTOM else self.lower[end] - self.w
@@ -150,7 +150,7 @@ class Slider(Events):
         self.slipping = side if kind != (TOP if side > 0 else BOTTOM) and self.pushes(side) else 0
 
     def slip(self, side: cython.int, end: cython.int, theta: float) -> None:
-        """The slip that ends a span."""
+        """Appends the slip at the end of a span, from the angle at which it begins."""
         begin: float
         if side == self.slipping:
             self.add(side, self.span, self.span_begin, 0.0, 0)
@@ -159,7 +159,10 @@ class Slider(Events):
             self.add(side, self.place(begin, MEETS), begin, 0.0, 0)
 
     def slip_begin(self, side: cython.int, end: cython.int, theta: float) -> float:
-        """Where the limit that pushes meets the resting slider; before, it may first have receded."""
+        """Angle at which the pushing limit meets the resting slider.
+
+        Before, the limit may have receded from it.
+        """
         row: cython.int = LOWER if side > 0 else UPPER
         g: float = (self.lower[end] if side > 0 else self.upper[end]) - self.w
         d: float = self.lower_rate[end] if side > 0 else self.upper_rate[end]
@@ -193,7 +196,7 @@ STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED an
 
 @cython.cclass
 class LineCycle(Slider):
-    """A steady cycle, its pieces those of `Slider`.
+    """A steady cycle of a contact on a line; its pieces are those of `Slider`.
 
     Attributes
     ----------
@@ -221,7 +224,7 @@ class LineCycle(Slider):
         n_0: float,
         start: float,
     ) -> cython.int:
-        """The cycle of the motion x[first:], as of `solve`; nothing is done for the one taken last."""
+        """Solves the cycle of the motion x[first:], see `solve`; does nothing for the motion taken last."""
         if self.known(x, first, mu, k_u, k_v, n_0, start):
             return self.kind
         i: cython.Py_ssize_t
@@ -247,7 +250,7 @@ class LineCycle(Slider):
         n_0: float,
         start: float,
     ) -> bool:
-        """Whether that is what was taken last."""
+        """Whether the motion, parameters and start equal those taken last."""
         i: cython.Py_ssize_t
         if not (self.motion.taken and self.law[0] == mu and self.law[1] == k_u and self.law[2] == k_v):
             return False
@@ -259,7 +262,8 @@ class LineCycle(Slider):
         return True
 
     def solve(self, behaviour: cython.int, start: float) -> cython.int:
-        """The cycle of a loaded motion, OPEN, STUCK or MIXED; its slider began at `start` from the mean of u.
+        """Solves a loaded motion's cycle: OPEN, STUCK or MIXED, the slider starting at `start` from the mean
+        of u.
 
         Of a contact that never slips there is one piece, a stick, whose cause is 0 unless a limit holds it.
         """
@@ -300,7 +304,7 @@ class LineCycle(Slider):
         return spare >= 0.0
 
     def sort_cuts(self) -> None:
-        """`order`: the cuts by their angles, each reduced to the turn that begins at the first node."""
+        """Fills `order`: the cuts sorted by angle, each reduced to the turn that begins at the first node."""
         i: cython.int
         j: cython.int
         for i in range(self.crossings.count):
@@ -315,7 +319,7 @@ class LineCycle(Slider):
             self.order[j] = i
 
     def never_open(self, start: float) -> cython.int:
-        """Without separation: from the greatest top on, if it is above the least bottom."""
+        """Solves a cycle without separation, from the greatest top on if it lies above the least bottom."""
         i: cython.int
         e: cython.int
         top: cython.int = -1
@@ -345,7 +349,7 @@ class LineCycle(Slider):
         return MIXED
 
     def march(self, first: cython.int, kind: cython.int) -> None:
-        """Span after span, from the cut at which w is known."""
+        """Passes span after span, from the cut at which w is known."""
         count: cython.int = self.crossings.count
         turn: float = 0.0
         i: cython.int

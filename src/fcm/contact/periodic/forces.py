@@ -40,7 +40,7 @@ _GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 
 @cython.cclass
 class Integrals:
-    """Sums over the pieces of a cycle: cosine and sine of each set, and of the forces for each harmonic."""
+    """Sums over the pieces of a cycle: integrals of each set of pieces, and of the forces' harmonics."""
 
     def __init__(self, cycle: LineCycle, most: int) -> None:
         self.cycle = cycle
@@ -56,7 +56,7 @@ class Integrals:
         self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
 
     def integrate(self) -> None:
-        """Sum the integrals of exp(-i m theta) over the pieces, and the forces of short sticks."""
+        """Sums the integrals of exp(-i m theta) over the pieces, and the forces of short sticks."""
         m: cython.int
         p: cython.int
         last: cython.int = self.cycle.pieces - 1
@@ -85,7 +85,7 @@ class Integrals:
             begin, end = end, begin
 
     def piece(self, p: cython.int, begin: cython.int, end: cython.int, length: float) -> None:
-        """Add a piece in which the contact is closed to the sums of its sets."""
+        """Adds a piece in which the contact is closed to the sums of its sets."""
         m: cython.int
         state: cython.int = self.cycle.state[p]
         w: float = self.cycle.rest[p]
@@ -119,7 +119,7 @@ class Integrals:
                 self.total_im[m] += long * w * s
 
     def powers(self, into: cython.int, c_1: float, s_1: float) -> None:
-        """cos(m theta) and sin(m theta) of all m."""
+        """Fills cos(m theta) and sin(m theta) for all m."""
         m: cython.int
         c: float = 1.0
         s: float = 0.0
@@ -131,7 +131,7 @@ class Integrals:
             self.power_cos[into, m], self.power_sin[into, m] = c, s
 
     def short_stick(self, p: cython.int, begin: cython.int, length: float) -> None:
-        """Add the integrals of f exp(-i h theta), f from what it was when the stick began."""
+        """Adds the integrals of f exp(-i h theta) over a short stick, from f at its beginning."""
         e: cython.int = self.cycle.event[p]
         i: cython.int
         k: cython.int
@@ -169,7 +169,7 @@ class Integrals:
             self.total_im[m] += self.stick_im[m] * a - self.stick_re[m] * b
 
     def grow(self, re: float, im: float) -> None:
-        """exp(i m y) - 1 of all m from that of 1, each to full relative accuracy."""
+        """Fills exp(i m y) - 1 for all m from that of m = 1, each to full relative accuracy."""
         m: cython.int
         a: float = 0.0
         b: float = 0.0
@@ -181,7 +181,7 @@ class Integrals:
             self.grow_re[m], self.grow_im[m] = a, b
 
     def product(self, h: cython.int, which: cython.int, row: cython.int) -> None:
-        """Add to the totals of h the integral of a row times exp(-i h theta) over a set of pieces."""
+        """Adds to the totals of h the integral of a row times exp(-i h theta) over a set of pieces."""
         k: cython.int
         d: cython.int
         p: cython.int
@@ -206,7 +206,7 @@ class Integrals:
 
 @cython.cclass
 class Derivatives:
-    """`jacobian` (force, unknown), in the order of `PeriodicContact`, while its rows are made.
+    """Builds `jacobian` (force, unknown), in the order of `PeriodicContact`.
 
     `memory` is the derivatives of one place of rest.
     """
@@ -220,7 +220,7 @@ class Derivatives:
         self.memory = np.zeros(self.unknowns)
 
     def fill(self, value: float) -> None:
-        """All of them the same."""
+        """Sets all derivatives to one value."""
         i: cython.Py_ssize_t
         j: cython.int
         for i in range(2 + 4 * self.outputs):
@@ -228,7 +228,7 @@ class Derivatives:
                 self.jacobian[i, j] = value
 
     def stick(self) -> None:
-        """Of a contact that never slips."""
+        """Sets the derivatives of a contact that never slips."""
         i: cython.int
         k: cython.int
         part: cython.int
@@ -246,7 +246,7 @@ class Derivatives:
                         self.jacobian[2 + 4 * i + part, 2 + 4 * k + part] = 1.0
 
     def slip(self) -> None:
-        """Of any other."""
+        """Sets the derivatives of a contact that slips or opens."""
         i: cython.int
         h: cython.int
         step: cython.int
@@ -271,7 +271,7 @@ class Derivatives:
         which: cython.int,
         factor: float,
     ) -> None:
-        """Derivatives of one harmonic of a force, in `rows` rows, by all of u or of v."""
+        """Sets the derivatives of one harmonic of a force, in `rows` rows, by all unknowns of u or of v."""
         k: cython.int
         d: cython.int
         p: cython.int
@@ -301,7 +301,7 @@ class Derivatives:
                 self.jacobian[row + 1, column + 1] = c - cos_p
 
     def gradient(self, p: cython.int) -> None:
-        """`memory`: the derivatives of where the slider rests in piece p, without the mean of u.
+        """Fills `memory`: derivatives of the slider's resting place in piece p, but for the mean of u.
 
         After a slip it is that of the limit, where the limit turns. After a separation w = u where the load
         vanishes, and that instant moves by -n_q / n_t.
@@ -326,7 +326,7 @@ class Derivatives:
             self.memory[4 + 4 * k], self.memory[5 + 4 * k] = along * c, -along * s
 
     def remember_all(self) -> None:
-        """Take from the derivatives of the forces what the resting places of the slider add to them."""
+        """Subtracts from the force derivatives what the resting places of all sticks contribute."""
         p: cython.int
         for p in range(self.cycle.pieces):
             if self.cycle.state[p] == STICK:
@@ -334,7 +334,7 @@ class Derivatives:
                 self.remember(p)
 
     def remember(self, p: cython.int) -> None:
-        """The part of one stick; `gradient` has left the powers of its start."""
+        """Subtracts the contribution of one stick; `gradient` has left the powers of its start."""
         i: cython.int
         j: cython.int
         h: cython.int
@@ -360,7 +360,7 @@ class Derivatives:
                 self.jacobian[row + 1, j] -= im * self.memory[j]
 
     def rescale(self, row: cython.int, by_motion: float, by_load: float) -> None:
-        """Derivatives of one number by u and by v."""
+        """Scales the derivatives of one number by u and by v."""
         k: cython.int
         self.jacobian[row, 0] *= by_motion
         self.jacobian[row, 1] *= by_load
@@ -373,7 +373,7 @@ class Derivatives:
 
 @cython.cclass
 class PeriodicContact:
-    """Contacts with given harmonics of their motion and of their forces, one after the other.
+    """Kernel of contacts with given harmonics of their motion and forces, evaluated one after the other.
 
     Parameters
     ----------
@@ -419,7 +419,7 @@ class PeriodicContact:
         start: float = 0.0,
         gradient: bool = True,
     ) -> int:
-        """`evaluate`, called from Python."""
+        """Calls `evaluate` from Python."""
         kind: int = self.evaluate(x, 0, mu, k_u, k_v, n_0, start, gradient)
         return kind
 
@@ -430,7 +430,9 @@ class PeriodicContact:
         forces: cython.double[:, ::1],
         jacobians: cython.double[:, :, ::1],
     ) -> None:
-        """`forces` (point, equation) of motions (point, unknown); mu, k_u, k_v, n_0, start of each.
+        """Fills `forces` (point, equation) of motions (point, unknown), each with mu, k_u, k_v, n_0, start.
+
+        `jacobians` (point, equation, unknown) is filled as well, unless it has no points.
 
         And `jacobians` (point, equation, unknown), unless there is no room for them.
         """
@@ -461,7 +463,7 @@ class PeriodicContact:
         start: float,
         gradient: bool,
     ) -> cython.int:
-        """Forces of the motion x[first:], in `forces`, and if wanted their derivatives, in `jacobian`.
+        """Evaluates the motion x[first:]: `forces`, and if wanted their derivatives in `jacobian`.
 
         Parameters
         ----------
@@ -495,7 +497,10 @@ class PeriodicContact:
         return self.kind
 
     def stick(self) -> None:
-        """The slider rests; its place is the start's, or the extreme of the limit that holds it."""
+        """Sets the forces of a sticking contact.
+
+        Its slider rests at the start, or at the extreme of the limit that holds it.
+        """
         i: cython.int
         k: cython.int
         row: cython.Py_ssize_t
@@ -511,7 +516,7 @@ class PeriodicContact:
                     self.forces[row + 3] = self.motion.im[LOAD, k]
 
     def slip(self) -> None:
-        """The forces from their integrals; those of short sticks are in the totals already."""
+        """Sets the forces from their integrals; those of short sticks are in the totals already."""
         i: cython.int
         h: cython.int
         row: cython.Py_ssize_t
@@ -533,7 +538,7 @@ class PeriodicContact:
                 self.forces[row + 3] = self.integrals.total_im[h] / PI
 
     def rescale(self, mu: float, k_u: float, k_v: float, gradient: bool) -> None:
-        """From forces divided by the greatest amplitude, and derivatives by forces, to those asked for."""
+        """Scales the dimensionless forces and derivatives to the units of the arguments."""
         i: cython.int
         part: cython.int
         row: cython.int

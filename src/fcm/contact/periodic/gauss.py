@@ -1,4 +1,4 @@
-"""Gauss's rule, of the few points that integrals over short pieces of a cycle take."""
+"""Gauss's quadrature rule with few points, for integrals over short pieces of a cycle."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def gauss(count: int) -> tuple[FloatArray, FloatArray]:
-    """Points and their shares on 0 to 1, after Golub and Welsch (1969).
+    """Nodes and weights of Gauss's rule on 0 to 1, after Golub and Welsch (1969).
 
     As `numpy.polynomial.legendre.leggauss`, which takes 5 ms to import.
 

@@ -59,7 +59,7 @@ class PeriodicLoop(Frozen, LoadedPieces):
     _since: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)  # angles from the first on
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
-        """u [length] at each angle theta [rad]."""
+        """Displacement u [length] at each angle theta [rad]."""
         return waves_at(self.u, theta)
 
     def force(self, theta: npt.ArrayLike) -> FloatArray:
@@ -134,7 +134,7 @@ def periodic_loop(
 
 
 def _visible(cycle: LineCycle) -> list[tuple[str, float, float]]:
-    """(state, angle at which it begins, place of the slider), without what is rounding, neighbours joined."""
+    """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
     begin = np.asarray(cycle.begin)[: cycle.pieces]
     length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
     regions: list[tuple[str, float, float]] = []
@@ -150,14 +150,17 @@ def _visible(cycle: LineCycle) -> list[tuple[str, float, float]]:
 
 
 def _slip(cycle: LineCycle, p: int) -> tuple[float, bool]:
-    """Where the slider is when slip p begins, and whether it is seen to move."""
+    """Place of the slider when slip p begins, and whether it visibly moves."""
     limit = cycle.lower if cycle.state[p] > 0 else cycle.upper
     begin, end = (float(limit[cycle.event[q % cycle.pieces]]) for q in (p, p + 1))
     return begin, abs(end - begin) > PERIODIC.min_state_length
 
 
 def _ordered(regions: list[tuple[str, float, float]]) -> list[tuple[str, float, float]]:
-    """From a separation on, else from a stick after negative slip, the first of them after angle 0."""
+    """The pieces rotated to begin with a separation, else with a stick after negative slip.
+
+    Of several the first after angle 0 is taken.
+    """
     states = [state for state, _, _ in regions]
     firsts = [i for i, state in enumerate(states) if state == "S"] or [
         i for i, state in enumerate(states) if state == "E" and states[i - 1] == "N"

@@ -87,7 +87,7 @@ PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is 
 
 @cython.cclass
 class Margins:
-    """`find` gives those of a motion: value, kind, angle (margin,), the first `count` of `most`.
+    """`find` computes the margins of a motion: value, kind, angle (margin,), the first `count` of `most`.
 
     Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
@@ -102,7 +102,7 @@ class Margins:
     def find(
         self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> None:
-        """Of the motion x[first:] of a contact; see `PeriodicContact`."""
+        """Computes the margins of the motion x[first:] of a contact; see `PeriodicContact`."""
         kind: cython.int = self.cycle.take(x, first, mu, k_u, k_v, n_0, 0.0)
         self.count = 0
         if self.cycle.behaviour == UNKNOWN:
@@ -112,12 +112,15 @@ class Margins:
             self.slips(kind, self.cycle.behaviour, self.cycle.start)
 
     def note(self, kind: cython.int, angle: float, value: float) -> None:
-        """One more."""
+        """Appends a margin."""
         self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
         self.count += 1
 
     def loads(self, behaviour: cython.int) -> None:
-        """Extremes of the load; where they cannot matter, numbers of their sign."""
+        """Appends the margins of closing and opening, from the extremes of the load.
+
+        Where the extremes cannot matter, only the sign of a margin is set.
+        """
         i: cython.int
         value: float
         self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
@@ -133,7 +136,7 @@ class Margins:
             self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
 
     def slips(self, kind: cython.int, behaviour: cython.int, start: float) -> None:
-        """Of a contact with friction that closes."""
+        """Appends the margins of slip, for a contact with friction that closes."""
         e: cython.int
         if kind == STUCK:
             if behaviour == CLOSED and self.cycle.far_inside(start):
@@ -157,7 +160,7 @@ class Margins:
                 self.note(DOWNWARDS, self.cycle.event_angle[e], self.cycle.margin[e])
 
     def holders(self, extreme: cython.int, kind: cython.int, limit: cython.double[::1], side: float) -> None:
-        """How far the extremes of a limit that holds the slider are beyond the furthest other one."""
+        """Appends how far each extreme of the limit holding the slider exceeds the furthest other extreme."""
         e: cython.int
         furthest: cython.int = -1
         second: cython.int = -1
@@ -186,7 +189,8 @@ PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int stil
 
 @cython.cclass
 class Measures:
-    """Of the cycle that a contact has last solved; numbers in the units of its arguments.
+    """Forces, energy and state sequence of the cycle that a contact has solved last, in the units of its
+    arguments.
 
     Attributes
     ----------
@@ -217,11 +221,11 @@ class Measures:
         self.turn_cos, self.turn_sin = np.zeros((2, POINTS))
 
     def take(self, k_u: float) -> None:
-        """`measure`, called from Python."""
+        """Calls `measure` from Python."""
         self.measure(k_u)
 
     def measure(self, k_u: float) -> None:
-        """All attributes, of the cycle as it is."""
+        """Computes all attributes of the present cycle."""
         self.motion.sample()
         self.friction()
         self.extremes()
@@ -229,14 +233,14 @@ class Measures:
         self.sign()
 
     def bear(self, k_u: float) -> None:
-        """Of these the greatest load and friction, the energy and the way of the slip, which cost less."""
+        """Computes only greatest load and friction, energy and slip path, which costs less than `measure`."""
         self.motion.sample()
         self.friction()
         self.greatest()
         self.slips(k_u)
 
     def greatest(self) -> None:
-        """The greatest load, at one of the extremes that `friction` has found."""
+        """Computes the greatest load, at one of the extremes that `friction` has found."""
         i: cython.int
         value: float
         high: float = self.motion.at[LOAD, 0]
@@ -247,7 +251,7 @@ class Measures:
         self.greatest_load = high * self.motion.load_scale
 
     def extremes(self) -> None:
-        """Of the load and of both limits, as if the contact never opened."""
+        """Computes the extremes of the load and of both limits, as if the contact never opened."""
         i: cython.int
         kind: cython.int
         value: float
@@ -275,7 +279,7 @@ class Measures:
         self.overlap = (top - bottom) * self.motion.scale
 
     def friction(self) -> None:
-        """Greatest friction force: at an event, or where the load or the motion has an extreme."""
+        """Computes the greatest friction force: at an event, or at an extreme of the load or the motion."""
         p: cython.int
         i: cython.int
         self.crossings.begin()
@@ -292,7 +296,7 @@ class Measures:
         self.greatest_friction = most * self.motion.scale
 
     def piece(self, theta: float) -> cython.int:
-        """The piece that holds an angle."""
+        """Number of the piece that contains an angle."""
         p: cython.int = 0
         begin: float = self.cycle.begin[0]
         while theta < begin:
@@ -304,7 +308,7 @@ class Measures:
         return p
 
     def force(self, p: cython.int, theta: float) -> float:
-        """Friction force in a piece."""
+        """Friction force at an angle in piece p, divided by the scale of the motion."""
         state: cython.int = self.cycle.state[p]
         value: float = 0.0
         if state == STICK:
@@ -316,7 +320,7 @@ class Measures:
         return value
 
     def slips(self, k_u: float) -> None:
-        """Energy and path of all slips: sums of what cannot be negative."""
+        """Computes the energy and path of all slips, as sums of non-negative terms."""
         p: cython.int
         last: cython.int = self.cycle.pieces - 1
         energy: float = 0.0
@@ -333,7 +337,7 @@ class Measures:
         self.dissipation, self.slip_path = energy * self.motion.scale * length, path * length
 
     def slip(self, p: cython.int, length: float) -> None:
-        """Gauss's rule over one slip, in parts of PART of the highest product."""
+        """Integrates energy and path over one slip by Gauss's rule, in parts short enough for it."""
         i: cython.int
         j: cython.int
         row: cython.int = LOWER if self.cycle.state[p] > 0 else UPPER
@@ -360,7 +364,7 @@ class Measures:
                 self.piece_path += rate
 
     def sign(self) -> None:
-        """The states, from the first of the least number that they make, as one number."""
+        """Computes `signature`: the cyclic sequence of states as one number, whatever state is first."""
         i: cython.int
         p: cython.int
         state: cython.int

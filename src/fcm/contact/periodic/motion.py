@@ -38,7 +38,7 @@ PI = cython.declare(cython.double, 3.141592653589793)
 
 @cython.cclass
 class Nodes:
-    """`nodes` angles, first + j * step: few for a fundamental alone, and many for all harmonics.
+    """The nodes, angles first + j * step: few for a motion of the fundamental alone, many for all harmonics.
 
     node_cos, node_sin (node, harmonic): the harmonics at the few, then at the many; those that are taken
     stand from `before` on.
@@ -54,7 +54,7 @@ class Nodes:
         self.take_nodes(len(harmonics))
 
     def take_nodes(self, moving: cython.int) -> None:
-        """Those of a motion of so many harmonics, the first."""
+        """Chooses the nodes for a motion whose first so many harmonics are not zero."""
         self.alone = moving <= 1 and self.fundamental
         self.nodes = self.few if self.alone else self.many
         self.before = 0 if self.alone else self.few
@@ -63,7 +63,7 @@ class Nodes:
 
 
 def _waves(count: int, harmonics: list[int]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Cosines and sines (node, harmonic) at so many nodes."""
+    """Cosines and sines (node, harmonic) of the harmonics at equally spaced nodes."""
     nodes = 2.0 * np.pi / count * (FIRST_NODE + np.arange(count))
     angle = np.outer(nodes, np.array(harmonics, dtype=np.float64))
     return np.cos(angle), np.sin(angle)
@@ -124,7 +124,7 @@ class Motion(Nodes):
         k_v: float,
         n_0: float,
     ) -> cython.int:
-        """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
+        """Takes a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
         self.taken = self.sampled = False
         self.moving = 0
         k: cython.int
@@ -158,7 +158,7 @@ class Motion(Nodes):
         return self.behaviour()
 
     def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: float, k_v: float) -> None:
-        """The coefficients of all rows."""
+        """Fills the coefficients of all rows."""
         k: cython.int
         i: cython.Py_ssize_t = first
         row: cython.int
@@ -181,7 +181,7 @@ class Motion(Nodes):
             i += 4
 
     def behaviour(self) -> cython.int:
-        """What the mean load and the sum of the amplitudes of its variation say."""
+        """OPEN, CLOSED or MIXED, from the mean load and the sum of its harmonics' amplitudes."""
         k: cython.int
         total: float = 0.0
         for k in range(self.count):
@@ -191,7 +191,7 @@ class Motion(Nodes):
         return CLOSED if self.mean[LOAD] >= total else MIXED
 
     def bound(self) -> None:
-        """`load_bound` and `limit_bound`: no value of the derivative of an order is greater.
+        """Fills `load_bound` and `limit_bound`, bounds of the derivatives of each order.
 
         They are sums of order**power times the amplitude; of a limit those of the motion and the load, so
         that they also bound their rounding.
@@ -212,7 +212,7 @@ class Motion(Nodes):
                 limit *= self.order[k]
 
     def sample(self) -> None:
-        """Load and limits with their derivatives at all nodes."""
+        """Fills the load and limits with their derivatives at all nodes."""
         if self.sampled:
             return
         self.sampled = True
@@ -263,8 +263,10 @@ class Motion(Nodes):
     def derivatives(
         self, row: cython.int, other: cython.int, c_1: float, s_1: float
     ) -> tuple[float, float, float]:
-        """Second derivative and slope of a row, and value of another, at an angle, of which the cosine and
-        the sine are given."""
+        """Second derivative and slope of a row, and the value of another, at an angle.
+
+        The angle is given by its cosine and sine.
+        """
         c: float = c_1
         s: float = s_1
         turned: float
@@ -308,14 +310,15 @@ class ZeroCrossings:
         self.last = self.last_value = self.last_slope = 0.0
 
     def begin(self) -> None:
-        """Forget the crossings of another motion."""
+        """Forgets the crossings found so far."""
         j: cython.int
         self.count = 0
         for j in range(self.motion.nodes):
             self.open[j] = 0
 
     def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> None:
-        """Append the crossings of LOAD or of a rate, as kinds `rising` and `falling`; -1 leaves one kind out.
+        """Appends the crossings of LOAD or of a rate, as kinds `rising` and `falling`; -1 leaves one kind
+        out.
 
         The search of LOAD, which has to come first, finds the intervals that are open, which others skip.
         """
@@ -331,7 +334,7 @@ class ZeroCrossings:
             self.interval(j)
 
     def bounds(self) -> None:
-        """Of the second and fourth derivative, and what the value may err by, at a rounded angle."""
+        """Sets bounds of the row's second and fourth derivatives, and of the rounding error of its value."""
         k: cython.int
         amplitude: float
         order: cython.int = 0 if self.row == LOAD else 1
@@ -348,7 +351,7 @@ class ZeroCrossings:
             self.fourth += amplitude * self.motion.order[k] * self.motion.order[k]
 
     def definite_node(self) -> cython.int:
-        """The last node at which the sign is certain, before the turn of nodes: -nodes to 0."""
+        """Number (-nodes to 0) of the last node with a certain sign, before the turn of nodes."""
         j: cython.int
         for j in range(self.motion.nodes):
             if fabs(self.motion.at[self.row, self.motion.nodes - 1 - j]) > self.noise:
@@ -356,7 +359,7 @@ class ZeroCrossings:
         return 0
 
     def interval(self, j: cython.int) -> None:
-        """Walk from node j to the next, halving where nothing is proved."""
+        """Walks from node j to the next, halving the interval until a crossing is excluded or isolated."""
         left: cython.int = j if j >= 0 else j + self.motion.nodes
         right: cython.int = left + 1 if left + 1 < self.motion.nodes else 0
         row: cython.int = self.row
@@ -393,7 +396,7 @@ class ZeroCrossings:
                 self.stack[depth, 0], self.stack[depth, 1], self.stack[depth, 2] = middle, value, slope
 
     def proved(self, length: float, g_0: float, d_0: float, g_1: float, d_1: float) -> bool:
-        """Whether the row has no zero inside, or is monotone, or is nothing but rounding."""
+        """Whether the row provably has no zero inside, is monotone, or is within rounding."""
         error: float = self.fourth * length * length * length
         b_1: float = g_0 + length * d_0 / 3.0
         b_2: float = g_1 - length * d_1 / 3.0
@@ -406,7 +409,7 @@ class ZeroCrossings:
         return min(d_0, middle, d_1) > error or max(d_0, middle, d_1) < -error
 
     def note(self, theta: float, value: float, slope: float) -> None:
-        """The next point of the walk; if its sign is certain and another, there was a crossing."""
+        """Takes the next point of the walk, and appends a crossing if its certain sign has changed."""
         if fabs(value) <= self.noise:
             return
         sign: cython.int = 1 if value > 0.0 else -1
@@ -430,7 +433,7 @@ class ZeroCrossings:
         g_high: float,
         d_high: float,
     ) -> float:
-        """Where a row takes a value, between angles where it is on different sides of it: Halley, bracketed.
+        """Angle at which a row takes a value, between angles on either side: Halley's method, bracketed.
 
         g_low, g_high: row minus level there; not zero, but the first where the row turns in between.
         """
@@ -471,7 +474,7 @@ class ZeroCrossings:
 @cython.nogil
 @cython.exceptval(check=False)
 def _of_one(found: ZeroCrossings, motion: Motion, begin: float) -> cython.void:
-    """Append those of a rate a cos(theta) - b sin(theta), within a turn from an angle; see `search`."""
+    """Appends the crossings of a rate a cos(theta) - b sin(theta) within one turn; see `search`."""
     i: cython.int
     a: float = motion.re[found.row, 0]
     b: float = motion.im[found.row, 0]
@@ -487,7 +490,7 @@ def _of_one(found: ZeroCrossings, motion: Motion, begin: float) -> cython.void:
 
 
 def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
-    """About where in [0, 1] the cubic of given values and slopes at 0 and 1 vanishes, beside 0 itself."""
+    """Approximate root in [0, 1] of a cubic with given values and slopes at the ends, other than 0 itself."""
     c_2: float = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
     c_3: float = d_0 + d_1 - 2.0 * (g_1 - g_0)
     if g_0 == 0.0:
@@ -504,7 +507,7 @@ def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
 
 
 def _last_root(c_0: float, c_1: float, c_2: float) -> float:
-    """The greatest root of a quadratic in [0.01, 1], else the middle."""
+    """The greatest root of a quadratic in [0.01, 1], or 0.5 if there is none."""
     root: float = c_1 * c_1 - 4.0 * c_0 * c_2
     if root < 0.0:
         return 0.5
@@ -525,7 +528,7 @@ MEETS = cython.declare(cython.int, 4)  # where a limit meets the slider: an even
 
 @cython.cclass
 class Events:
-    """Angles of a cycle in no order, up to `events`, with what a motion's limits are there.
+    """Angles of a cycle in no order, up to `events`, with the limits of the motion there.
 
     Attributes
     ----------
@@ -549,7 +552,7 @@ class Events:
         self.lower_rate, self.upper_rate, self.load_rate, self.motion_rate = np.zeros((4, size))
 
     def place(self, theta: float, kind: cython.int) -> cython.int:
-        """A new event at an angle: its limits and their rates."""
+        """Adds an event at an angle, with its limits and their rates, and returns its number."""
         c_1: float = cos(theta)
         s_1: float = sin(theta)
         c: float = c_1

@@ -143,14 +143,14 @@ def planar_gradients(
 def one_motion(
     u_x: npt.ArrayLike, u_y: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
 ) -> tuple[list[int], FloatArray, FloatArray]:
-    """The harmonics of one motion, its unknowns and its parameters, as the kernel takes them."""
+    """The harmonics, unknowns and parameters of a single contact motion, as the kernel takes them."""
     motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, None, numbers)
     motion.check_single()
     return motion.harmonics, motion.unknowns[0], motion.parameters[0]
 
 
 def _evaluated(motion: KernelArguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
-    """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
+    """Forces (point, equation) and, if wanted, their derivatives (point, equation, unknown)."""
     contact = PlanarContact(motion.harmonics, motion.outputs, options=FINE)
     forces, jacobian = motion.room(contact.equations, gradient)
     unsolved = contact.all(motion.unknowns, motion.parameters, forces, jacobian)

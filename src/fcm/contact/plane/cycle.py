@@ -1,4 +1,4 @@
-"""Kernel: one steady cycle of a contact in its plane, its forces summed.
+"""Kernel: the steady cycle of a contact in its plane, with sums for its forces.
 
 A contact that opens has forgotten everything when it closes again. One that does not open remembers where its
 slider was a period ago. So the steady cycle is a fixed point of the map P of that place over a period, which
@@ -41,7 +41,7 @@ UNSOLVED = cython.declare(cython.int, 5)
 
 @cython.cclass
 class PlanarCycle:
-    """The steady cycle of a motion; its pieces are those of `slider`, its place of rest that of `resting`.
+    """The steady cycle of a motion; its pieces are those of `slider`, its resting place that of `resting`.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class PlanarCycle:
         self.sides, self.replaced = 0, -1
 
     def solve(self, behaviour: cython.int, s_x: float, s_y: float, gradient: bool) -> cython.int:
-        """The cycle of the motion that is loaded, of a slider that began at a place, from the means of u."""
+        """Solves the cycle of the loaded motion, for a slider that began at a place from the means of u."""
         i: cython.int
         j: cython.int
         self.periods = self.slider.pieces = self.slider.panels = 0
@@ -118,7 +118,7 @@ class PlanarCycle:
         return self.kind
 
     def opening(self, gradient: bool) -> cython.int:
-        """From the first closing to the last opening."""
+        """Solves a cycle with separations, from the first closing to the last opening."""
         i: cython.int
         at: cython.int
         turn: float = 0.0
@@ -150,7 +150,10 @@ class PlanarCycle:
         return UNSOLVED if self.slider.failed else MIXED
 
     def closed(self, gradient: bool) -> cython.int:
-        """A period from the angle at which the disc is least, over and over."""
+        """Solves a cycle without separation: repeats periods until the slider returns to its start.
+
+        A period begins at the angle at which the slip disc is smallest.
+        """
         i: cython.int
         j: cython.int
         begin: float = 0.0
@@ -232,7 +235,7 @@ class PlanarCycle:
         return UNSOLVED if self.slider.failed else MIXED
 
     def gather(self, gradient: bool) -> None:
-        """Let the next period be summed, and nothing that was before it."""
+        """Clears the sums and lets the next period be summed."""
         self.slider.sums.begin()
         self.slider.sums.contact(0.0, TWO_PI)
         if gradient:
@@ -241,7 +244,7 @@ class PlanarCycle:
         self.slider.derivatives.take(0, self.slider.derivatives.unknowns if gradient else 2)
 
     def bracket(self, w_x: float, w_y: float) -> bool:
-        """Whether two places of the slider were moved towards each other in a period; `place` lies between.
+        """Whether a period moves two places of the slider towards each other; `place` then lies between them.
 
         Where the slider slips hardly less than all the time, a period moves it from one side of its steady
         place far to the other side, which Newton's method does not see. A period takes all places to a curve,
@@ -279,14 +282,14 @@ class PlanarCycle:
         return True
 
     def between(self, w_x: float, w_y: float) -> bool:
-        """Whether a place is between those two."""
+        """Whether a place lies between the two bracketing places, along their line."""
         d_x: float = self.side[1, 0] - self.side[0, 0]
         d_y: float = self.side[1, 1] - self.side[0, 1]
         along: float = (w_x - self.side[0, 0]) * d_x + (w_y - self.side[0, 1]) * d_y
         return 0.0 <= along <= d_x * d_x + d_y * d_y
 
     def period(self, begin: float, w_x: float, w_y: float) -> float:
-        """Once around from a place of the slider; how far it is from there at the end."""
+        """Passes one period from a place of the slider; returns its distance from there at the end."""
         self.slider.pieces = self.slider.panels = 0
         if self.slider.varying:
             self.slider.derivatives.start()

@@ -28,7 +28,7 @@ from fcm.contact.plane.options import OPTIONS, PlanarOptions
 
 @cython.cclass
 class PlanarContact:
-    """Contacts in a plane with given harmonics of their motion and of their forces, one after the other.
+    """Kernel of contacts in a plane with given harmonics of motion and forces, one after the other.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class PlanarContact:
         start_y: float = 0.0,
         gradient: bool = True,
     ) -> int:
-        """`evaluate`, called from Python."""
+        """Calls `evaluate` from Python."""
         kind: int = self.evaluate(x, 0, mu, k_u, k_v, n_0, start_x, start_y, gradient)
         return kind
 
@@ -87,7 +87,11 @@ class PlanarContact:
         forces: cython.double[:, ::1],
         jacobians: cython.double[:, :, ::1],
     ) -> int:
-        """`forces` (point, equation) of motions (point, unknown), and mu, k_u, k_v, n_0, start_x, start_y.
+        """Fills `forces` (point, equation) of motions (point, unknown), with mu, k_u, k_v, n_0, start_x,
+        start_y.
+
+        `jacobians` (point, equation, unknown) is filled as well, unless it has no points. Returns the number
+        of a point without a steady cycle, or -1.
 
         And `jacobians` (point, equation, unknown), unless there is no room for them. Returns the number of a
         point of which no steady cycle was found, or -1.
@@ -124,7 +128,7 @@ class PlanarContact:
         start_y: float,
         gradient: bool,
     ) -> cython.int:
-        """Forces of the motion x[first:], in `forces`, and if wanted their derivatives, in `jacobian`.
+        """Evaluates the motion x[first:]: `forces`, and if wanted their derivatives in `jacobian`.
 
         Parameters
         ----------
@@ -169,7 +173,7 @@ class PlanarContact:
         return self.kind
 
     def stick(self) -> None:
-        """The slider rests."""
+        """Sets the forces of a contact whose slider rests."""
         i: cython.int
         k: cython.int
         row: cython.Py_ssize_t
@@ -183,7 +187,7 @@ class PlanarContact:
                     self.forces[row + 2], self.forces[row + 3] = self.motion.re[Y, k], self.motion.im[Y, k]
 
     def slip(self) -> None:
-        """The forces from their integrals."""
+        """Sets the forces from their integrals."""
         i: cython.int
         h: cython.int
         row: cython.int
@@ -219,7 +223,7 @@ class PlanarContact:
             self.press()
 
     def press(self) -> None:
-        """The normal force of a contact that never opens: that of its motion, and nothing else."""
+        """Sets the normal force of a contact that never opens, which is that of its motion alone."""
         i: cython.int
         k: cython.int
         self.forces[2] = self.motion.mean[LOAD]
@@ -230,7 +234,7 @@ class PlanarContact:
                     self.forces[8 + 6 * i] = self.motion.im[LOAD, k]
 
     def stick_gradient(self, s_x: float, s_y: float) -> None:
-        """Of a contact that never slips."""
+        """Sets the derivatives of a contact that never slips."""
         i: cython.int
         k: cython.int
         p: cython.int
@@ -249,7 +253,7 @@ class PlanarContact:
             self.held_by_two()
 
     def held_by_one(self, s_x: float, s_y: float) -> None:
-        """W = s + (|U - s| - R) e: at the point of a disc nearest to its start, the farthest such disc."""
+        """Derivatives where one disc holds the slider, at W = s + (|U - s| - R) e nearest to its start."""
         j: cython.int
         self.motion.place(SCAN, self.cycle.resting.basis[0, 3])
         self.motion.bend(SCAN)
@@ -299,7 +303,7 @@ class PlanarContact:
             self.jacobian[0, j], self.jacobian[1, j] = -w_x, -w_y
 
     def held_by_two(self) -> None:
-        """The slider is where two circles meet: e . (d U - d W) = d R of both."""
+        """Derivatives where the slider rests where two circles meet: e . (d U - d W) = d R of both."""
         i: cython.int
         j: cython.int
         x: float
@@ -330,7 +334,7 @@ class PlanarContact:
                 self.jacobian[1, j] = det * (e_x * self.derivatives.turn[j] - a * x)
 
     def rescale(self, mu: float, k_u: float, k_v: float, gradient: bool) -> None:
-        """From forces divided by the greatest amplitude, and derivatives by forces, to those asked for."""
+        """Scales the dimensionless forces and derivatives to the units of the arguments."""
         i: cython.int
         p: cython.int
         row: cython.int

@@ -51,7 +51,7 @@ SLIPS_Y = cython.declare(cython.int, 3)
 
 @cython.cclass
 class Sums:
-    """Sums over the pieces of a cycle, cosine and sine (function, m).
+    """Cosine and sine integrals (function, m) over the pieces of a cycle.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Sums:
             self.x, self.y, self.c, self.s = np.zeros((4, STAGES))
 
     def begin(self) -> None:
-        """Nothing yet."""
+        """Sets all sums to zero."""
         m: cython.int
         p: cython.int
         for p in range(4):
@@ -91,7 +91,7 @@ class Sums:
         self.work = self.path = 0.0
 
     def powers(self, into: cython.int, c_1: float, s_1: float) -> None:
-        """cos(m theta) and sin(m theta) of all m."""
+        """Fills cos(m theta) and sin(m theta) for all m, into one slot."""
         m: cython.int
         c: float = 1.0
         s: float = 0.0
@@ -103,7 +103,7 @@ class Sums:
             self.power_cos[into, m], self.power_sin[into, m] = c, s
 
     def contact(self, begin: float, end: float) -> None:
-        """Add angles at which the contact is closed."""
+        """Adds an interval of angles in which the contact is closed."""
         m: cython.int
         self.powers(0, cos(begin), sin(begin))
         self.powers(1, cos(end), sin(end))
@@ -113,7 +113,7 @@ class Sums:
             self.sin_sum[CONTACT, m] += (self.power_cos[0, m] - self.power_cos[1, m]) * self.reciprocal[m]
 
     def stick(self, begin: float, end: float, w_x: float, w_y: float) -> None:
-        """Add a stick at a place of the slider."""
+        """Adds a stick with the slider at a place."""
         m: cython.int
         c: float = end - begin
         s: float = 0.0
@@ -132,7 +132,7 @@ class Sums:
                 self.held_y_im[m] -= w_y * s
 
     def slip(self, panel: Panel) -> None:
-        """Add a panel of slip, to `lanes`."""
+        """Adds a panel of slip to `lanes`."""
         i: cython.int
         m: cython.int
         w: float
@@ -163,7 +163,7 @@ class Sums:
                 c = w
 
     def total(self) -> None:
-        """The sums over slips from those of each node."""
+        """Adds the slip sums of all nodes up."""
         m: cython.int
         i: cython.int
         for m in range(self.highest + 1):
@@ -174,7 +174,7 @@ class Sums:
                 self.sin_sum[SLIPS_Y, m] += self.lanes[4 * m + 3, i]
 
     def product(self, h: cython.int, which: cython.int, row: cython.int) -> None:
-        """`re`, `im`: the integral of a row of the motion times a function times exp(-i h theta)."""
+        """Sets `re`, `im`: the integral of a row of the motion times a function times exp(-i h theta)."""
         k: cython.int
         d: cython.int
         p: cython.int
@@ -197,7 +197,7 @@ class Sums:
 
 
 def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
-    """Zeros (rows, width) that begin where a line of the processor's memory does."""
+    """Zeros (rows, width) aligned to a cache line of the processor."""
     room = np.zeros(rows * width + 8)
     first = -room.ctypes.data // 8 % 8
     return room[first : first + rows * width].reshape(rows, width)
@@ -205,7 +205,7 @@ def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
 
 @cython.cclass
 class Derivatives:
-    """`jacobian` (force, unknown), in the order of `PlanarContact`, while its rows are made.
+    """Builds `jacobian` (force, unknown), in the order of `PlanarContact`.
 
     Columns 0 and 1, which are those of the means of u, are of the place of the slider at the start until
     `settle`: that it moves one way is that u moves the other. Only columns from `low` to `high` are made.
@@ -234,7 +234,7 @@ class Derivatives:
         self.low, self.high = 0, self.unknowns
 
     def fill(self, value: float) -> None:
-        """All of them the same."""
+        """Sets all derivatives to one value, and clears the gathered ones."""
         i: cython.Py_ssize_t
         j: cython.int
         for i in range(3 + 6 * self.outputs):
@@ -245,7 +245,7 @@ class Derivatives:
                 self.gathered[i, j] = 0.0
 
     def take(self, low: cython.int, high: cython.int) -> None:
-        """The columns that are made, from a slider at rest that nothing has moved."""
+        """Chooses the columns that are built, and starts from a resting slider."""
         j: cython.int
         self.low, self.high = low, high
         for j in range(low):
@@ -253,7 +253,7 @@ class Derivatives:
         self.start()
 
     def start(self) -> None:
-        """The slider moves by the two unit changes of its place."""
+        """Sets the derivatives of the slider to the two unit changes of its own place."""
         j: cython.int
         for j in range(self.low, self.high):
             self.w_x[j] = self.w_y[j] = 0.0
@@ -261,7 +261,7 @@ class Derivatives:
             self.w_x[0] = self.w_y[1] = 1.0
 
     def moved(self) -> None:
-        """`u_x`, `u_y`, `r`: derivatives of U and R at the angle in SCAN."""
+        """Fills `u_x`, `u_y`, `r`: derivatives of U and R at the angle in SCAN."""
         j: cython.int
         k: cython.int
         c: float
@@ -279,7 +279,7 @@ class Derivatives:
             self.r[j + 4], self.r[j + 5] = c, -s
 
     def slide(self, e_x: float, e_y: float) -> None:
-        """A stick that ends at the angle in SCAN, in a direction."""
+        """Derivatives of the slip direction where a stick ends, at the angle in SCAN."""
         j: cython.int
         self.moved()
         by: float = 1.0 / self.motion.value[SCAN, 2]
@@ -287,7 +287,7 @@ class Derivatives:
             self.turn[j] = by * (e_x * (self.u_y[j] - self.w_y[j]) - e_y * (self.u_x[j] - self.w_x[j]))
 
     def rest(self, e_x: float, e_y: float) -> None:
-        """A slip that ends at the angle in SCAN, in a direction."""
+        """Derivatives of the slider's place where a slip ends, at the angle in SCAN."""
         j: cython.int
         across: float
         self.moved()
@@ -298,7 +298,7 @@ class Derivatives:
             self.w_y[j] = self.u_y[j] - self.r[j] * e_y - across * e_x
 
     def close(self) -> None:
-        """The contact closes at the angle in SCAN, and sticks."""
+        """Derivatives of the slider's place where the contact closes and sticks, at the angle in SCAN."""
         j: cython.int
         later: float
         self.moved()
@@ -313,7 +313,7 @@ class Derivatives:
             self.w_y[j] = self.u_y[j] + y_1 * later
 
     def close_sliding(self, e_x: float, e_y: float, rate: float) -> None:
-        """The contact closes at the angle in SCAN, and slips, its direction turning at a rate."""
+        """Derivatives of the slip direction where the contact closes and slips, turning at a rate."""
         j: cython.int
         k: cython.int
         c: float
@@ -335,7 +335,7 @@ class Derivatives:
             self.turn[j + 4], self.turn[j + 5] = -by * rate * c, by * rate * s
 
     def greatest(self) -> float:
-        """The greatest derivative of the direction."""
+        """Greatest magnitude of a derivative of the slip direction."""
         j: cython.int
         most: float = 0.0
         for j in range(self.low, self.high):
@@ -343,7 +343,7 @@ class Derivatives:
         return most
 
     def rest_of_turns(self) -> float:
-        """The greatest `rest` of the derivatives of t in the panel.
+        """Greatest `rest` of the derivatives of t in the panel: what its polynomial leaves out.
 
         Where the load is small beside the motion a direction that is off fades at once. Then derivatives go
         with the motion, and panels need not be as short as what has faded.
@@ -373,7 +373,10 @@ class Derivatives:
         return most
 
     def carry(self, gather: bool) -> None:
-        """Through the panel, whose inverse is that of its last step; if wanted their part of the Jacobian."""
+        """Carries the derivatives through the panel and, if wanted, gathers their part of the Jacobian.
+
+        The inverse of the panel's last Newton step is used.
+        """
         by: float = 2.0 / (1.0 + self.panel.tangent[STAGES] * self.panel.tangent[STAGES])
         if not self.panel.driven:
             self.drive()
@@ -387,7 +390,7 @@ class Derivatives:
             self.solve(gather, by)
 
     def drive(self) -> None:
-        """`block`: what t at the nodes has from the direction at the start, and from the motion."""
+        """Fills `block`: right sides for the derivatives of t at the nodes, by start direction and motion."""
         i: cython.int
         j: cython.int
         k: cython.int
@@ -426,7 +429,7 @@ class Derivatives:
                 self.block[i, j + 3] -= across_y * c
 
     def solve(self, gather: bool, by: float) -> None:
-        """`turn` at the end of the panel; if wanted what derivatives of t at the nodes add is gathered."""
+        """Sets `turn` at the end of the panel and, if wanted, gathers what t at the nodes contributes."""
         i: cython.int
         j: cython.int
         p: cython.int
@@ -442,7 +445,7 @@ class Derivatives:
                         self.gathered[p, j] += self.weight[p, i] * t
 
     def weigh(self) -> None:
-        """`weight`: what derivatives of t at the nodes add to R xi e_perp exp(-i h theta), integrated."""
+        """Fills `weight`, by which derivatives of t at the nodes enter the friction integrals."""
         i: cython.int
         m: cython.int
         row: cython.int
@@ -473,7 +476,7 @@ class Derivatives:
                 self.weight[row + 2, i], self.weight[row + 3, i] = y * c, -y * s
 
     def stick(self, begin: float, end: float) -> None:
-        """Take from the derivatives of the friction what the place of the slider adds to them."""
+        """Subtracts from the friction derivatives what the slider's place in a stick contributes."""
         j: cython.int
         m: cython.int
         h: cython.int
@@ -497,7 +500,7 @@ class Derivatives:
                 self.jacobian[row + 3, j] -= s * self.w_y[j]
 
     def direct(self) -> None:
-        """Add what the forces have from the motion and the load at the same angle."""
+        """Adds the derivatives of the forces by the motion and load at the same angle."""
         i: cython.int
         h: cython.int
         rows: cython.int
@@ -523,7 +526,7 @@ class Derivatives:
         part: cython.int,
         factor: float,
     ) -> None:
-        """Of one harmonic of a force, in `rows` rows, by all of u_x, u_y or v (parts 0 to 2)."""
+        """Adds the derivatives of one force harmonic, in `rows` rows, by u_x, u_y or v (parts 0 to 2)."""
         k: cython.int
         d: cython.int
         p: cython.int
@@ -552,7 +555,7 @@ class Derivatives:
                 self.jacobian[row + 1, column + 1] += c - cos_p
 
     def settle(self, kept: bool) -> None:
-        """Give the slider at the start the derivatives that it has at the end; W = P(W_0) of a period."""
+        """Closes the period, W = P(W_0): the slider's derivatives at the start become those at the end."""
         i: cython.Py_ssize_t
         j: cython.int
         row: cython.Py_ssize_t
@@ -576,7 +579,7 @@ class Derivatives:
             self.jacobian[i, 0] = self.jacobian[i, 1] = 0.0
 
     def rescale(self, by_motion: float, by_load: float, load_by_load: float) -> None:
-        """All derivatives: of the friction by u and by v, and of the load by v; `w_x`, `w_y` are lost."""
+        """Scales the derivatives of friction by u and v, and of the load by v; overwrites `w_x`, `w_y`."""
         i: cython.Py_ssize_t
         j: cython.int
         p: cython.int

@@ -56,7 +56,7 @@ class PlanarLoop(Frozen, LoadedPieces):
     _panels: FloatArray = field(repr=False)  # (panel, 5 + s): as `Slider.record`
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
-        """u_x and u_y [length] at each angle theta [rad], (..., 2)."""
+        """Displacements u_x and u_y [length] at each angle theta [rad], (..., 2)."""
         return np.stack([waves_at(self.u_x, theta), waves_at(self.u_y, theta)], axis=-1)
 
     def direction(self, theta: npt.ArrayLike) -> FloatArray:
@@ -164,7 +164,7 @@ def planar_loop(
 
 
 def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> PlanarContact:
-    """The kernel with the steady cycle, all panels of which are recorded."""
+    """The kernel with the steady cycle solved and all its panels recorded."""
     most = LOOP.recorded_panels
     mu, k_u, k_v, n_0, *start = parameters.tolist()
     while True:
@@ -178,7 +178,7 @@ def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> Plan
 
 
 def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float]]]:
-    """(state, angle at which it begins, place of the slider), without what is rounding, neighbours joined."""
+    """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
     slider = contact.cycle.slider
     begin = np.asarray(slider.begin)[: slider.pieces]
     lengths = np.diff(begin, append=begin[0] + 2.0 * np.pi)
@@ -198,7 +198,7 @@ def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float
 
 
 def _greatest(loop: PlanarLoop, harmonics: int) -> float:
-    """The greatest |f|: at a transition, or near the greatest of many angles, by parabolas."""
+    """Greatest magnitude |f|: at a transition, or by fine sampling near the greatest of many angles."""
     step = 2.0 * np.pi / (LOOP.angles_per_harmonic * max(harmonics, 1))
     theta = np.concatenate((loop.angles, np.arange(0.0, 2.0 * np.pi, step)))
     size = np.hypot(*np.moveaxis(loop.force(theta), -1, 0))
@@ -208,7 +208,7 @@ def _greatest(loop: PlanarLoop, harmonics: int) -> float:
 
 
 def directions(panels: FloatArray, theta: FloatArray) -> FloatArray:
-    """Of slip (point, 2), at an angle of each of these panels (point, 5 + s): as `Slider.record`."""
+    """Directions of slip (point, 2) at an angle in each given panel (point, 5 + s), see `Slider.record`."""
     begin, length, left = panels[:, 0], panels[:, 1], panels[:, 4]
     part = np.clip((theta - begin) / length, 0.0, 1.0)
     graded = left > 0.0
@@ -219,7 +219,7 @@ def directions(panels: FloatArray, theta: FloatArray) -> FloatArray:
 
 
 def between(tangent: FloatArray, part: FloatArray) -> FloatArray:
-    """The polynomials of panels (point, s), which are 0 at their start, at a part of each."""
+    """Values of the panels' polynomials (point, s), 0 at their start, at a fraction of each panel."""
     rule = radau(STAGES)
     nodes = np.concatenate(([0.0], rule.nodes))
     values = np.concatenate((np.zeros((tangent.shape[0], 1)), tangent), axis=1)

@@ -57,7 +57,7 @@ FAR = cython.declare(cython.double, 1e300)
 
 @cython.cclass
 class PlanarMargins:
-    """`find` gives those of a motion: value, kind, angle (margin,), the first `count` of `most`.
+    """`find` computes the margins of a motion: value, kind, angle (margin,), the first `count` of `most`.
 
     Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
@@ -74,7 +74,7 @@ class PlanarMargins:
     def find(
         self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> cython.int:
-        """Of the motion x[first:] of a contact; see `PlanarContact`."""
+        """Computes the margins of the motion x[first:] of a contact; see `PlanarContact`."""
         behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
         self.count = 0
         if behaviour == UNKNOWN:
@@ -102,7 +102,9 @@ class PlanarMargins:
     def overlap(
         self, x: cython.double[::1], mu: float, k_u: float, k_v: float, n_0: float, start: bool
     ) -> float:
-        """How far all discs of a motion x have to grow to have a place in common [force]; see `resting`.
+        """How far all discs of a motion x must grow to share a place [force]; see `resting`.
+
+        With `start` the discs must contain the place where the slider began.
 
         With start, so that they hold the slider where it began.
         """
@@ -120,7 +122,7 @@ class PlanarMargins:
         n_0: float,
         start: cython.bint,
     ) -> None:
-        """Let `resting` look at a motion."""
+        """Lets `resting` examine a motion."""
         self.motion.load(x, 0, mu, k_u, k_v, n_0)
         self.resting.sampled = False
         if start:
@@ -130,13 +132,16 @@ class PlanarMargins:
             self.resting.encloses(True)
 
     def note(self, kind: cython.int, angle: float, value: float) -> None:
-        """One more, if there is room."""
+        """Appends a margin, if there is room."""
         if self.count < self.most:
             self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
             self.count += 1
 
     def loads(self, behaviour: cython.int) -> None:
-        """Extremes of the load; where they cannot matter, numbers of their sign."""
+        """Appends the margins of closing and opening, from the extremes of the load.
+
+        Where the extremes cannot matter, only the sign of a margin is set.
+        """
         i: cython.int
         value: float
         self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
@@ -153,7 +158,7 @@ class PlanarMargins:
             self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
 
     def rests(self, s_x: float, s_y: float) -> None:
-        """Of a contact that never slips: how far it is from that, and the start from where it cannot stay."""
+        """Appends the margins of a contact that never slips: to slip, and of its start being left."""
         if not self.resting.sampled:  # far inside
             self.note(SLIPS, 0.0, -PAST)
             self.note(STARTS, 0.0, PAST)
@@ -178,7 +183,7 @@ class PlanarMargins:
         return room
 
     def weaker(self, s_x: float, s_y: float) -> float:
-        """How far the weaker of two discs that hold a place pushes it: w - s = p_1 e_1 + p_2 e_2."""
+        """Push of the weaker of two discs that hold a place: w - s = p_1 e_1 + p_2 e_2."""
         a_x: float = self.resting.basis[0, 0] - self.resting.w_x
         a_y: float = self.resting.basis[0, 1] - self.resting.w_y
         b_x: float = self.resting.basis[1, 0] - self.resting.w_x
@@ -195,7 +200,7 @@ class PlanarMargins:
         return least
 
     def pushes(self) -> None:
-        """Of every stick: the discs that nearly touch its slider, and how far the next slip takes it.
+        """Appends for every stick the discs that nearly touch its slider, and the shift by the next slip.
 
         If there is one stick alone, which the beginning of a period may cut in two, or none but by rounding,
         the slip takes the slider back to where it was, and tells nothing.
@@ -218,7 +223,7 @@ class PlanarMargins:
                 self.note(PUSHES, halt, self.outside(p, halt))
 
     def within(self, p: cython.int, end: float) -> None:
-        """The discs within a stick that come nearest to its slider."""
+        """Appends the discs within a stick that come nearest to its slider."""
         begin: float = self.cycle.slider.begin[p]
         step: float = 1.0 / (self.steps * max(self.motion.highest, 1))
         steps: cython.int = cython.cast(cython.int, (end - begin) / step) + 2
@@ -237,7 +242,7 @@ class PlanarMargins:
             older, old = old, new
 
     def outside(self, p: cython.int, theta: float) -> float:
-        """How far the slider of a stick is outside the disc of an angle."""
+        """Distance of the slider of a stick outside the disc of an angle; negative inside."""
         self.motion.place(SCAN, theta)
         gap: float = hypot(
             self.motion.value[SCAN, 0] - self.cycle.slider.rest_x[p],
@@ -249,7 +254,7 @@ class PlanarMargins:
 
 @cython.cclass
 class PlanarMeasures:
-    """Of the cycle that a contact has last solved; numbers in the units of its arguments.
+    """Forces, energy and states of the cycle that a contact has solved last, in the units of its arguments.
 
     Attributes
     ----------
@@ -271,7 +276,7 @@ class PlanarMeasures:
         self.pieces, self.state = 0, np.zeros(cycle.slider.capacity + 1, dtype=np.intc)
 
     def bear(self, mu: float, k_u: float) -> None:
-        """All attributes, of the cycle as it is."""
+        """Computes all attributes of the present cycle."""
         rubs: cython.bint = mu * k_u > 0.0
         length: float = self.motion.scale / k_u if k_u > 0.0 else 0.0
         self.greatest_friction = self.dissipation = self.slip_path = 0.0
@@ -284,7 +289,7 @@ class PlanarMeasures:
             self.slip_path = self.cycle.slider.sums.path * length
 
     def loads(self) -> None:
-        """The greatest load, at one of its extremes."""
+        """Computes the greatest load, at one of its extremes."""
         i: cython.int
         value: float
         self.motion.normal.sample()
@@ -297,7 +302,7 @@ class PlanarMeasures:
         self.greatest_load = max(high, 0.0) * self.motion.load_scale
 
     def friction(self) -> None:
-        """The greatest magnitude in each piece: at its ends, or where it rises no more."""
+        """Computes the greatest magnitude of friction: at the ends of a piece, or where it stops growing."""
         p: cython.int
         i: cython.int
         n: cython.int = self.cycle.slider.pieces
@@ -319,7 +324,7 @@ class PlanarMeasures:
         self.greatest_friction = most * self.motion.scale
 
     def top(self, p: cython.int, low: float, high: float, before: float) -> float:
-        """The magnitude where it ceases to grow, from the growth there by false position (Illinois)."""
+        """Greatest magnitude within an interval, where its growth vanishes, by false position (Illinois)."""
         i: cython.int
         after: float = self.growth
         most: float = 0.0
@@ -351,7 +356,10 @@ class PlanarMeasures:
         return 0.0
 
     def states(self, rubs: cython.bint) -> None:
-        """Without what is rounding, neighbours joined, and without friction closed instead of slipping."""
+        """Fills the states without those within rounding, equal neighbours joined.
+
+        Without friction a closed contact is not called slipping.
+        """
         p: cython.int
         i: cython.int
         state: cython.int

@@ -1,4 +1,4 @@
-"""How exactly the motion of a contact in its plane is followed."""
+"""Options for the motion of a contact in its plane."""
 
 from __future__ import annotations
 
@@ -8,62 +8,72 @@ from fcm.frozen import Frozen
 
 
 class PlanarOptions(Frozen):
-    """Tolerances and limits of the kernel of contacts in a plane; angles in radians.
+    """Tolerances and limits of the kernel of contacts in a plane; lengths of panels are angles in radians.
 
     Of the panels by which slip is followed
     ---------------------------------------
-    tolerance : what the last coefficient of a panel's polynomial may be, times its radius over the greatest.
-        Forces err by about 1e-5 of that, 1e-3 at worst, their derivatives by more, see below.
-    panel_length : how long a panel may be, times the highest harmonic that is integrated.
-    coefficient_floor : of the last coefficient but one, what the last is taken for at least, as it may vanish
-        by chance.
-    last_change : one more step of Newton's method is the last where the change of t that it will make is less
-        than the square of this.
-    zero_change : a change after which there is none.
-    frozen_change : a change after which the derivatives of the equations are kept.
-    max_iterations : steps of it; where it takes more, the panel is too long.
-    max_initial_tangent : t at the end of a panel, at most, to begin with.
-    max_tangent : of t; directions are then within 100 degrees of that at the start.
-    max_growth : exponent by which directions may part in a panel.
-    derivative_fraction : what its derivatives leave out counts by this part of what the polynomial does;
-        where derivatives are wanted.
-    light_load_tolerance : times the length of a panel, where the load is small: tolerance of derivatives
-        there.
-    min_factor, max_factor, safety : limits of the ratio of two lengths, and what it is multiplied by.
-    grading_length : before it opens, times the highest harmonic, panels are graded towards that.
-    end_factor : times the tolerance, the force that a last panel is left, up to where it opens.
-    impulse_tolerance : the derivative of the impulse by the direction that is left then, where derivatives
-        are wanted.
-    max_grading : of what is left until it opens, a graded panel takes at most.
-    zero_radius : of its bound, a radius that is none.
-    negligible_length : before it opens, where the force adds nothing any more.
+    tolerance : last coefficient of a panel's polynomial, times its radius relative to the greatest, up to
+        which the panel is accepted. Forces err by about 1e-5 of that, 1e-3 at worst, their derivatives by
+        more, see below.
+    panel_length : longest panel, times the highest harmonic that is integrated.
+    coefficient_floor : least value taken for the last coefficient, relative to the last but one: it may
+        vanish by chance.
+    last_change : square root of the change of t expected next, below which the next step of Newton's method
+        is the last.
+    zero_change : change of t in a step of Newton's method, below which there is no further step.
+    frozen_change : change of t in a step, up to which the derivatives of the equations are kept for the next.
+    max_iterations : most steps of Newton's method; where it takes more, the panel is too long.
+    max_initial_tangent : greatest t at the end of a panel in the first guess.
+    max_tangent : value of t from which on a panel is too long; below it directions are within 100 degrees of
+        that at the start.
+    max_growth : exponent by which directions may part in a panel; with more it is too long.
+    derivative_fraction : weight of the derivatives' error in that of a panel, where derivatives are wanted.
+    light_load_tolerance : factor on the length of a panel: their product is the least weight of its error
+        where the load is small, for the derivatives there.
+    min_factor, max_factor, safety : least and greatest ratio of a panel's length to the one before, and
+        factor on what the tolerance allows.
+    grading_length : distance from where the contact opens, times the highest harmonic, within which panels
+        are graded towards that.
+    end_factor : force, relative to the tolerance, that is left for a last panel up to where the contact
+        opens.
+    impulse_tolerance : derivative of the impulse by the direction that is left for it, where derivatives are
+        wanted.
+    max_grading : longest graded panel, relative to the distance from where the contact opens.
+    zero_radius : radius of a disc, relative to its bound, up to which it counts as zero.
+    negligible_length : distance from where the contact opens, within which the force adds nothing any more.
 
     Of sticks
     ---------
-    min_step : of a step, or of a slip.
-    first_step : from the start of a stick, at least; doubled while no slip follows it.
-    edge_tolerance : of the square of the radius, by which a slider within its disc lies on the edge of it.
+    min_step : shortest step of a stick, and shortest slip.
+    first_step : shortest first step of a stick; doubled while no slip follows the stick.
+    edge_tolerance : distance from the edge of its disc, in terms of the squared radius, up to which a slider
+        within it lies on the edge.
 
     Of steady cycles
     ----------------
-    max_periods : that are gone through in search of one.
-    double_point_tolerance : of the radius, by which a slider may be off after a period that nothing improves:
-        at the slip limit itself the fixed point is double, and as uncertain as the square root of the
-        rounding.
-    slight_miss : of the radius, by which the discs miss one place where a slider hardly slips.
-    min_depth : of the radius, by which that place lies within one of the discs, at least.
-    min_way : of the radius, a way in a period that is summed, and no difference of places.
+    max_periods : most periods that are computed in search of a steady cycle.
+    double_point_tolerance : change of a slider's place in a period, relative to the radius, up to which it is
+        steady where nothing improves it: at the slip limit itself the fixed point is double, and as uncertain
+        as the square root of the rounding.
+    slight_miss : distance by which the discs miss one place, relative to the radius, below which a slider
+        hardly slips.
+    min_depth : least depth of that place within one of the discs, relative to the radius.
+    min_way : way of a slider in a period, relative to the radius, below which the way is summed, and is no
+        difference of places.
 
     Of a slider at rest, and of what is told
     ----------------------------------------
-    max_exchanges : of the discs that hold it.
-    max_halvings : of a step between two nodes, after which its cubic is exact.
-    disc_tolerance : half of what is between two discs that are one.
-    min_bend : of the distance by which it is within a disc, over the radius: less, and no angle is its own.
-    samples_per_radian : to a radian of the highest harmonic, between which an extreme is sought.
-    min_state_length : a state that is shorter is rounding.
-    smooth_radius : of a disc beside the motion, which is then as none.
-    min_motion : motion that is smaller than its mean by that is none.
+    max_exchanges : most exchanges of the discs that hold a slider at rest.
+    max_halvings : most halvings of a step between two nodes, after which its cubic is exact.
+    disc_tolerance : half the angle between two discs, below which they are the same.
+    min_bend : curvature of a slider's distance from the edge of a disc, relative to the radius, below which
+        the disc has no angle of its own.
+    samples_per_radian : number of samples for each radian of the highest harmonic, among which an extreme is
+        looked for.
+    min_state_length : length of a state below which it is rounding.
+    smooth_radius : radius of the disc, relative to the motion, up to which the contact slides without
+        friction.
+    min_motion : motion relative to its mean, below which there is none.
     """
 
     tolerance: float = 2e-7
@@ -106,10 +116,11 @@ class PlanarOptions(Frozen):
 
 
 class LoopOptions(Frozen):
-    """How a loop is read from a cycle.
+    """Options on how a loop of forces is read from a cycle.
 
-    recorded_panels : of slip that are recorded at first.
-    angles_per_harmonic : of the highest harmonic, at which the greatest force is looked for.
+    recorded_panels : number of panels of slip that are recorded at first.
+    angles_per_harmonic : number of angles for each period of the highest harmonic, at which the greatest
+        force is looked for.
     """
 
     recorded_panels: int = 1000

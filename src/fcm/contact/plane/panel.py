@@ -114,7 +114,7 @@ class PlaneMotion:
         k_v: float,
         n_0: float,
     ) -> cython.int:
-        """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
+        """Takes a contact and returns OPEN, CLOSED or MIXED; UNKNOWN where a number is not finite."""
         k: cython.int
         p: cython.int
         i: cython.Py_ssize_t = first + 3
@@ -152,7 +152,7 @@ class PlaneMotion:
         return self.normal.load(self.line, 0, 1.0, 0.0, k_v, n_0)
 
     def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: float, k_v: float) -> None:
-        """The coefficients of all rows."""
+        """Fills the coefficients of all rows."""
         k: cython.int
         i: cython.Py_ssize_t = first
         for k in range(self.count):
@@ -165,7 +165,7 @@ class PlaneMotion:
             i += 6
 
     def bound(self) -> None:
-        """Sums of order**power times the amplitude."""
+        """Fills bounds of motion and reach: sums of order**power times the amplitude."""
         k: cython.int
         p: cython.int
         motion: float
@@ -184,12 +184,12 @@ class PlaneMotion:
         self.size, self.reach = self.motion_bound[0], self.reach_bound[0]
 
     def rubs(self) -> bool:
-        """Whether there is friction that is more than rounding beside the motion."""
+        """Whether the friction is more than rounding beside the motion."""
         rubs: bool = self.reach > self.smooth * self.size
         return rubs
 
     def place(self, slot: cython.int, theta: float) -> None:
-        """U, R and their derivatives at an angle, and the harmonics there."""
+        """Fills U, R, their derivatives and the harmonics at an angle, into one slot."""
         c_1: float = cos(theta)
         s_1: float = sin(theta)
         c: float = c_1
@@ -223,7 +223,7 @@ class PlaneMotion:
         self.value[slot, 9], self.value[slot, 10] = c_1, s_1
 
     def place_nodes(self, theta: cython.p_double) -> None:
-        """The nodes of a panel; the last as a slot as well."""
+        """Fills the motion at the nodes of a panel; the last node also as a slot."""
         i: cython.int
         k: cython.int
         last: cython.int = self.stages
@@ -248,7 +248,7 @@ class PlaneMotion:
             self.cos[last, k], self.sin[last, k] = self.node_cos[k, last - 1], self.node_sin[k, last - 1]
 
     def bend(self, slot: cython.int) -> None:
-        """The second derivatives at an angle that has its place."""
+        """Fills the second derivatives at an angle that has been placed."""
         k: cython.int
         square: float
         x: float = 0.0
@@ -332,7 +332,7 @@ class Panel:
         rate: float,
         bend: float,
     ) -> bool:
-        """Take a panel from a direction on, with about alpha' and alpha'' there; False if it is too long."""
+        """Solves a panel from a direction on, with predicted alpha' and alpha''; False if it is too long."""
         i: cython.int
         gone: float
         self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
@@ -364,7 +364,7 @@ class Panel:
         return self.newton(slope, bend) and self.finish()
 
     def gone(self, part: float) -> tuple[float, float]:
-        """How far a part of the panel is from its beginning [rad], and the speed of the angle there."""
+        """Angle [rad] from the panel's beginning to a fraction of it, and the derivative by the fraction."""
         root: float
         if self.fade > 0.0:
             root = 1.0 - self.fade * part
@@ -372,7 +372,7 @@ class Panel:
         return self.length * part, self.length
 
     def newton(self, slope: float, bend: float) -> bool:
-        """The collocated Riccati equation by Newton's method, from a parabola on.
+        """Solves the collocated Riccati equation by Newton's method, starting from a parabola.
 
         After a small change its derivatives are kept, and changes fall by a factor. Where those at the
         solution are wanted, a last step is one more than t needs.
@@ -406,7 +406,7 @@ class Panel:
         return False
 
     def improve(self, wanted: cython.bint) -> bool:
-        """`right`, a step of Newton's method from t on, `inverse` that of its derivatives, new if wanted."""
+        """Computes a Newton step `right` from t, with a new `inverse` if wanted; False if it is singular."""
         found: cython.int = -1
         if cython.compiled:
             found = newton_eight(
@@ -423,7 +423,7 @@ class Panel:
         return True
 
     def residual(self) -> None:
-        """`missing`, of the equation at the nodes."""
+        """Fills `missing`, the residual of the equation at the nodes."""
         i: cython.int
         j: cython.int
         for i in range(STAGES):
@@ -434,7 +434,7 @@ class Panel:
             self.missing[i] = self.b[i] - t * (2.0 * self.a[i] + self.b[i] * t) - self.r[i] * slope
 
     def apply(self) -> None:
-        """`right`, the inverse times what is `missing`."""
+        """Sets `right` to the inverse times the residual `missing`."""
         i: cython.int
         j: cython.int
         if cython.compiled and apply_eight(self.inverse, self.missing, self.right):
@@ -446,7 +446,7 @@ class Panel:
                 self.right[i] += self.inverse[STAGES * j + i] * self.missing[j]
 
     def invert(self) -> bool:
-        """`inverse`, by columns, of the derivatives of the equation by t; False: singular.
+        """Fills `inverse`, by columns, of the equation's derivatives by t; False where it is singular.
 
         Columns are not exchanged: of the derivatives of Radau's rule, and positive numbers on the diagonal,
         no pivot is small.
@@ -476,7 +476,7 @@ class Panel:
         return True
 
     def finish(self) -> bool:
-        """Directions and lambda at the nodes; False where directions part more than the panel can follow."""
+        """Sets directions and lambda at the nodes; False where directions part too much for the panel."""
         i: cython.int
         j: cython.int
         found: cython.int = -1
@@ -509,7 +509,7 @@ class Panel:
         return True
 
     def rest(self) -> float:
-        """The last coefficient of t in Legendre's polynomials: what the polynomial leaves out is like it.
+        """Last Legendre coefficient of t, an estimate of what its polynomial leaves out.
 
         Of t times what is left, where the contact opens: so is the force.
 
@@ -525,7 +525,7 @@ class Panel:
         return rest
 
     def tails(self) -> None:
-        """`tail_before`, `tail_last`: the last coefficients of derivatives of t from their right sides."""
+        """Fills `tail_before`, `tail_last`: last coefficients of derivatives of t, from right sides."""
         i: cython.int
         j: cython.int
         one: float
@@ -537,7 +537,7 @@ class Panel:
                 self.tail_last[j] += self.tail[1, i + 1] * one
 
     def end_of_slip(self) -> float:
-        """The part of the panel after which lambda is no more than rounding; 2 if it does not fall so far."""
+        """Fraction of the panel after which lambda is within rounding; 2 if it does not fall so far."""
         j: cython.int
         least: float = self.push[0]
         most: float = self.push[0]
@@ -567,7 +567,7 @@ class Panel:
         return 2.0
 
     def slope_at(self, j: cython.int) -> float:
-        """The derivative of lambda by the part of the panel, at the start or at a node."""
+        """Derivative of lambda by the fraction of the panel, at the start or at a node."""
         k: cython.int
         slope: float = 0.0
         for k in range(STAGES + 1):
@@ -575,7 +575,7 @@ class Panel:
         return slope
 
     def pushed(self, x: float) -> tuple[float, float]:
-        """lambda beyond rounding, and its derivative by the part x of the panel."""
+        """lambda beyond rounding, and its derivative, at a fraction x of the panel."""
         k: cython.int
         total: float = 0.0
         t: float = 0.0
@@ -602,7 +602,10 @@ class Panel:
         return value - self.motion.value[SCAN, 5] - self.noise, slope * speed
 
     def root(self, low: float, high: float) -> float:
-        """Where lambda vanishes, between parts at which it is positive and negative: Newton, bracketed."""
+        """Fraction at which lambda vanishes, between one where it is positive and one where it is negative.
+
+        Newton's method, bracketed.
+        """
         x: float = 0.5 * (low + high)
         step: float
         i: cython.int
@@ -621,7 +624,7 @@ class Panel:
         return x
 
     def lowest(self, low: float, high: float) -> float:
-        """Where lambda is least between parts at which it falls and rises."""
+        """Fraction at which lambda is least, between one where it falls and one where it rises."""
         i: cython.int
         x: float = 0.5 * (low + high)
         for i in range(40):  # noqa: B007

@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Radau(NamedTuple):
-    """Of polynomials of degree s that are known at 0 and at the s points of Radau's rule, the last at 1.
+    """Radau's rule for polynomials of degree s, known at 0 and at its s points, the last of which is 1.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Radau(NamedTuple):
 
 @lru_cache
 def radau(stages: int) -> Radau:
-    """The rule of so many points, after Golub (1973).
+    """Radau's rule with s points, after Golub (1973).
 
     >>> rule = radau(3)
     >>> bool(abs(rule.weights @ rule.nodes**4 - 1 / 5) < 1e-15), rule.nodes[-1].item()
@@ -63,7 +63,7 @@ def radau(stages: int) -> Radau:
 
 
 def _derivatives(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Weights of the barycentric formula of points (point,), and derivatives there from the values there."""
+    """Barycentric weights of points (point,), and the matrix from values to derivatives at the points."""
     apart = x[:, None] - x + np.eye(x.size)
     bary = 1.0 / apart.prod(axis=1)
     slopes = bary / bary[:, None] / apart
@@ -73,7 +73,7 @@ def _derivatives(x: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _legendre(x: FloatArray, degree: int) -> FloatArray:
-    """Legendre's polynomials on 0 to 1, of all degrees up to one, (point, degree)."""
+    """Legendre polynomials on 0 to 1, of all degrees up to a given one, (point, degree)."""
     z = 2.0 * x - 1.0
     p = [np.ones_like(z), z]
     for k in range(2, degree + 1):

@@ -46,7 +46,7 @@ BEND_ERROR = cython.declare(cython.double, 1.0 / 12.0)
 
 @cython.cclass
 class Resting:
-    """The place of rest of a motion that never opens.
+    """Finds the resting place of the slider for a motion that never opens.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Resting:
         self.found = self.sampled = False
 
     def stays(self, s_x: float, s_y: float) -> bool:
-        """Whether the slider need never slip; then where it rests, if it began at a place."""
+        """Whether the slider need never slip; then sets where it rests, having begun at a place."""
         self.held, self.sampled = 0, False
         self.overlap = -FAR
         self.w_x, self.w_y = s_x, s_y
@@ -99,7 +99,10 @@ class Resting:
         return True
 
     def encloses(self, exact: bool) -> bool:
-        """Whether all discs have a place in common; `overlap` only as far as that takes, unless exactly."""
+        """Whether all discs have a place in common.
+
+        `overlap` is computed only as far as the answer needs, unless `exact`.
+        """
         i: cython.int
         level: float
         rounding: float = 4.0 * EPSILON * (self.motion.size + self.motion.reach)
@@ -139,7 +142,7 @@ class Resting:
         return self.held > 1
 
     def nearest(self, s_x: float, s_y: float) -> None:
-        """The place of rest nearest to one that is not."""
+        """Sets the resting place nearest to a start that is none."""
         i: cython.int
         w_x: float = self.w_x
         w_y: float = self.w_y
@@ -158,7 +161,9 @@ class Resting:
         self.sharpen(s_x, s_y)
 
     def sharpen(self, s_x: float, s_y: float) -> None:
-        """The angles of the discs that hold the place, which it misses by the square of their errors.
+        """Refines the angles of the discs that hold the place.
+
+        The place errs by the square of their errors.
 
         Along the edge of one disc alone it moves by the error itself.
         """
@@ -173,13 +178,13 @@ class Resting:
             self.exchange(True, s_x, s_y)
 
     def sharpen_one(self, i: cython.int, w_x: float, w_y: float) -> None:
-        """The angle near that of a disc at which a place misses its disc most."""
+        """Refines the angle of disc i to that at which a place misses its disc most."""
         self.x, self.y, self.beyond = w_x, w_y, -FAR
         self.refine(self.basis[i, 3])
         self.basis[i, 3] = self.angle
 
     def sample(self) -> None:
-        """U and R at all nodes."""
+        """Fills U and R at all nodes."""
         j: cython.int
         k: cython.int
         if self.sampled:
@@ -198,7 +203,7 @@ class Resting:
             self.at[0, j], self.at[1, j], self.at[2, j] = x, y, r
 
     def farthest(self, w_x: float, w_y: float) -> None:
-        """`beyond` and `angle`: the disc that a place misses most, of those that nodes tell."""
+        """Sets `beyond` and `angle` of the disc that a place misses most, among those near nodes."""
         j: cython.int
         before: float
         after: float
@@ -221,7 +226,7 @@ class Resting:
                 self.refine(self.step * (FIRST_NODE + j))
 
     def farthest_of_all(self, w_x: float, w_y: float) -> None:
-        """`beyond` and `angle`: the disc that a place misses most."""
+        """Sets `beyond` and `angle` of the disc that a place misses most, among all angles."""
         i: cython.int
         self.farthest(w_x, w_y)
         for i in range(self.exchanges):  # noqa: B007
@@ -231,13 +236,13 @@ class Resting:
                 break
 
     def next_farthest(self) -> None:
-        """`beyond`: how far the place is outside the disc that it misses most but the one that holds it."""
+        """Sets `beyond`: distance outside the disc missed most, other than the one that holds the place."""
         self.farthest(self.w_x, self.w_y)
         self.beyond = -FAR
         self.maxima(0.0, -FAR, self.basis[0, 3])
 
     def hidden(self, level: float) -> None:
-        """After `farthest`: a disc that is missed by more than a level, if no node tells of any.
+        """After `farthest`: searches between the nodes for a disc missed by more than a level.
 
         `beyond` rises above the level if and only if there is one.
         """
@@ -248,7 +253,7 @@ class Resting:
             self.refine(self.angle)
 
     def maxima(self, level: float, least: float, but: float) -> None:
-        """The disc that is missed most of those where h is greatest, above its least value that matters.
+        """Sets the disc missed most, among all maxima of h above `least`.
 
         Of the angle `but` it is not. `level` is the t of h.
         """
@@ -286,7 +291,7 @@ class Resting:
                 self.between(self.step * (FIRST_NODE + j), least)
 
     def between(self, begin: float, least: float) -> None:
-        """Maxima of h in a step from an angle on."""
+        """Examines the maxima of h within one step from an angle."""
         depth: cython.int = 0
         middle: float
         value: float
@@ -327,7 +332,7 @@ class Resting:
     def most_maxima(
         self, length: float, g_0: float, d_0: float, g_1: float, d_1: float, least: float
     ) -> cython.int:
-        """How many maxima above a value h has at most in a length; 2 where nothing is proved."""
+        """Greatest number of maxima of h above `least` in an interval; 2 if nothing is proved."""
         error: float = self.fourth * length * length
         b_1: float = g_0 + length * d_0 / 3.0
         b_2: float = g_1 - length * d_1 / 3.0
@@ -342,7 +347,7 @@ class Resting:
         return 2
 
     def missed(self, theta: float) -> tuple[float, float, float]:
-        """h, its slope, and |U - W| + |R + t| at an angle."""
+        """Values of h, its slope, and |U - W| + |R + t| at an angle."""
         self.motion.place(SCAN, theta)
         d_x: float = self.motion.value[SCAN, 0] - self.x
         d_y: float = self.motion.value[SCAN, 1] - self.y
@@ -353,7 +358,7 @@ class Resting:
         return (d - r) * (d + r), 2.0 * slope, d + fabs(r)
 
     def peak(self, low: float, high: float) -> None:
-        """The one maximum of h between two angles, where its gap is greater than any before."""
+        """Takes the single maximum of h between two angles, if its gap exceeds every gap before."""
         i: cython.int
         first: float = low
         last: float = high
@@ -387,7 +392,7 @@ class Resting:
             self.beyond, self.angle = gap, theta
 
     def within(self, first: float, last: float) -> bool:
-        """Whether `but`, or a turn more or less, is between two angles, or one with their ends."""
+        """Whether the angle `but`, modulo a turn, lies between two angles or coincides with their ends."""
         middle: float = 0.5 * (first + last)
         off: float = fabs(self.but - middle)
         while off > 0.5 * TWO_PI:
@@ -396,14 +401,14 @@ class Resting:
         return inside
 
     def outside(self, theta: float) -> float:
-        """How far the place in `x`, `y` is outside the disc of an angle; see `refine` for the slope."""
+        """Distance of the place (`x`, `y`) outside the disc of an angle; see `refine` for the slope."""
         self.motion.place(SCAN, theta)
         gap: float = hypot(self.motion.value[SCAN, 0] - self.x, self.motion.value[SCAN, 1] - self.y)
         gap -= self.motion.value[SCAN, 2]
         return gap
 
     def refine(self, theta: float) -> None:
-        """The greatest gap within a step of a node, if it is greater than any before."""
+        """Takes the greatest gap within a step of a node, if it exceeds every gap before."""
         i: cython.int
         low: float = theta - self.step
         high: float = theta + self.step
@@ -444,7 +449,7 @@ class Resting:
             self.beyond, self.angle = gap, theta
 
     def exchange(self, near: bool, s_x: float, s_y: float) -> None:
-        """The disc missed most joins those that hold the place, and the best place is found again."""
+        """Adds the disc missed most to those that hold the place, and finds the best place again."""
         i: cython.int
         j: cython.int
         n: cython.int = self.held
@@ -473,14 +478,14 @@ class Resting:
             self.overlap = self.t
 
     def keep(self, i: cython.int) -> None:
-        """One of the discs is the next of those that hold the place."""
+        """Makes disc i the next of the discs that hold the place."""
         p: cython.int
         for p in range(4):
             self.basis[self.held, p] = self.basis[i, p]
         self.held += 1
 
     def attempt(self, near: bool, s_x: float, s_y: float, i: cython.int, j: cython.int) -> None:
-        """The places on the circles of the new disc, and if not -1 of those with the numbers i and j."""
+        """Tries the places on the circle of the new disc, and on circles i and j unless these are -1."""
         n: cython.int = self.held
         r: float = self.basis[n, 2]
         x: float
@@ -559,7 +564,7 @@ class Resting:
         i: cython.int,
         j: cython.int,
     ) -> None:
-        """Keep a place if it misses none of the discs that are known, and is the best."""
+        """Keeps a place if it misses none of the known discs and is the best so far."""
         value: float = hypot(x - s_x, y - s_y) if near else t
         if value < self.best and self.fits(x, y, t):
             self.best, self.found = value, True
@@ -567,7 +572,7 @@ class Resting:
             self.x, self.y, self.t = x, y, t
 
     def fits(self, x: float, y: float, t: float) -> bool:
-        """Whether a place is within all discs that are known, grown by t, but for rounding."""
+        """Whether a place lies within all known discs, grown by t, apart from rounding."""
         i: cython.int
         rounding: float = 16.0 * EPSILON * (self.motion.size + self.motion.reach + fabs(x) + fabs(y))
         for i in range(self.held + 1):

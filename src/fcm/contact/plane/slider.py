@@ -93,7 +93,7 @@ class Slider:
         self.sliding = self.varying = self.gathering = self.gradient = self.failed = False
 
     def add(self, state: cython.int) -> None:
-        """The next piece, unless it goes on with the last."""
+        """Appends a piece, unless the last one has the same state."""
         i: cython.int = self.pieces
         if i > 0 and self.state[i - 1] == state:
             return
@@ -105,7 +105,7 @@ class Slider:
         self.pieces += 1
 
     def length(self, p: cython.int) -> float:
-        """Of a piece of several [rad]."""
+        """Length [rad] of piece p."""
         last: cython.bint = p + 1 == self.pieces
         length: float = self.begin[0 if last else p + 1] - self.begin[p]
         while length < 0.0 or (last and length <= 0.0):
@@ -113,7 +113,7 @@ class Slider:
         return length
 
     def enter(self, theta: float, w_x: float, w_y: float) -> None:
-        """Begin at an angle with a slider at a place, which the disc may hold elsewhere."""
+        """Starts at an angle with the slider at a place; a disc that does not contain it moves it at once."""
         self.theta, self.w_x, self.w_y, self.stalled = theta, w_x, w_y, -1e300
         self.gone_x = self.gone_y = self.gone = 0.0
         self.measure(theta)
@@ -136,7 +136,7 @@ class Slider:
             self.w_y = self.motion.value[SCAN, 1] - r * self.e_y
 
     def close(self, theta: float) -> None:
-        """The contact closes at an angle: it sticks, or slips at once along the motion if that is faster."""
+        """Closes the contact at an angle: it sticks, or slips at once along the motion if that is faster."""
         self.theta, self.stalled = theta, -1e300
         self.motion.place(SCAN, theta)
         self.w_x, self.w_y = self.motion.value[SCAN, 0], self.motion.value[SCAN, 1]
@@ -159,13 +159,13 @@ class Slider:
             self.derivatives.close_sliding(self.e_x, self.e_y, rate)
 
     def push(self) -> float:
-        """lambda at the angle in SCAN."""
+        """lambda at the angle in SCAN, the rate at which the disc pushes the slider."""
         along: float = self.e_x * self.motion.value[SCAN, 3] + self.e_y * self.motion.value[SCAN, 4]
         push: float = along - self.motion.value[SCAN, 5]
         return push
 
     def first_length(self) -> float:
-        """About how long the first panel of a slip can be, from the angle in SCAN on."""
+        """Estimated length of the first panel of a slip, from the angle in SCAN on."""
         x_1: float = self.motion.value[SCAN, 3]
         y_1: float = self.motion.value[SCAN, 4]
         across: float = fabs(self.e_x * y_1 - self.e_y * x_1)
@@ -175,7 +175,7 @@ class Slider:
         return min(length, 1.5 * r / turning) if turning > 0.0 else length
 
     def advance(self, end: float, opens: bool) -> None:
-        """To an angle, at which the contact opens or does not."""
+        """Follows the slider up to an angle, at which the contact opens or stays closed."""
         while self.theta < end and not self.failed:
             if self.sliding:
                 self.slide(end, opens)
@@ -185,7 +185,7 @@ class Slider:
             self.halt()
 
     def slide(self, end: float, opens: bool) -> None:
-        """Slip until lambda vanishes, or to an angle."""
+        """Follows a slip until lambda vanishes, or up to an angle."""
         begin: float = self.theta
         length: float
         left: float
@@ -285,7 +285,7 @@ class Slider:
                 bend = self.turning(STAGES, rate)
 
     def turning(self, slot: cython.int, rate: float) -> float:
-        """alpha'' at an angle that has its place and bend: of R alpha' = e_perp . U'."""
+        """alpha'' at a placed and bent angle, from R alpha' = e_perp . U'."""
         bend: float = self.e_x * self.motion.value[slot, 7] - self.e_y * self.motion.value[slot, 6]
         along: float = self.e_x * self.motion.value[slot, 3] + self.e_y * self.motion.value[slot, 4]
         bend -= (along + self.motion.value[slot, 5]) * rate
@@ -293,7 +293,7 @@ class Slider:
         return bend
 
     def scaled(self, length: float, left: float, by: float) -> float:
-        """A length times a factor; if the panel was graded, the part of the root of what is then left."""
+        """A panel length times a factor; of a graded panel the root of the rest is scaled."""
         part: float
         if self.panel.fade > 0.0:
             part = max(1.0 - by * self.panel.fade, 0.0)
@@ -303,12 +303,12 @@ class Slider:
         return length
 
     def grown(self, rest: float) -> float:
-        """How much longer a panel with a rest of the tolerance is: rests go with the power STAGES, 8."""
+        """Factor by which a panel may be longer: its rest goes with the 8th power (STAGES) of its length."""
         ratio: float = sqrt(sqrt(sqrt(self.tolerance / rest)))
         return ratio
 
     def opening(self, end: float) -> None:
-        """`last_x`, `last_y`, `last_speed`, `falls`: direction and speed of U', and -R', where it opens."""
+        """Sets `last_x`, `last_y`, `last_speed`, `falls`: direction, speed of U' and -R' where it opens."""
         self.motion.place(SCAN, end)
         x_1: float = self.motion.value[SCAN, 3]
         y_1: float = self.motion.value[SCAN, 4]
@@ -317,14 +317,14 @@ class Slider:
         self.last_x, self.last_y = by * x_1, by * y_1
 
     def stray(self) -> float:
-        """How far the direction is from that in which it will be when the contact opens."""
+        """Distance of the present direction from the one at which the contact will open."""
         d_x: float = self.e_x - self.last_x
         d_y: float = self.e_y - self.last_y
         stray: float = sqrt(d_x * d_x + d_y * d_y)
         return stray
 
     def left_out(self, stray: float, turned: float, left: float) -> float:
-        """What the derivatives of the impulse have at most from directions that are followed no more.
+        """Bound of the impulse derivatives from slip directions no longer followed before the opening.
 
         From the derivative of the force by the direction now, an opening that moves, and the motion.
         """
@@ -334,7 +334,7 @@ class Slider:
         return most
 
     def realign(self, push: float) -> float:
-        """Where the disc is nothing, the direction is that of the motion; lambda there."""
+        """Turns the direction to that of the motion where the disc vanishes; returns lambda there."""
         self.motion.place(SCAN, self.theta)
         x_1: float = self.motion.value[SCAN, 3]
         y_1: float = self.motion.value[SCAN, 4]
@@ -347,7 +347,7 @@ class Slider:
         return self.push()
 
     def accept(self, carried: cython.bint) -> None:
-        """The end of the panel is the present angle; so is that of the derivatives, if they are carried."""
+        """Advances to the end of the panel; the derivatives follow if `carried`."""
         i: cython.int
         self.theta, self.first_step = self.panel.theta + self.panel.length, self.least_step
         self.e_x, self.e_y = self.panel.e_x[STAGES - 1], self.panel.e_y[STAGES - 1]
@@ -373,7 +373,7 @@ class Slider:
             self.derivatives.carry(self.gathering and self.gradient)
 
     def halt(self) -> None:
-        """The slip ends at the present angle."""
+        """Ends the slip at the present angle."""
         self.motion.place(SCAN, self.theta)
         r: float = max(self.motion.value[SCAN, 2], 0.0)
         self.w_x = self.motion.value[SCAN, 0] - r * self.e_x
@@ -383,7 +383,7 @@ class Slider:
             self.derivatives.rest(self.e_x, self.e_y)
 
     def measure(self, theta: float) -> None:
-        """`gap`, `gap_slope`, `noise`: g, its derivative and rounding at an angle, placed in SCAN."""
+        """Sets `gap`, `gap_slope`, `noise`: g, its derivative and rounding at an angle, placed in SCAN."""
         self.motion.place(SCAN, theta)
         d_x: float = self.motion.value[SCAN, 0] - self.w_x
         d_y: float = self.motion.value[SCAN, 1] - self.w_y
@@ -395,7 +395,7 @@ class Slider:
         self.gap_slope = 2.0 * (self.gap_slope - r * self.motion.value[SCAN, 5])
 
     def hold(self, end: float) -> None:
-        """Stick until the disc meets the slider, or to an angle."""
+        """Follows a stick until the disc meets the slider, or up to an angle."""
         begin: float = self.theta
         self.add(STICK)
         self.measure(begin)
@@ -481,7 +481,7 @@ class Slider:
                 self.derivatives.stick(begin, end)
 
     def release(self, begin: float, theta: float) -> None:
-        """The stick ends at an angle, and slip begins."""
+        """Ends the stick at an angle, where slip begins."""
         if self.gathering:
             self.sums.stick(begin, theta, self.w_x, self.w_y)
             if self.gradient:
@@ -500,7 +500,7 @@ class Slider:
             self.derivatives.slide(self.e_x, self.e_y)
 
     def meet(self, low: float, high: float) -> float:
-        """Where the disc meets the slider, between an angle before and one after: Newton, bracketed."""
+        """Angle at which the disc meets the slider, between one before and one after: Newton, bracketed."""
         i: cython.int
         x: float = 0.5 * (low + high)
         for i in range(80):  # noqa: B007

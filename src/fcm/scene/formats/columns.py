@@ -72,7 +72,7 @@ def _numbers_of_lines(content: bytes, comment: bytes) -> npt.NDArray[np.int64]:
 
 
 def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None, comment: str) -> npt.NDArray[Any]:
-    """The same with numbers as Fortran writes them, or the first line that is wrong."""
+    """Reads the lines one by one, with numbers as Fortran writes them; raises for the first wrong line."""
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:

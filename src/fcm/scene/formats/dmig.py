@@ -27,7 +27,7 @@ REAL = (1, 2)  # types
 
 @dataclass
 class Entries:
-    """Of one matrix, as they are read."""
+    """Entries of one matrix while it is read."""
 
     form: int
     line: list[int] = field(default_factory=list)
@@ -36,7 +36,7 @@ class Entries:
 
 
 def read_dmig(path: Path, largest: int) -> dict[str, Labelled]:
-    """All matrices of a punch file by their names, with the names of their rows."""
+    """Reads all matrices of a punch file, by their names, with the names of their rows."""
     found: dict[str, Entries] = {}
     try:
         text = path.read_text("utf-8-sig")
@@ -87,7 +87,7 @@ def _fields(line: str, number: int) -> list[str]:
 
 
 def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
-    """One entry: a header, or a column."""
+    """Takes one entry: a header, or a column."""
     name, body = fields[1], fields[2:]
     if (body[0] == "0") == (name in found):
         what = "two headers" if name in found else "no header before its columns"

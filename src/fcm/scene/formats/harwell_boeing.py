@@ -87,7 +87,7 @@ def _format(word: str, number: int) -> Fields:
 
 
 def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) -> npt.NDArray[np.float64]:
-    """So many numbers in some lines of one format."""
+    """Reads `size` numbers from some lines of one format."""
     if cards * form.number < size or begin + cards > len(lines):
         raise UnreadableError(f"it is cut off: line {begin + 1} on must hold {size} numbers")
     for number, line in enumerate(lines[begin : begin + cards], begin + 1):
@@ -110,7 +110,7 @@ def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) 
 
 
 def _at_once(lines: list[str], form: Fields, size: int) -> npt.NDArray[np.float64] | None:
-    """The same by numpy; None where a number has to be looked at by itself."""
+    """Reads the numbers of lines by numpy at once; None where one has to be read on its own."""
     full = form.number * form.width
     joined = "".join(line[:full].ljust(full) for line in lines).encode("latin-1")
     words = np.frombuffer(joined, dtype=f"S{form.width}")[:size]

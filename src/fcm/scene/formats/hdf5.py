@@ -67,7 +67,7 @@ def _bytes(one: Any) -> int:
 
 
 def _values(one: Any) -> Any:
-    """The array of a dataset.
+    """Reads the array of a dataset.
 
     UnreadableError where its numbers are of no usual form: a library converts any, and what is damaged to
     such a form would be read as other numbers.
