@@ -165,7 +165,7 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
     run = fcm("respond", scene, "--harmonics", "1", "--json", "-o", "a.nc", response=none)
     said = (
         "isolated branches may be missing beyond 1.207 rad/s (contact.0.n_0 = 1; on 2 of 3 curves): from "
-        "there a fold of the level of the forces was not followed to its end. What was found is whole. "
+        "there a fold of the level of the forces was not followed to its end. "
         "--level 0:4 --at F, with F beyond 1.207, or a sweep up and down by --method exact --at "
         "FROM:TO:COUNT, looks there. All of them: folds_unsure_at of --json"
     )

@@ -30,9 +30,20 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
         return f"what is tracked misses the accuracy that was asked for. {tracked[:1].upper()}{tracked[1:]}"
     if not short:
         return ""
-    count, verb = len(summary["curves"]), "misses" if len(short) == 1 else "miss"
-    which = "the curve" if count == 1 else f"{len(short)} of {count} curves"
-    return f"{which} {verb} the accuracy that was asked for. {short[0][:1].upper()}{short[0][1:]}"
+    curves, count = summary["curves"], len(summary["curves"])
+    which = (
+        "the curve misses" if count == 1 else f"{len(short)} of {count} curves miss{'es' * (len(short) == 1)}"
+    )
+    worst = max((one for one in curves if one.get("short_of_accuracy")), key=_greatest_error)
+    given = _given(worst)
+    why, of = worst["short_of_accuracy"], f"The worst, {given}: " if len(short) > 1 and given else ""
+    return f"{which} the accuracy that was asked for. {of}{why[:1].upper()}{why[1:]}"
+
+
+def _greatest_error(curve: Mapping[str, Any]) -> float:
+    """The greatest error of the peaks of a curve; of one that is unknown, more than any."""
+    errors = [one.get("error") for one in curve.get("peak", {}).values() if one and one.get("amplitude")]
+    return max((inf if error is None else error for error in errors), default=0.0)
 
 
 def linear(summary: Mapping[str, Any]) -> str:
@@ -98,7 +109,7 @@ def folds_uncertain(summary: Mapping[str, Any]) -> str:
     """
     what = (
         "isolated branches may be missing {side} {}: from there a fold of the level of the forces was not "
-        "followed to its end. What was found is whole"
+        "followed to its end"
     )
     helps = f"{_BY_LEVEL} F, with F {{side}} {{}}"
     if how := _how(summary):

@@ -14,7 +14,8 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import scene_argument
 
 _FRICTION = (
-    "the damping ratio that friction can add to each resonance, an estimate while contacts stay closed:"
+    "the damping ratio that friction can add to each resonance, estimated for closed contacts; "
+    "n_0 is that of a pair:"
 )
 
 

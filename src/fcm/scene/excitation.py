@@ -155,6 +155,8 @@ def note_of_mass(masses: Mapping[str, float], length: str, force: str, floats: b
     ['structure: its mass along z is 2, without rows that are held']
     >>> print(note_of_mass({"x": 2.0, "y": 2.0, "z": 1.9}, "", "", floats=True)[1])
     structure: it floats, but its mass differs by 5 % along the axes. Do dofs name the rows in their order?
+    >>> print(note_of_mass({"x": 4e-7, "y": 4e-6, "z": 4e-4}, "", "")[1][:66])
+    structure: its mass differs by a factor of 1e+03 along the axes, m
     """
     if not masses:
         return []
@@ -171,6 +173,13 @@ def note_of_mass(masses: Mapping[str, float], length: str, force: str, floats: b
             Question(
                 f"structure: it floats, but its mass differs by {100 * (1 - least / most):.2g} % along the "
                 "axes. Do dofs name the rows in their order?"
+            )
+        )
+    elif most > TOLERANCES.held_mass * least > 0.0:
+        said.append(
+            Question(
+                f"structure: its mass differs by a factor of {most / least:.2g} along the axes, more than "
+                "rows that are held explain. Do dofs name the rows in their order?"
             )
         )
     return said

@@ -73,34 +73,43 @@ def listing(scene: Scene) -> dict[str, Any]:
     }
 
 
+_IN_HERTZ = 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"'
+
+
 def resonance_doubt(scene: Scene) -> str:
-    """Doubt that no resonance is near the frequency range, with the nearest modes and usual slips of units;
-    or ''.
+    """Warning that no resonance is near the range of frequencies, with the nearest modes and a usual slip of
+    units; empty without one.
 
     A resonance lies between a mode of the structure alone and that with all contacts stuck: springs only
-    raise frequencies, and a contact in motion is softer than its spring (Rayleigh).
+    raise frequencies, and a contact in motion is softer than its spring (Rayleigh). One that is near the
+    range, and not within it, is enough, unless the range of a structure of matrices would hold it if its
+    numbers were in Hz.
     """
     if not scene.has_range:
         return ""
     ranges, room = _ranges_of_forces(scene), MESSAGES.range_near
     near, alone = [(low / room, high * room) for low, high in ranges], _modes_alone(scene)
-    if _resonance_within(alone, alone, *near):  # the contacts need not be asked
+    if _resonance_within(alone, alone, *ranges):  # the contacts need not be asked
         return ""
     opened, stuck = _modes_open_and_stuck(scene)
-    if not opened.size or _resonance_within(opened, stuck, *near):
+    if not opened.size or _resonance_within(opened, stuck, *ranges):
         return ""
     ends, unit = ranges[0], scene.frequency_unit
-    places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
-    if scene.contacts:
-        places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
+    is_near = _resonance_within(opened, stuck, *near)
     margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
     within = (ends[0] * margin, ends[1] / margin)
     slip = _slip_of_units(opened[:1], stuck[:1], within, unit, imperial="lbf" in scene.units)
+    if is_near and not (scene.of_matrices and slip == _IN_HERTZ):
+        return ""
+    places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
+    if scene.contacts:
+        places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
     if not slip:
         slip = "are the units of the structure, of the contacts' stiffness and of the range those meant?"
     low, high = (f"{end / UNIT[unit]:.6g}" for end in ends)
     of = f", in which forces act from {low} to {high} {unit}" if ends != scene.frequency_range else ""
-    return f"no resonance is near the range of frequencies{of}: {places}; {slip}"
+    where = "within" if is_near else "near"
+    return f"no resonance is {where} the range of frequencies{of}: {places}; {slip}"
 
 
 def _ranges_of_forces(scene: Scene) -> list[tuple[float, float]]:
@@ -314,7 +323,7 @@ def _slip_of_units(
     """The usual slip of units by which the range [rad/s] would contain the lowest resonance; else ''."""
     hertz = 2.0 * np.pi
     slips = {
-        1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',
+        1.0 / hertz: _IN_HERTZ,
         hertz: 'the range would hold modes if its numbers were in rad/s: frequency_unit = "rad/s"',
     } | (IMPERIAL_SLIPS if imperial else METRIC_SLIPS)
     del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # it is in that unit already

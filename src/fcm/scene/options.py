@@ -131,6 +131,8 @@ class ToleranceOptions(Frozen):
     # relative difference of the masses along the axes of a floating structure, up to which they are the
     # same
     floating_mass: float = 1e-3
+    # ratio of the masses along the axes of a held structure, up to which the rows that are held explain it
+    held_mass: float = 10.0
     # difference from 1 of the largest value of a shape, below which shapes were scaled to it
     scaled_shape: float = 1e-6
     same_direction: float = 1e-9  # difference of two directions up to which they are the same
