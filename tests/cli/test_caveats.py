@@ -156,6 +156,29 @@ def test_one_curve_has_and_two_have_not_the_accuracy(short, said):
     assert short_of_accuracy({"curves": curves}).startswith(said)
 
 
+def test_of_many_curves_that_fall_short_the_worst_is_told():
+    curves = [
+        {
+            "parameters": {"mu": mu},
+            "short_of_accuracy": f"why {mu}",
+            "peak": {"u": {"amplitude": 1.0, "error": e}},
+        }
+        for mu, e in ((0.1, 0.02), (0.2, 0.3), (0.3, 0.1))
+    ]
+    said = "3 of 3 curves miss the accuracy that was asked for. The worst, mu = {}: Why {}"
+    assert short_of_accuracy({"curves": curves}) == said.format(0.2, 0.2)
+    curves[2]["peak"]["u"]["error"] = None  # unknown
+    assert short_of_accuracy({"curves": curves}) == said.format(0.3, 0.3)
+
+
+@pytest.mark.parametrize(("harmonics", "said"), [("1", True), ("9", False)])
+def test_with_few_harmonics_branches_of_more_are_said_not_to_be_looked_for(fcm, harmonics, said):
+    """With one harmonic the peak is off by 6 %, with nine by 2.5e-4; with an accuracy they are looked for."""
+    text = "Branches that only more harmonics have were not looked for: --accuracy 0.01 looks for them"
+    assert (text in fcm("respond", "yang1998-n5", "--harmonics", harmonics).err) is said
+    assert text not in fcm("respond", "yang1998-n5", "--accuracy", "0.3").err
+
+
 def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be_missing(
     fcm, scene, tmp_path
 ):

@@ -1,12 +1,14 @@
 """Points on both sides of every change of a contact's regime, and what they find."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fcm.response import trace
 from fcm.scene import load_scene
 
-from .random_scenes import AGREE, outcome
+from .random_scenes import AGREE, outcome, random_scene
 
 
 @pytest.mark.slow
@@ -22,6 +24,17 @@ def test_a_pair_of_folds_shorter_than_the_longest_step(seed, gap):
 def test_the_curve_does_not_step_back_at_a_sharp_corner():
     # between a stuck contact and a slipping one this curve turns by more than a right angle
     assert outcome(3).disagreement < AGREE
+
+
+@pytest.mark.slow
+def test_a_corner_of_a_stiff_contact_past_a_right_angle_is_turned_at():
+    """A contact that is 4e5 times as stiff as the structure opens, and the curve turns by 92 degrees."""
+    scene = replace(random_scene(19), harmonics=(1, 2, 3, 4))
+    curves = [trace(replace(scene, max_step=step)).curves[0] for step in (0.05, 0.02)]
+    assert all(curve.complete for curve in curves)
+    heights = [[peak.amplitude for peak in curve.peaks.values()] for curve in curves]
+    np.testing.assert_allclose(*heights, rtol=1e-6)
+    np.testing.assert_allclose(*(sorted(curve.folds) for curve in curves), rtol=1e-6)
 
 
 @pytest.mark.slow

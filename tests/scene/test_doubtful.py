@@ -124,7 +124,7 @@ def test_a_mode_that_contacts_bring_near_the_range_is_no_slip_of_units():
     )
 
 
-STEEL = {  # two modes, 35.6 and 93.2 Hz, as a program in N, m, kg writes it
+STEEL = {  # two modes, 50.3 and 87.2 Hz, as a program in N, m, kg writes it
     "dofs": ["u", "v"],
     "mass": [[2.0, 0.0], [0.0, 2.0]],
     "stiffness": [[4e5, -2e5], [-2e5, 4e5]],
@@ -165,6 +165,22 @@ def test_a_range_without_a_resonance_says_so_with_the_nearest_modes(change, word
     if words:
         assert "no resonance is near the range of frequencies: the nearest mode is at" in said
         assert "without contacts" in said and "while all stick" in said
+
+
+@pytest.mark.parametrize(
+    ("unit", "high", "asked"), [("rad/s", 250.0, True), ("rad/s", 400.0, False), ("Hz", 250.0, False)]
+)
+def test_a_forgotten_unit_of_the_range_is_asked_about_though_a_resonance_is_near(unit, high, asked):
+    """The mode of the matrices is at 316 rad/s, which is 50.3 Hz: 20 to 250 holds it in Hz alone."""
+    data = {
+        "frequency_unit": unit,
+        "structure": STEEL,
+        "force": [{"dof": "u", "amplitude": 1.0}],
+        "response": {"frequency": [20.0, high]},
+    }
+    said = resonance_doubt(scene_from_dict(data))
+    assert bool(said) == asked
+    assert not asked or ("no resonance is within the range" in said and 'frequency_unit = "Hz"' in said)
 
 
 @pytest.mark.parametrize(("harmonics", "asked"), [((1,), True), ((4,), False), ((1, 4), False), ((9,), True)])

@@ -135,6 +135,28 @@ def test_what_cannot_be_followed_is_found_by_trials(scene):
     assert f"by trials alone, between {low:.6g} and {high:.6g}" in as_table(result, "rad/s")
 
 
+def test_the_error_of_a_higher_peak_beside_trials_counts(scene):
+    """It decides which number is the least: its error is the change by more harmonics, where it was tried."""
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 30.0),), (Aim("u"),)))
+    (found,) = optimise(aimed, harmonics=1, options=UNFOLLOWED).tracking.optima
+    beside = found.beside[PRELOAD]
+    assert beside in found.between
+    there = number_of(scene, PRELOAD).put(scene, beside)
+    few, many = (
+        max(one.amplitude[:, 0].max() for one in every_branch(System(there, harmonics)).quantities)
+        for harmonics in ((1,), tuple(range(1, 16)))
+    )
+    assert few > found.value and found.end_error == pytest.approx(abs(many - few) / few, rel=0.05)
+    told = {"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}
+    assert "Between two of these the peak is unknown" in as_table(told, "rad/s")
+    for error, said in (
+        (None, "error of a higher one of these is unknown: more --harmonics"),
+        (0.32, "by 3.2e-01"),
+    ):
+        told["optimum"][0]["end_error"] = error
+        assert said in as_table(told, "rad/s")
+
+
 def test_trials_that_are_least_at_a_bound_say_both(scene):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((20.0, 60.0),), (Aim("u"),)))
     (found,) = optimise(aimed, harmonics=1, options=UNFOLLOWED).tracking.optima
