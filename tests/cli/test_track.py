@@ -124,10 +124,15 @@ def test_what_lines_mean_is_within_the_picture():
     tracks = tuple(
         DrawnTrack("peak of u", number, f + k, f[:, None], 0.0 * f, trough, stable) for k in range(2)
     )
-    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", tracks))
+    tried = np.array([[1.0, 40.0], [1.5, 30.0]])
+    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", tracks, (1.5, 30.0), tried=tried))
     figure.draw_without_rendering()
     (said,) = figure.findobj(lambda one: isinstance(one, Text) and "trough" in one.get_text())
-    assert said.get_window_extent().x1 <= figure.bbox.x1
+    assert (
+        said.get_window_extent().x1 <= figure.bbox.x1 and "crosses: peaks that were tried" in said.get_text()
+    )
+    (crosses,) = (line for line in figure.axes[0].lines if line.get_marker() == "x")
+    np.testing.assert_array_equal(crosses.get_xydata(), tried)
 
 
 def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():

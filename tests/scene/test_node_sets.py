@@ -85,6 +85,9 @@ def test_a_given_normal_is_taken_and_asked_about(tmp_path):
     assert not any("is it meant?" in note for note in scene.notes)
     scene = read(tmp_path, {"normal": {"x": -0.6, "y": -0.8}, "tangential": "z"})
     assert any("normal points from RIGHT to LEFT" in note for note in scene.notes)
+    assert not any("leans by" in note for note in scene.notes)
+    scene = read(tmp_path, {"normal": "y", "tangential": "z"})  # the face's own is (0.6, 0.8)
+    assert any("its normal leans by 37 degrees from that of the plane" in note for note in scene.notes)
 
 
 def test_tangential_directions_are_fitted_to_a_given_normal(tmp_path):

@@ -261,7 +261,8 @@ def _error(one: Mapping[str, Any]) -> str:
     """Clause on the error of the least peak; of equal peaks the greatest."""
     count = len(one["at"])
     of = f", the greatest of {count} equal peaks" if count > 1 and one["error"] else ""
-    return f"error {short(one['error'])}{of}"
+    large = one["error"] is not None and one["error"] > SENTENCES.doubtful_error
+    return f"error {short(one['error'])}{of}{', too large to rely on' if large else ''}"
 
 
 def _higher(one: Mapping[str, Any]) -> str:

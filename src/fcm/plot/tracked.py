@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
@@ -42,7 +43,7 @@ _OPTIMUM = (
     "optimum_higher_peak",
     "optimum_kind",
 )
-_MARK, _SHADE = "#c03020", "#c0d4ea"
+_MARK, _SHADE, _TRIED = "#c03020", "#c0d4ea", "0.4"
 
 
 class DrawnTrack(Frozen):
@@ -70,6 +71,7 @@ class DrawnTracking(Frozen):
     length: str = ""
     unit: str = ""  # of the number
     at_bound: bool = False  # whether the optimum is at an end of the range of the number
+    tried: FloatArray = field(default_factory=lambda: np.empty((0, 2)))  # (value, 2) number, and peak there
     swept: Mapping[str, str] = field(default_factory=dict)  # keys of what was swept, with their units
 
 
@@ -115,8 +117,15 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             str(getattr(variables["tracked_amplitude"], "units", "")),
             str(getattr(variables["tracked_number"], "units", "")),
             kind == ["bound"],
+            _tried(data) if optimum else np.empty((0, 2)),
             {str(one.key): str(getattr(one, "units", "")) for one in of_sweep},
         )
+
+
+def _tried(data: Any) -> FloatArray:
+    """Values of the number at which an optimum was sought by trials, with the greatest peak of each."""
+    (found,) = json.loads(str(getattr(data, "summary", "{}"))).get("optimum", [{}])
+    return np.array(found.get("tried", []), dtype=np.float64).reshape(-1, 2)
 
 
 def _stays(variables: Any) -> str:
@@ -213,6 +222,9 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             names = [one for one in names if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
                 _line(axes, track, values, colours[id(track)], text)
+        if len(drawn.tried):
+            upper.plot(*drawn.tried.T, "x", color=_TRIED, markersize=4.0)
+            heights += [float(drawn.tried[:, 1].min()), float(drawn.tried[:, 1].max())]
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
         one = of_one.pop() if len(of_one) == 1 else ""
         unit = unit_of(one, drawn.length) if one else drawn.length
@@ -224,7 +236,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         if len({track.what for track in wanted}) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
         _name_swept(figure, drawn, of_sweep)
-        _name_lines(lower, wanted)
+        _name_lines(lower, wanted, len(drawn.tried) > 0)
         _name_number(lower, drawn, wanted)
         _mark_optimum(upper, lower, drawn)
     return figure
@@ -270,7 +282,7 @@ def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str 
             axes.plot(track.number, np.where(reach, y, np.nan), style, color=colour, linewidth=1.1)
 
 
-def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
+def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack], tried: bool = False) -> None:
     """Explains colours, dashed and dotted lines, where there are some."""
     stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
     peaks = {track.what for track in tracks if track.what != "fold"}
@@ -279,6 +291,7 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
     said += ["dashed: no motion stays there"] if (stable == 0.0).any() else []
     said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
     said += ["gap: it is no peak but a trough"] if any((one.trough == 1.0).any() for one in tracks) else []
+    said += ["crosses: peaks that were tried, as not all could be followed"] if tried else []
     if said:
         row = LAYOUT.meanings_of_row
         lines = ["; ".join(said[k : k + row]) for k in range(0, len(said), row)]

@@ -26,7 +26,7 @@ from fcm.model.question import Question
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.options import TOLERANCES
+from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.scene.pair_file import PairTable
 from fcm.scene.rules import POSITIVE, as_float
 from fcm.scene.section import Section, described
@@ -232,9 +232,9 @@ def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]] | tupl
 
 
 def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) -> list[str]:
-    """Note on the fitted normal, and on how flat the pairs lie."""
+    """Note on the fitted normal, and on how flat the pairs lie; a question on a given one that leans."""
     if plane is None or section.data.get("normal") != FITTED:
-        return []
+        return _said_of_lean(section, interface)
     near = int(np.abs(plane.normal).argmax())
     angle = np.degrees(np.arccos(min(float(np.abs(plane.normal[near])), 1.0)))
     terms = " ".join(
@@ -242,6 +242,26 @@ def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) 
     )
     text = f"contact {quoted(interface.name)}: normal {terms}, {angle:.3g} degrees from {AXES[near]}"
     return [f"{text}; its nodes are within {plane.off:.3g} of their plane, {plane.size:.4g} wide"]
+
+
+def _said_of_lean(section: Section, interface: Interface) -> list[str]:
+    """Question on a given normal that leans from that of the flat face of the pairs."""
+    along = _vector(section.data.get("normal"))
+    try:
+        plane = fitted_plane(0.5 * (interface.first + interface.second))
+    except MeshError:
+        return []
+    if along is None or plane.off > MESSAGES.flat_face * plane.size:
+        return []
+    angle = np.degrees(np.arccos(min(float(abs(along @ plane.normal) / np.linalg.norm(along)), 1.0)))
+    if angle <= MESSAGES.leaning_normal:
+        return []
+    return [
+        Question(
+            f"contact {quoted(interface.name)}: its normal leans by {angle:.2g} degrees from that of the "
+            'plane in which its nodes lie. Is it meant? normal = "fitted" takes that of the plane'
+        )
+    ]
 
 
 def _weights(direction: np.ndarray[Any, Any]) -> dict[str, float]:
