@@ -81,9 +81,11 @@ def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
             f"{said}. More harmonics were given up after some {most:.0f} s of work: --harmonics {which} "
             "uses them"
         )
+    fewer = found.system.harmonics[-1] < SENTENCES.few_harmonics < len(more)
+    middle = f", and --harmonics {SENTENCES.few_harmonics} takes less" if fewer else ""
     return (
         f"{said}. More harmonics would take some {_seconds(found, more, spent):.0f} s: --harmonics {which} "
-        "uses them"
+        f"uses them{middle}"
     )
 
 

@@ -50,6 +50,8 @@ class SentenceOptions(Frozen):
     ----------
     max_dofs, max_harmonics, max_frequencies : int
         Most degrees of freedom, harmonics and frequencies that are named.
+    few_harmonics : int
+        Harmonics that are proposed beside those of the accuracy, where these take long and there are fewer.
     low_peak : float
         Height of the peak with the greatest error, relative to the greatest peak, below which it is said how
         low it is.
@@ -69,6 +71,7 @@ class SentenceOptions(Frozen):
     max_dofs: int = 3
     max_harmonics: int = 6
     max_frequencies: int = 5
+    few_harmonics: int = 3
     low_peak: float = 0.1
     max_states: int = 60
     resonance_tolerance: float = 1e-5
