@@ -74,12 +74,15 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
         end = highest_linear_limit(system, frequency)
         linear = min(0.9 * lowest_linear_limit(system, frequency), 1.0)  # from where the response begins, too
         exactly = level_curve(system, frequency, LevelRange((0.0, end), linear=linear))
-        over_slight_corners = level_curve(
-            system,
-            frequency,
-            LevelRange((0.0, end), linear=linear, user_points_only=True, over_corners=True),
+        over_slight_corners, in_haste = (
+            level_curve(
+                system,
+                frequency,
+                LevelRange((0.0, end), linear=linear, user_points_only=True, over_corners=over),
+            )
+            for over in (True, False)
         )
-        paths = exactly, over_slight_corners
+        paths = exactly, over_slight_corners, in_haste
         reached = any(path.parameter[-1] == pytest.approx(end) for path in paths)
         assert (frequency in curve.uncertain_at) != reached
     assert curve.uncertain_at and curve.summary()["branches_unsure_at"] == curve.uncertain_at
