@@ -99,8 +99,8 @@ def test_where_a_peak_does_not_stay_the_greatest_motion_that_does_is_shown():
     _, table = as_table({"curves": [one, two]}, "Hz").split("\n\n")
     said, header, *rows = table.splitlines()
     assert said == (
-        "the greatest stable motions found, where a peak is unstable or its stability unknown; others "
-        "may be greater:"
+        "greatest stable motions where a peak is not known to be stable; others may be greater. Errors are "
+        "at that frequency:"
     )
     assert header.split() == ["stable", "u", "at", "Hz", "error", "stable", "v", "at", "Hz", "error"]
     assert [row.split() for row in rows] == [["1.25000", "1.50000", "1.0e-02"]]

@@ -163,6 +163,18 @@ def test_a_greater_amplitude_at_an_end_of_the_range_stands_below_a_least_peak():
         ) is is_said
 
 
+def test_a_least_peak_that_the_response_lacks_says_so_below_its_headline():
+    """The response there is traced alone, and has not the branches that other numbers lead to."""
+    found = Optimal(
+        {}, {"n": 1.0}, ("peak.u",), 0.3, (("u", 2.0),), "smooth", (1,), 1e-3, stable=(1.0,), residual=(0.0,)
+    )  # fmt: skip
+    run = {"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}
+    for amplitude, is_said in ((0.28, True), (0.3, False), (0.31, False)):
+        curve = {"complete": True, "peak": {"u": {"amplitude": amplitude, "frequency": 2.5}}}
+        shown = as_table(run | {"curves": [curve]}, "rad/s")
+        assert ("the response below, traced alone, has 0.28 at most" in shown) is is_said
+
+
 def test_a_least_peak_where_nothing_stable_was_found_says_so_in_its_headline():
     """The motion is nowhere stable between 1.9 and 2.1, so the design rests on no steady motion."""
     found = Optimal(

@@ -112,8 +112,8 @@ def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
     if not rows:
         return ""
     said = (
-        "the greatest stable motions found, where a peak is unstable or its stability unknown; others may "
-        "be greater:"
+        "greatest stable motions where a peak is not known to be stable; others may be greater. Errors are "
+        "at that frequency:"
     )
     return f"{said}\n{DofTable(names, dofs, ['stable {}', f'at {unit}', 'error'], [], rows).text(last=0)}"
 

@@ -22,6 +22,8 @@ class RemarkOptions(Frozen):
     tried: int = 2  # values listed on either side of an optimum that was found by trials
     # relative error of a peak beside an optimum, from which on it is printed
     doubtful_error: float = 0.1
+    # part by which the response at an optimum is lower than the least peak, from which on it lacks that peak
+    lacking: float = 1e-3
     lines: int = 12  # lines of a table of peaks, jumps or windows that all curves share
     of_each_curve: int = 3  # least lines of such a table for each curve
     rows: int = 10  # most contacts in the table of an interface, those with the greatest loads

@@ -182,7 +182,20 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
     where = f"{least} with {where}{kind}{_flat(one)}{_higher(one)}"
     return (
         f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}{_tried(one)}"
-        f"{_higher_at_edge(one, curve, unit)}"
+        f"{_lacking(one, curve)}{_higher_at_edge(one, curve, unit)}"
+    )
+
+
+def _lacking(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
+    """Remark that the response there, which is traced alone, lacks the least peak; or ''."""
+    dofs = {name.partition(".")[2] for name in one["minimise"]}
+    told = [curve.get("peak", {}).get(dof) or {} for dof in dofs]
+    greatest = max((peak.get("amplitude") or 0.0 for peak in told), default=0.0)
+    if not curve.get("complete") or greatest >= one["value"] * (1.0 - SENTENCES.lacking):
+        return ""
+    return (
+        f"\nthe response below, traced alone, has {greatest:.6g} at most: this peak is on a branch that the "
+        "search found from other numbers. More --harmonics may not have it"
     )
 
 
@@ -219,16 +232,11 @@ def _tried(one: Mapping[str, Any]) -> str:
     below = [pair for pair in one["tried"] if pair[0] < best][-SENTENCES.tried :]
     above = [pair for pair in one["tried"] if pair[0] > best][: SENTENCES.tried]
     peaks = ", ".join(f"{value:.4g} with {number:.5g}" for number, value in below + above)
-    error = one["end_error"]
-    known = (
-        ""
-        if error is not None and error <= SENTENCES.doubtful_error
-        else (
-            f". A higher one of these may err by {short(error)}"
-            if error is not None
-            else ". The error of a higher one of these is unknown: more --harmonics may not have it"
-        )
-    )
+    error, known = one["end_error"], ""
+    if error is None:
+        known = ". The error of a higher one of these is unknown: more --harmonics may not have it"
+    elif error > SENTENCES.doubtful_error:
+        known = f". A higher one of these may err by {short(error)}"
     return f"\ntried beside it: {peaks}. Between two of these the peak is unknown{known}"
 
 
