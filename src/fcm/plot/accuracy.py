@@ -106,7 +106,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
 def _number(value: Any) -> float:
     """A time, an error or a step read from a file, checked to be a plausible number."""
     number = float(value)
-    if not 0.0 <= number <= READ.max_bytes:
+    if not 0.0 <= number <= READ.max_number:
         raise ValueError(f"it holds {number:g} in the place of a time, an error or a step")
     return number
 

@@ -15,7 +15,7 @@ class ReadOptions(Frozen):
     # ratio of the greatest damping to that at the ends of a mode, above which it lies between them
     higher_fraction: float = 1.0 + 1e-6
     # size of a number above which it was not written as one: no result is as large, in whatever units
-    max_bytes: float = 1e100
+    max_number: float = 1e100
     # [s] processor time for reading a file; a damaged one may lead the library round in a circle
     seconds: float = 20.0
     seconds_of_megabyte: float = 1.0  # [s] further time for each megabyte of the file

@@ -295,6 +295,6 @@ def floats(variable: Any) -> FloatArray:
     """A variable of the file, with NaN where it has no value."""
     found: FloatArray = np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)
     largest = float(np.max(np.abs(found), initial=0.0, where=~np.isnan(found)))
-    if largest > READ.max_bytes:
+    if largest > READ.max_number:
         raise ValueError(f"{getattr(variable, 'name', 'a variable')} holds {largest:.3g}")
     return found

@@ -60,7 +60,7 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
                 slope * (value[:, None, :] / size[:, :, None])
                 for slope, size in ((height, peak), (frequency, at))
             ]
-        height, frequency = (np.where(np.abs(one) <= READ.max_bytes, one, np.nan) for one in known)
+        height, frequency = (np.where(np.abs(one) <= READ.max_number, one, np.nan) for one in known)
         return DrawnSensitivity(
             tuple(map(str, np.atleast_1d(variables["dof"][:]))),
             tuple(map(str, np.atleast_1d(variables["number"][:]))),
