@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fcm.results.orbits import Orbits
     from fcm.run import Execution
 
-FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
+FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41; of several, --at for each"
 _DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
 OF_NO_USE = {  # with --method exact, and why
     "table": "it needs no coefficients",
