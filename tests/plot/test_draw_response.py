@@ -207,6 +207,21 @@ def with_errors(curve, table, truncation):
     return replace(curve, table_error=table, truncation_error=truncation)
 
 
+def test_the_legend_of_all_that_lines_mean_is_within_the_picture():
+    """With errors of the table and of the harmonics, unstable, unknown and doubtful parts of two curves."""
+    large, table = np.where(FREQUENCY < 1.1, 0.5, 1e-3), np.full(201, 1e-6)
+    stable, unknown = np.abs(FREQUENCY - 1.3) > 0.05, np.abs(FREQUENCY - 1.5) < 0.05
+    curves = [
+        replace(with_errors(resonance(peak, 1.2, 5.0), table, large), stable=stable, unknown=unknown)
+        for peak in (9.0, 7.0)
+    ]
+    figure = draw_response(response(*curves))
+    figure.draw_without_rendering()
+    legend = next(one for one in figure.legends if len(one.get_texts()) > 3)
+    box = legend.get_window_extent()
+    assert len(legend.get_texts()) == 6 and figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1
+
+
 def test_errors_are_drawn_below_the_curves():
     table = np.where(FREQUENCY < 1.2, 1e-6, 0.0)
     truncation = np.where(np.abs(FREQUENCY - 1.2) < 0.1, 1e-3, 0.0)
@@ -234,8 +249,8 @@ def test_the_area_holds_the_largest_error_of_the_table():
     values, edges, _ = area.get_data()
     assert set(values[edges[1:] < 1.19]) == {1e-7} and set(values[edges[:-1] > 1.2]) == {1e-5}
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        "lower panel: error by harmonics left out",
-        "lower panel: error by the table alone (largest of all)",
+        "below: error by harmonics left out",
+        "below: error by the table (largest)",
     ]  # fmt: skip
 
 

@@ -51,10 +51,10 @@ def name_errors(
     from matplotlib.patches import Patch
 
     names: dict[str, Line2D | Patch] = {**notes}
-    names["lower panel: error by harmonics left out"] = Line2D([], [], color=colours[0], linewidth=width)
+    names["below: error by harmonics left out"] = Line2D([], [], color=colours[0], linewidth=width)
     if (_largest(curves)[1] > 0.0).any():
-        of_all = " (largest of all)" if len(curves) > 1 else ""
-        names[f"lower panel: error by the table alone{of_all}"] = Patch(color=_GREY)
+        of_all = " (largest)" if len(curves) > 1 else ""
+        names[f"below: error by the table{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
 
 
