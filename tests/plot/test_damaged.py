@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
+from fcm.model.scene import Aim, Optimum
 from fcm.plot.errors import PlotError
 from fcm.plot.read import opened
 from fcm.response import trace
+from fcm.response.optimum import optimise
 from fcm.results.output import write_netcdf
 
 KINDS = ("response", "peak", "loop", "mode", "history", "sensitivity", "accuracy")
@@ -64,6 +66,19 @@ def test_a_summary_that_is_not_of_nonlinear_modes_is_refused(fcm, text):
     with netCDF4.Dataset("a.nc", "a") as data:
         data.summary = text
     refused(fcm("plot", "mode", "a.nc"), "a.nc: not ")
+
+
+TRIED = ("5", "[]", '{"optimum": 3}', '{"optimum": [1]}', '{"optimum": [{"tried": [[null, 2]]}]}', "{")
+
+
+def test_a_summary_without_numbers_that_an_optimum_tried_is_refused(fcm):
+    vary = Optimum(("contact.shroud.n_0",), ((5.0, 15.0),), (Aim("u"),))
+    write_netcdf(optimise(replace(load_scene("yang1998-n5"), optimum=vary), harmonics=1), "a.nc")
+    assert fcm("plot", "peak", "a.nc").code == 0
+    for text in TRIED:
+        with netCDF4.Dataset("a.nc", "a") as data:
+            data.summary = text
+        refused(fcm("plot", "peak", "a.nc"), "a.nc: not ")
 
 
 @pytest.mark.slow

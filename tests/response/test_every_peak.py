@@ -104,28 +104,29 @@ def test_where_the_error_of_a_peak_is_unknown_that_of_its_point_is_there():
 BRANCHES = Path(__file__).parents[1] / "branches/scenes"
 
 
-def test_a_peak_on_a_closed_branch_is_marked(tmp_path):
-    """The stop's closed branch lies between its two folds, and the higher peak is on the other branch."""
+def test_a_peak_on_an_isolated_branch_is_marked():
+    """The stop's isolated branch lies between its two folds, and the higher peak is on the other branch."""
     done = called("respond", BRANCHES / "closed_impact.toml", "--json")
     (curve,) = json.loads(done.out)["curves"]
-    ((low, high),) = curve["closed_branches"]
+    ((low, high),) = curve["isolated_branches"]
     assert (low, high) == pytest.approx((1.492, 1.969), rel=3e-3)  # of the exact motion
     assert min(abs(np.array(curve["folds"]) - low)) < 1e-3 > min(abs(np.array(curve["folds"]) - high))
     marked = [low <= one["frequency"] <= high and one["amplitude"] < 1.0 for one in curve["peaks"]["y"]]
-    assert marked == [one.get("on_closed_branch", False) for one in curve["peaks"]["y"]] == [True, False]
+    assert marked == [one.get("on_isolated_branch", False) for one in curve["peaks"]["y"]] == [True, False]
     done = called("respond", BRANCHES / "closed_impact.toml")
-    assert f"{curve['peaks']['y'][0]['frequency']:.5f}^" in done.out and "^ on a closed branch" in done.out
-    assert "isolated" not in done.err
+    assert f"{curve['peaks']['y'][0]['frequency']:.5f}^" in done.out and "^ on an isolated branch" in done.out
 
 
-def test_a_branch_that_goes_on_as_its_mirror_image_is_not_closed():
-    """It comes back to its amplitudes, and not to its motion: at the end of the range, or beyond."""
+def test_a_closed_branch_that_another_crosses_is_not_isolated():
+    """Unsymmetric motions make a loop from the symmetric ones and back: a sweep may go on to it."""
     (curve,) = trace(load_scene(BRANCHES / "equal_stops.toml")).curves
-    known = np.isfinite(curve.frequency)
-    back = 0
+    known, even = np.isfinite(curve.frequency), np.array(curve.harmonics) % 2 == 0
+    unsymmetric = np.abs(curve.harmonic[:, even]).max(axis=(1, 2)) / np.abs(curve.harmonic).max(axis=(1, 2))
+    loops = []
     for k in np.unique(curve.branch[known]):
         rows = np.flatnonzero((curve.branch == k) & known)
-        same = np.allclose(curve.amplitude[rows[0]], curve.amplitude[rows[-1]], rtol=1e-6)
-        back += same and curve.frequency[rows[0]] in (0.6, 2.0)
-    closed = curve.summary().get("closed_branches", [])
-    assert back == 2 and all(0.6 < low < high < 2.0 for low, high in closed)
+        ends = [np.append(curve.harmonic[i].ravel(), curve.frequency[i]) for i in rows[[0, -1]]]
+        if np.allclose(*ends, rtol=1e-6, atol=1e-12) and curve.frequency[rows[0]] not in (0.6, 2.0):
+            loops.append(unsymmetric[rows])
+    assert len(loops) == 1 and loops[0].min() < 1e-12 and loops[0].max() > 0.01
+    assert "isolated_branches" not in curve.summary()

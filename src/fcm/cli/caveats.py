@@ -122,7 +122,8 @@ def of_more_harmonics(summary: Mapping[str, Any]) -> str:
     small. Of curves over the frequency by a balance alone."""
     from fcm.response.options import INPUT_LIMITS
 
-    curves = [one for one in summary["curves"] if "harmonics" in one and not {"mode", "level_folds"} & {*one}]
+    completed = _completed(summary)
+    curves = [one for one in completed if "harmonics" in one and not {"mode", "level_folds"} & {*one}]
     shown = shown_dofs(summary) if curves else []
     highest = [curve["peak"].get(dof) or {} for curve in curves for dof in shown]
     lower = [one for curve in curves for dof in shown for one in curve.get("peaks", {}).get(dof, ())]

@@ -33,9 +33,10 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, but for rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_CLOSED = "^"  # beside that of a peak on a closed branch
-_OF_CLOSED = (
-    f"{_CLOSED} on a closed branch, which no end of the range is on: a sweep comes to it by a jump, or never"
+_ISOLATED = "^"  # beside that of a peak on an isolated branch
+_OF_ISOLATED = (
+    f"{_ISOLATED} on an isolated branch: closed, and crossed by no other. A sweep comes to it by a jump, or "
+    "never"
 )
 _UNKNOWN = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
@@ -151,7 +152,7 @@ def _error(peak: Mapping[str, Any]) -> str:
 
 def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
     """Amplitude, frequency and error, with their marks."""
-    marks = (_EDGE if peak.get("at_edge") else "") + (_CLOSED if peak.get("on_closed_branch") else "")
+    marks = (_EDGE if peak.get("at_edge") else "") + (_ISOLATED if peak.get("on_isolated_branch") else "")
     at = number(peak.get("frequency")) + marks
     return [number(peak.get("amplitude")) + _mark_of(peak), at, _error(peak)]
 
@@ -280,8 +281,8 @@ def _curves(
         lines.append(f"{_EDGE} at an end of the range: {beyond}")
     lower = _lower_peaks(curves, dofs)
     highest = [curve["peak"].get(dof) or {} for curve in curves for dof in dofs]
-    if any(peak.get("on_closed_branch") for peak in [*highest, *lower]):
-        lines.append(_OF_CLOSED)
+    if any(peak.get("on_isolated_branch") for peak in [*highest, *lower]):
+        lines.append(_OF_ISOLATED)
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")

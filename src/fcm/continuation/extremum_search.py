@@ -85,8 +85,6 @@ class ExtremumSearch:
     def extreme(self, output: int | None) -> Sample:
         """The sample at the extremum of an output, or of the parameter without one, as near as found."""
         low, high = self._between(output)
-        if high.at == low.at:  # two points at one place, as on either side of a corner
-            return high
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True
         for _ in range(self.stepper.options.events.max_evaluations):

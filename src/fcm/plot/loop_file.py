@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +15,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, curves_there, floats, on_curve, opened, read_response
 from fcm.plot.reader_process import apart
+from fcm.plot.summary import summary_of
 
 _ENERGY = "dissipated_energy"
 _ALSO = (
@@ -198,8 +198,7 @@ def _motions(data: Any) -> MotionFile | None:
     orders = floats(data["contact_harmonic"])
     if not orders.size or (orders < 1.0).any() or (orders % 1.0).any() or not (np.diff(orders) > 0.0).all():
         raise ValueError("contact_harmonic is not of numbers from 1 on, one after the other")
-    said = json.loads(str(getattr(data, "summary", "{}")))
-    names = said.get("directions", {}) if isinstance(said, dict) else {}
+    names = summary_of(data).get("directions", {})
     law = np.stack([floats(data[name]) for name in _MOTION[4:]])
     mean, amplitude, phase = (floats(data[name]) for name in _MOTION[1:4])
     harmonics = tuple(int(h) for h in orders)

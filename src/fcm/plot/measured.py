@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from fcm.frozen import Frozen
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.style import LAYOUT
+from fcm.plot.summary import summary_of
 from fcm.units import EXCITED, UNIT
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def fitted_of(data: Any) -> tuple[FittedNumber, ...]:
     if not any(name in data.variables for name in ("data_frequency", "data_displacement")):
         return ()
     try:
-        numbers = json.loads(str(getattr(data, "summary", "{}"))).get("fitted", {}).get("numbers", {})
+        numbers = summary_of(data).get("fitted", {}).get("numbers", {})
         return tuple(
             FittedNumber(
                 str(key),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
@@ -28,6 +27,7 @@ from fcm.plot.options import READ
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import DOTS, LAYOUT, house_style, new_figure, sequence_colours, split
+from fcm.plot.summary import summary_of
 from fcm.plot.unfinished import NO_SPAN, Unfinished, mark_unfinished, say_unfinished, unfinished_of
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ class Resonance(NamedTuple):
 def resonances_of(data: Any) -> list[tuple[Resonance, ...]]:
     """Resonances of each curve, from the file's summary."""
     try:
-        curves = json.loads(str(getattr(data, "summary", "{}"))).get("curves", ())
+        curves = summary_of(data).get("curves", ())
         return [
             tuple(
                 Resonance(

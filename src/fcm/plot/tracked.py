@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
@@ -15,6 +14,7 @@ from fcm.plot.curve_names import name_at_side
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
+from fcm.plot.options import READ
 from fcm.plot.peak import ring_at
 from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.reader_process import apart
@@ -27,6 +27,7 @@ from fcm.plot.style import (
     sequence_colours,
     swept_axis,
 )
+from fcm.plot.summary import summary_of
 from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
@@ -124,8 +125,14 @@ def read_tracked(path: Path) -> DrawnTracking | None:
 
 def _tried(data: Any) -> FloatArray:
     """Values of the number at which an optimum was sought by trials, with the greatest peak of each."""
-    (found,) = json.loads(str(getattr(data, "summary", "{}"))).get("optimum", [{}])
-    return np.array(found.get("tried", []), dtype=np.float64).reshape(-1, 2)
+    try:
+        (found,) = summary_of(data).get("optimum", [{}])
+        tried = np.array(found.get("tried", []), dtype=np.float64).reshape(-1, 2)
+    except (AttributeError, TypeError) as error:
+        raise ValueError("its summary has no optimum that was tried") from error
+    if not (np.abs(tried) <= READ.max_number).all():
+        raise ValueError("its optimum was tried at what is no number")
+    return tried
 
 
 def _stays(variables: Any) -> str:
@@ -222,7 +229,8 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             names = [one for one in names if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
                 _line(axes, track, values, colours[id(track)], text)
-        if len(drawn.tried):
+        tried = len(drawn.tried) > 0 and len(wanted) == len(peaks)  # of several peaks they are the greatest
+        if tried:
             upper.plot(*drawn.tried.T, "x", color=_TRIED, markersize=4.0)
             heights += [float(drawn.tried[:, 1].min()), float(drawn.tried[:, 1].max())]
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
@@ -236,7 +244,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         if len({track.what for track in wanted}) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
         _name_swept(figure, drawn, of_sweep)
-        _name_lines(lower, wanted, len(drawn.tried) > 0)
+        _name_lines(lower, wanted, tried)
         _name_number(lower, drawn, wanted)
         _mark_optimum(upper, lower, drawn)
     return figure

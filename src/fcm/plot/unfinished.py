@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.plot.style import LAYOUT
+from fcm.plot.summary import summary_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ def unfinished_of(data: Any) -> Unfinished:
     if "complete" not in data.variables:
         return Unfinished()
     whole = np.atleast_1d(np.ma.filled(np.ma.asarray(data.variables["complete"][:], dtype=float), 1.0)) == 1.0
-    found = _summary(data)
+    found = summary_of(data)
     fit = _of_fit(found.get("fitted"))
     if whole.all():
         return Unfinished(("",) * whole.size, fit=fit)
@@ -65,13 +65,6 @@ def _of_fit(fitted: Any) -> str:
     if not fitted.get("final", True):
         return "interrupted: the numbers are the best so far"
     return "" if fitted.get("settled", True) else "its search stopped before a minimum"
-
-
-def _summary(data: Any) -> dict[str, Any]:
-    found = json.loads(str(getattr(data, "summary", "{}")))
-    if not isinstance(found, dict):
-        raise ValueError("its attribute summary is not of a response")
-    return found
 
 
 def open_ends(x: FloatArray, y: FloatArray, span: tuple[float, float]) -> list[int]:

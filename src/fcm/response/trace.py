@@ -24,7 +24,7 @@ from fcm.at_rest import RestOptions
 from fcm.branches.options import FOLDS
 from fcm.branches.shakedown import shakedown_at
 from fcm.contact.contact_law import ContactLawError
-from fcm.continuation import Mark
+from fcm.continuation import Mark, Path, Status
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import seconds_of
@@ -247,6 +247,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         shakedown_at=np.nan if quick else shakedown_at(system, points.z[:, -1], words),
         levels=[one.omega for one in found.traced.found],
         folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
+        isolated=tuple(k for k, path in enumerate(paths) if _is_isolated(path)),
         mirrored=len(found.traced.mirrored),
         not_confirmed=not_confirmed,
     )
@@ -260,6 +261,11 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     if response.found is not found:
         curve.peaks = with_tops(curve.peaks, found)
     return curve
+
+
+def _is_isolated(path: Path) -> bool:
+    """Whether a path is closed, and no other one crosses it at a branch point."""
+    return path.status is Status.CLOSED and not path.where(Mark.BRANCH).any()
 
 
 def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatArray:

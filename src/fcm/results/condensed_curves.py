@@ -12,7 +12,6 @@ from fcm.contact.limits import FloatArray
 from fcm.frozen import Frozen
 from fcm.results.jumps import FrequencySweep
 from fcm.results.lower_peaks import lower_peaks, rise_beside
-from fcm.results.options import RESULTS
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
 if TYPE_CHECKING:
@@ -36,10 +35,10 @@ class CondensedCurve(Frozen):
     stable_peaks: FloatArray
     linear: str  # how the response is that of a linear structure; empty if it is not
     # (peak, 6): dof, amplitude, frequency [rad/s], error and stability of peaks that are not the highest, and
-    # whether they are on a closed branch
+    # whether they are on an isolated branch
     lower_peaks: FloatArray
-    closed_branches: tuple[tuple[float, float], ...]  # [rad/s] lowest and highest frequency of each
-    highest_on_closed: npt.NDArray[np.bool_]  # (dof,) whether the highest peak is on one of them
+    isolated_branches: tuple[tuple[float, float], ...]  # [rad/s] lowest and highest frequency of each
+    highest_on_isolated: npt.NDArray[np.bool_]  # (dof,) whether the highest peak is on one of them
 
     def at(self, shown: npt.NDArray[np.bool_]) -> CondensedCurve:
         """The summary restricted to some of the degrees of freedom."""
@@ -50,14 +49,14 @@ class CondensedCurve(Frozen):
             swept=self.swept.at(shown),
             stable_peaks=self.stable_peaks[shown],
             lower_peaks=lower,
-            highest_on_closed=self.highest_on_closed[shown],
+            highest_on_isolated=self.highest_on_isolated[shown],
         )
 
 
 def condense(curve: Curve) -> CondensedCurve:
     """The condensed numbers of a curve that has all its points."""
     known = curve.frequency[np.isfinite(curve.frequency)]
-    closed, on_closed = _closed_branches(curve)
+    isolated, on_isolated = _isolated_branches(curve)
     return CondensedCurve(
         points=known.size,
         ends=_ends(curve, known),
@@ -69,9 +68,9 @@ def condense(curve: Curve) -> CondensedCurve:
         truncation_error_at=_at_worst(curve),
         stable_peaks=_stable_peaks(curve),
         linear=_linear(curve),
-        lower_peaks=_lower_peaks(curve, on_closed),
-        closed_branches=closed,
-        highest_on_closed=_highest_on_closed(curve, on_closed),
+        lower_peaks=_lower_peaks(curve, on_isolated),
+        isolated_branches=isolated,
+        highest_on_isolated=_highest_on_isolated(curve, on_isolated),
     )
 
 
@@ -129,47 +128,23 @@ def _stable_peaks(curve: Curve) -> FloatArray:
     return found
 
 
-def _closed_branches(curve: Curve) -> tuple[tuple[tuple[float, float], ...], npt.NDArray[np.bool_]]:
-    """Lowest and highest frequency of each branch that comes back to its first point, and the points (point,)
-    of these; of a curve over all of the frequency."""
-    on_closed, ends = np.zeros(curve.frequency.size, dtype=bool), list[tuple[float, float]]()
-    if curve.level is not None or curve.mode is not None or curve.orbits is not None:
-        return (), on_closed
-    branch, known = curve.branch, np.isfinite(curve.frequency)
-    span = _ends(curve, curve.frequency[known])
-    for k in np.unique(branch[known]).tolist():
-        rows = np.flatnonzero((branch == k) & known)
-        first, last = rows[[0, -1]]
-        frequency = curve.frequency[rows]
-        if frequency[0] not in span and np.ptp(frequency) > 0.0 and _is_same_motion(curve, first, last):
-            on_closed[rows] = True
-            ends.append((float(frequency.min()), float(frequency.max())))
-    return tuple(sorted(ends)), on_closed
+def _isolated_branches(curve: Curve) -> tuple[tuple[tuple[float, float], ...], npt.NDArray[np.bool_]]:
+    """Lowest and highest frequency [rad/s] of each isolated branch, and the points (point,) on these."""
+    on_isolated = np.isin(curve.branch, curve.isolated) & np.isfinite(curve.frequency)
+    each = [curve.frequency[on_isolated & (curve.branch == k)] for k in curve.isolated]
+    return tuple(sorted((float(one.min()), float(one.max())) for one in each)), on_isolated
 
 
-def _is_same_motion(curve: Curve, i: int, j: int) -> bool:
-    """Whether two points are one; the mirror image of a motion has its amplitudes, but not its mean and its
-    even harmonics."""
-    parts: list[npt.NDArray[Any]] = [curve.frequency[:, None], curve.amplitude, curve.mean]
-    if curve.harmonic is not None:
-        parts.append(curve.harmonic.reshape(len(curve.frequency), -1))
-    tolerance = RESULTS.jumps.amplitude_tolerance
-    return all(
-        float(np.abs(x[i] - x[j]).max(initial=0.0)) <= tolerance * float(np.abs(x[[i, j]]).max(initial=0.0))
-        for x in parts
-    )
-
-
-def _highest_on_closed(curve: Curve, on_closed: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Whether the highest point of each degree of freedom is on a closed branch: (dof,)."""
-    if not on_closed.any():
+def _highest_on_isolated(curve: Curve, on_isolated: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Whether the highest point of each degree of freedom is on an isolated branch: (dof,)."""
+    if not on_isolated.any():
         return np.zeros(curve.amplitude.shape[1], dtype=bool)
     heights = np.where(np.isnan(curve.amplitude), -np.inf, curve.amplitude)
-    found: npt.NDArray[np.bool_] = on_closed[heights.argmax(axis=0)]
+    found: npt.NDArray[np.bool_] = on_isolated[heights.argmax(axis=0)]
     return found
 
 
-def _lower_peaks(curve: Curve, on_closed: npt.NDArray[np.bool_]) -> FloatArray:
+def _lower_peaks(curve: Curve, on_isolated: npt.NDArray[np.bool_]) -> FloatArray:
     """Peaks beside the highest, of a curve over all of the frequency; errors are those of the points, at
     least what may be between them."""
     if curve.level is not None or curve.mode is not None or _is_partial(curve):
@@ -181,7 +156,7 @@ def _lower_peaks(curve: Curve, on_closed: npt.NDArray[np.bool_]) -> FloatArray:
         for dof, at in zip(d, k.tolist(), strict=True)
     ]
     error = np.maximum(curve.error[k, d], beside)
-    columns = (d, height, curve.frequency[k], error, curve.stable[k], on_closed[k])
+    columns = (d, height, curve.frequency[k], error, curve.stable[k], on_isolated[k])
     return np.transpose(columns).astype(np.float64)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fcm.sensitivity.peaks import Sensitivities
 
 
-_ON_CLOSED = "on_closed_branch"  # key of a peak that is
+_ON_ISOLATED = "on_isolated_branch"  # key of a peak that is
 
 
 def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
@@ -67,13 +67,13 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         dof: _peak(curve, peak, condensed, unit)
         | _error_there(curve, d)
         | _stable_peak(peak, stays, unit)
-        | ({_ON_CLOSED: True} if condensed.highest_on_closed[d] else {})
+        | ({_ON_ISOLATED: True} if condensed.highest_on_isolated[d] else {})
         for d, ((dof, peak), stays) in enumerate(
             zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
         )
     }
-    if condensed.closed_branches:
-        out["closed_branches"] = in_unit(np.array(condensed.closed_branches), unit).tolist()
+    if condensed.isolated_branches:
+        out["isolated_branches"] = in_unit(np.array(condensed.isolated_branches), unit).tolist()
     if peaks := _every_peak(out["peak"], condensed, unit):
         out["peaks"] = peaks
     if curve.greatest is not None and contacts:
@@ -183,13 +183,13 @@ def _every_peak(
     keys = ("amplitude", "frequency", "error", "stable", "at_edge")
     found: dict[str, list[dict[str, Any]]] = {}
     dofs = list(highest)
-    for d, amplitude, omega, error, stable, closed in condensed.lower_peaks.tolist():
+    for d, amplitude, omega, error, stable, isolated in condensed.lower_peaks.tolist():
         dof = dofs[int(d)]
-        top = {key: highest[dof][key] for key in (*keys, _ON_CLOSED) if key in highest[dof]}
+        top = {key: highest[dof][key] for key in (*keys, _ON_ISOLATED) if key in highest[dof]}
         every = found.setdefault(dof, [top])
         told = None if np.isnan(stable) else bool(stable)
         values = (amplitude, float(in_unit(omega, unit)), error, told, False)
-        every.append(dict(zip(keys, values, strict=True)) | ({_ON_CLOSED: True} if closed else {}))
+        every.append(dict(zip(keys, values, strict=True)) | ({_ON_ISOLATED: True} if isolated else {}))
     return {dof: sorted(every, key=lambda one: one["frequency"]) for dof, every in found.items()}
 
 

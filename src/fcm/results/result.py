@@ -74,6 +74,7 @@ class Curve:
     levels: list[float] | None = None  # [rad/s] at which the level of the forces was followed, if known
     folds_between: tuple[float, float] | None = None  # levels of the forces, see `fcm.branches.isolas`
     not_confirmed: int = 0  # points of unknown stability, where those that may be looked at did not suffice
+    isolated: tuple[int, ...] = ()  # branches of a balance that are closed, and that no other one crosses
     mirrored: int = 0  # branches whose mirror images are branches, too, and are not traced
     evaluations: int = 0  # of the equations, to follow it
     level: FloatArray | None = None  # (point,) of the forces, where that is what is followed

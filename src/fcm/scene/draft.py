@@ -17,11 +17,12 @@ from fcm.scene.cyclic import ring_of
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.excitation import DIRECTIONS, base_force, load_of
 from fcm.scene.mistuning import mistuned_modes, turned
-from fcm.scene.modal import UNITS, modal_of
+from fcm.scene.modal import modal_of
 from fcm.scene.parts import contact_of, force_of
 from fcm.scene.rules import RULES, Rule
 from fcm.scene.section import Parts
 from fcm.scene.sweep import SweptKey, combinations, field_of
+from fcm.units import UNIT
 
 
 class Draft(Frozen):
@@ -198,9 +199,9 @@ def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
 def modes_of(parts: Parts, unit: str) -> tuple[Modal, Ring | None]:
     """The modes, which are those that the mean meets where the scene is a sector of a ring."""
     if parts["cyclic"]:
-        return ring_of(parts["modal"], parts["cyclic"][0], UNITS[unit])
+        return ring_of(parts["modal"], parts["cyclic"][0], UNIT[unit])
     if parts.get("whole"):
-        return modal_of(mistuned_modes(parts["modal"], parts["whole"][0], UNITS[unit]), unit), None
+        return modal_of(mistuned_modes(parts["modal"], parts["whole"][0], UNIT[unit]), unit), None
     return modal_of(parts["modal"], unit), None
 
 

@@ -16,13 +16,12 @@ from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.measured_file import read_measured
-from fcm.scene.modal import UNITS
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
-from fcm.units import QUANTITIES, in_unit
+from fcm.units import QUANTITIES, UNIT, in_unit
 
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
@@ -59,7 +58,7 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
         section.wrong("data", "missing; give [[fit.data]] with the file of measured points")
     units = top.data.get("units")
     length = str(units.get("length", "")) if isinstance(units, Mapping) else ""
-    data = [_data(one, files, draft, reported, UNITS[unit], length) for one in sections]
+    data = [_data(one, files, draft, reported, UNIT[unit], length) for one in sections]
     if section.mistakes.count > before:
         return None
     known = tuple(one for one in data if one)

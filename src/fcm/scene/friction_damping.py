@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
-from fcm.scene.listing import along_contacts, closed_stiffness, sticking_stiffness
+from fcm.scene.contact_springs import along_contacts, closed_stiffness, sticking_stiffness
 from fcm.scene.options import FRICTION_DAMPING, TOLERANCES
 from fcm.units import UNIT
 

@@ -16,11 +16,12 @@ from fcm.scene.errors import choices, quoted
 from fcm.scene.excitation import BASE, DIRECTIONS, distributions, with_displacements
 from fcm.scene.files import Files
 from fcm.scene.mistuning import energy_of_matrices
-from fcm.scene.modal import KEYS, UNITS, read_modal
+from fcm.scene.modal import KEYS, read_modal
 from fcm.scene.names import Names, RowNames
 from fcm.scene.options import LIMITS
 from fcm.scene.section import Part, Parts, Section, described
 from fcm.structure.rigid_body import MOST, rigid_by_gap
+from fcm.units import UNIT
 
 if TYPE_CHECKING:
     from fcm.scene.structure_table import Matrices
@@ -73,7 +74,7 @@ def with_modes(
     draft["exchanged"] = exchanged(
         matrices, draft["frequency"][: draft["frequency"].size - draft["added"]], ends
     )
-    draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
+    draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNIT[unit], "shapes": shapes.T}
     columns = {name: shapes.T @ load for name, load in over_rows.items()}
     return with_displacements(parts | {"modal": draft}, columns), notes
 
@@ -143,7 +144,7 @@ def _of_ring(
     of_next = np.zeros_like(draft["shapes"])  # what they are follows from the sector's own
     columns = {name: draft["shapes"] @ load for name, load in over_rows.items()}
     shapes = np.concatenate((draft["shapes"], of_next), axis=1)
-    draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes}
+    draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNIT[unit], "shapes": shapes}
     return with_displacements(parts | {"modal": draft}, columns), notes
 
 
@@ -160,7 +161,7 @@ def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tupl
     if not count or np.isnan(ends[0]):
         return parts, []
     lowest = np.sort(frequency[frequency > 0.0])[:count]
-    if lowest[-1] * UNITS[unit] > LIMITS.of_no_interest * ends[0]:
+    if lowest[-1] * UNIT[unit] > LIMITS.of_no_interest * ends[0]:
         return parts, []
     if count == 1:
         note = f"modal: the mode of {lowest[0]:.3g} {unit} is a rigid-body mode: taken as 0"

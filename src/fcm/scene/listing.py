@@ -9,9 +9,11 @@ import numpy as np
 from fcm.model.question import Question
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
+from fcm.scene.contact_springs import stuck_stiffness
 from fcm.scene.errors import counted
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
+from fcm.units import UNIT
 
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
 POUND_AND_INCH = float(np.sqrt(386.09))  # of frequencies, by the acceleration of gravity in in/s^2
@@ -25,7 +27,6 @@ IMPERIAL_SLIPS = {
     POUND_AND_INCH: "the range would hold modes if frequencies were 19.6 times as high. So it is with a "
     "stiffness in lbf/in and a mass in lb: divide the mass by 386",
 }
-UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
 
 FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out
 
@@ -89,17 +90,18 @@ def resonance_doubt(scene: Scene) -> str:
         return ""
     ranges, room = _ranges_of_forces(scene), MESSAGES.range_near
     near, alone = [(low / room, high * room) for low, high in ranges], _modes_alone(scene)
-    if _resonance_within(alone, alone, *ranges):  # the contacts need not be asked
+    enough = ranges if scene.of_matrices else near
+    if _resonance_within(alone, alone, *enough):  # the contacts need not be asked
         return ""
     opened, stuck = _modes_open_and_stuck(scene)
-    if not opened.size or _resonance_within(opened, stuck, *ranges):
+    if not opened.size or _resonance_within(opened, stuck, *enough):
         return ""
     ends, unit = ranges[0], scene.frequency_unit
     is_near = _resonance_within(opened, stuck, *near)
     margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
     within = (ends[0] * margin, ends[1] / margin)
     slip = _slip_of_units(opened[:1], stuck[:1], within, unit, imperial="lbf" in scene.units)
-    if is_near and not (scene.of_matrices and slip == _IN_HERTZ):
+    if is_near and slip != _IN_HERTZ:
         return ""
     places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
     if scene.contacts:
@@ -153,35 +155,8 @@ def _nearest(frequency: FloatArray, ends: tuple[float, float]) -> float:
 
 def _stuck(scene: Scene) -> FloatArray:
     """Frequencies (mode,) [rad/s], ascending, of the structure whose contacts all stick, in its modes."""
-    squares: FloatArray = np.asarray(np.linalg.eigvalsh(_stuck_stiffness(scene)), dtype=np.float64)
+    squares: FloatArray = np.asarray(np.linalg.eigvalsh(stuck_stiffness(scene)), dtype=np.float64)
     return np.sqrt(np.maximum(squares, 0.0))
-
-
-def along_contacts(scene: Scene, normal: bool) -> FloatArray:
-    """Displacements (mode, direction) of modes of mass 1 along the contacts' normals, or where they slide."""
-    each = [one.directions[-1:] if normal else one.directions[:-1] for one in scene.contacts]
-    moved: FloatArray = scene.modal.shapes @ np.array([one for many in each for one in many]).T
-    return moved / np.sqrt(scene.modal.mass)[:, None]
-
-
-def closed_stiffness(scene: Scene) -> FloatArray:
-    """The stiffness (mode, mode) with all contacts closed and without friction, in modes of mass 1."""
-    normal = along_contacts(scene, normal=True)
-    found: FloatArray = np.diag(scene.modal.frequency**2)
-    return found + (normal * [one.k_v for one in scene.contacts]) @ normal.T
-
-
-def sticking_stiffness(scene: Scene) -> FloatArray:
-    """Stiffness (mode, mode) that sticking contacts add by friction, in modes of mass 1."""
-    along = along_contacts(scene, normal=False)
-    k_u = [one.k_u for one in scene.contacts for _ in one.directions[:-1]]
-    found: FloatArray = (along * k_u) @ along.T
-    return found
-
-
-def _stuck_stiffness(scene: Scene) -> FloatArray:
-    """The stiffness (mode, mode) with all contacts stuck, in modes of mass 1."""
-    return closed_stiffness(scene) + sticking_stiffness(scene)
 
 
 def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
@@ -191,7 +166,7 @@ def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
     """
     import scipy.linalg  # which most runs do without
 
-    modal, stiffness = scene.modal, _stuck_stiffness(scene)
+    modal, stiffness = scene.modal, stuck_stiffness(scene)
     floating = int((modal.frequency == 0.0).sum())  # contacts leave so many rigid-body modes at most
     last = min(floating + MESSAGES.stuck_modes, len(stiffness)) - 1
     squares, turn = scipy.linalg.eigh(stiffness, subset_by_index=[0, last])

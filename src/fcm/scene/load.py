@@ -40,7 +40,6 @@ from fcm.scene.linear import (
 )
 from fcm.scene.mistuning import KEY as MISTUNING
 from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_sweep, whole_ring
-from fcm.scene.modal import UNITS
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
 from fcm.scene.options import FILES, MESSAGES, TOLERANCES
@@ -64,6 +63,7 @@ from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
 from fcm.scene.size_notices import SizeNotices
 from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.toml import read_toml
+from fcm.units import UNIT
 
 NOT_IN_PLANE = (
     "simulates contacts on a line alone, between whose events the structure is linear. A contact with two "
@@ -404,11 +404,11 @@ def _moved_by(curve: Scene, harmonic: int) -> bool:
 
 def _unit(top: Section) -> str:
     unit = top.data.get("frequency_unit", "rad/s")
-    if isinstance(unit, str) and unit in UNITS:
+    if isinstance(unit, str) and unit in UNIT:
         return unit
     what = quoted(unit) if isinstance(unit, str) else kind(unit)
     word = unit if isinstance(unit, str) else ""
-    top.wrong("frequency_unit", f"must be {' or '.join(map(quoted, UNITS))}, is {what}", word, UNITS)
+    top.wrong("frequency_unit", f"must be {' or '.join(map(quoted, UNIT))}, is {what}", word, UNIT)
     return "rad/s"
 
 

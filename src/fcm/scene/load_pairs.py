@@ -11,11 +11,11 @@ from fcm.scene.errors import Mistakes
 from fcm.scene.files import Files
 from fcm.scene.linear import read_linear
 from fcm.scene.load import path_of
-from fcm.scene.modal import UNITS
 from fcm.scene.options import FILES
 from fcm.scene.parts import read_contacts, read_units
 from fcm.scene.section import Section
 from fcm.scene.toml import read_toml
+from fcm.units import UNIT
 
 
 class Pairs(Frozen):
@@ -37,7 +37,7 @@ def load_pairs(path_or_name: str | Path, *, largest_file: int = FILES.largest) -
     mistakes, inputs = Mistakes(name), Files(path.parent, largest_file)
     top = Section(read_toml(path, name), "", mistakes)
     given = top.data.get("frequency_unit")
-    unit = given if isinstance(given, str) and given in UNITS else "rad/s"
+    unit = given if isinstance(given, str) and given in UNIT else "rad/s"
     modal, _ = read_linear(top, inputs, unit, read_cyclic(top))
     read_contacts(top, modal["dofs"], inputs)
     length, _ = read_units(top)

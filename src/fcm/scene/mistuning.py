@@ -272,9 +272,9 @@ def _energy_of_modes(top: Section, found: Part, modal: Part, shapes: Any) -> tup
         what = f"mode {least + 1} {other}"
         found["section"].wrong("stiffness", f"missing: {what}; give the blade's stiffness")
         return None, []
-    from fcm.scene.modal import UNITS
+    from fcm.units import UNIT
 
-    strain = strain * UNITS[top.data.get("frequency_unit", "rad/s")]
+    strain = strain * UNIT[top.data.get("frequency_unit", "rad/s")]
     note = (
         "cyclic.mistuning: the i-th modes of all diameters are taken as a family in which a sector deforms "
         f"alike, its whole stiffness times the factor. The shapes are alike to {1.0 - likeness[least]:.2g}"

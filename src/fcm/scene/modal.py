@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -16,10 +15,10 @@ from fcm.scene.names import Names, checked_names
 from fcm.scene.ring_modes import complex_row, read_diameters, travelling
 from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
+from fcm.units import UNIT
 
 KEYS = ("dofs", "mass", "frequency", "damping", "shapes", "participation", "diameter")
 NEEDED = ("dofs", "frequency", "damping", "shapes")  # of these: in the scene or in its file
-UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
 
 
 def read_modal(
@@ -59,7 +58,7 @@ def read_modal(
 def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     """The modal structure, in rad/s, of what was read; its arrays cannot be changed."""
     arrays = {key: draft[key] for key in ("mass", "damping", "shapes")}
-    arrays["frequency"] = draft["frequency"] * UNITS[unit]
+    arrays["frequency"] = draft["frequency"] * UNIT[unit]
     for array in arrays.values():
         array.flags.writeable = False
     more = {key: draft[key] for key in ("added", "complete") if key in draft}
@@ -86,7 +85,7 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
         return None, []
     notes, unused = found.pop("notes"), found.pop("unused")
     if "angular_frequency" in found:
-        found["frequency"] = found.pop("angular_frequency") / UNITS[unit]
+        found["frequency"] = found.pop("angular_frequency") / UNIT[unit]
     notes += _unused(section, found, unused, name)
     if "mass" not in found and "mass" not in section.data and "shapes" in found:
         notes += note_of_scale(name, found["shapes"])

@@ -13,7 +13,6 @@ from fcm.scene.address import TOTAL
 from fcm.scene.errors import nearest, quoted, shown
 from fcm.scene.files import Files
 from fcm.scene.keys import names
-from fcm.scene.modal import UNITS
 from fcm.scene.names import Names, same_names, unfit_name
 from fcm.scene.node_pairs import (
     SHARED,
@@ -33,6 +32,7 @@ from fcm.scene.pair_file import PairTable
 from fcm.scene.plane import check_axes, read_directions
 from fcm.scene.rules import FRACTION, POSITIVE, RULES, harmonics_fault, step_fault
 from fcm.scene.section import Section
+from fcm.units import UNIT
 
 Dofs = Names | None
 ONE = "give a range, and a single frequency within it by --at"
@@ -229,7 +229,7 @@ def read_response(top: Section, section: Section | None, unit: str) -> tuple[tup
     if len(ends) != 2:
         section.wrong("frequency", f"must be two numbers, [from, to], is a list of {len(ends)}")
         return NO_RANGE, step
-    low, high = (float(end) * UNITS[unit] for end in ends)
+    low, high = (float(end) * UNIT[unit] for end in ends)
     if low >= high:
         order, what = ("goes down", "give the lower one first") if low > high else ("is empty", ONE)
         section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; {what}")

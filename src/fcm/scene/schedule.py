@@ -9,10 +9,10 @@ import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Phase, Scene, Start
 from fcm.scene.keys import names
-from fcm.scene.modal import UNITS
 from fcm.scene.options import LIMITS, MESSAGES
 from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import Section
+from fcm.units import UNIT
 
 
 def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
@@ -20,7 +20,7 @@ def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
     phases = []
     for section in top.tables("schedule"):
         section.only(*names("schedule"))
-        frequency = section.number("frequency", POSITIVE) * UNITS[unit]
+        frequency = section.number("frequency", POSITIVE) * UNIT[unit]
         phases.append(Phase(frequency, _whole(section.number("cycles", POSITIVE))))
     total = sum(phase.cycles for phase in phases)
     if total > LIMITS.cycles:

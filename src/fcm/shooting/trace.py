@@ -11,7 +11,6 @@ import numpy as np
 from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
 from fcm.continuation.all_branches import Branches, Follow, Following
 from fcm.model.scene import FloatArray, Scene
-from fcm.scene.modal import UNITS
 from fcm.shooting.force_level import LevelMotions, level_motions
 from fcm.shooting.harmonic_balance_branches import converged_balance, passes
 from fcm.shooting.initial_orbits import find_initial_orbits, first_point, height_of, orbits_along_balance
@@ -23,6 +22,7 @@ from fcm.shooting.work_budget import BranchBudget, UncertainFrequencies
 from fcm.stability.unstable_ranges import unstable_stretches
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.system import System
+from fcm.units import UNIT
 
 Progress = Callable[[float, str], None]
 COMPLETE_STATUS = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
@@ -271,7 +271,7 @@ def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
 
 def with_unit(scene: Scene, omega: float) -> str:
     """A frequency [rad/s] as text in the scene's unit."""
-    return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"
+    return f"{omega / UNIT[scene.frequency_unit]:.8g} {scene.frequency_unit}"
 
 
 def orbits_in_unstable_ranges(

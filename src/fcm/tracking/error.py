@@ -73,31 +73,32 @@ def truncation_error(
 
     That of a turn is looked for from a point before, by default one that is near.
     """
-    condition, here = track.condition, _RefinedPoint(setup, track.points[i])
-    value, number = here.value(condition), float(here.point.z[-1])
+    here = _RefinedPoint(setup, track.points[i])
     begin = beginning(track, i, setup.options) if begin is None else begin
     start = here if begin is None else _RefinedPoint(setup, track.points[begin])
-    more = _more(here)
-    if more == here.setup.system.harmonics:
-        return TruncationError(0.0, 0.0)
-    wider = replace(setup, system=setup.system.with_harmonics(more), user_values=())
-    there = _landed(wider, condition, start, track.points[i], begin is not None)
-    if there is None:
-        return UNKNOWN
-    off = abs(there.value(condition) - value) / abs(value)
-    return TruncationError(off, abs(float(there.point.z[-1]) - number))
+    return _difference(track.condition, here, start, begin is not None)
 
 
 def error_of_peak(setup: TrackingSetup, condition: Condition, point: TrackedPoint) -> float:
     """The relative error of a peak by the harmonics left out; NaN where the reference has no peak near it."""
     here = _RefinedPoint(setup, point)
-    more = _more(here)
-    if more == setup.system.harmonics:
-        return 0.0
-    wider = replace(setup, system=setup.system.with_harmonics(more), user_values=())
-    there = _landed(wider, condition, here, point, False)
-    value = here.value(condition)
-    return np.nan if there is None else abs(there.value(condition) - value) / abs(value)
+    return _difference(condition, here, here, False).relative
+
+
+def _difference(
+    condition: Condition, here: _RefinedPoint, start: _RefinedPoint, turns: bool
+) -> TruncationError:
+    """How far the reference's point is from one here; that of a turn follows the reference's point beside the
+    start."""
+    value, more = here.value(condition), _more(here)
+    if more == here.setup.system.harmonics:
+        return TruncationError(0.0, 0.0)
+    wider = replace(here.setup, system=here.setup.system.with_harmonics(more), user_values=())
+    there = _landed(wider, condition, start, here.point, turns)
+    if there is None:
+        return UNKNOWN
+    off = abs(there.value(condition) - value) / abs(value)
+    return TruncationError(off, abs(float(there.point.z[-1]) - float(here.point.z[-1])))
 
 
 def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACKING) -> int | None:
