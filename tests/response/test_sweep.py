@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import netCDF4
@@ -13,7 +14,7 @@ import fcm
 from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
-from fcm.run import Execution
+from fcm.run import Execution, place_of
 
 from ..computed import Interrupted, by
 from ..interrupted import interrupted_beyond
@@ -55,6 +56,25 @@ def test_groups_give_the_curves_of_the_whole(scene, whole):
         assert one.parameters == two.parameters
         assert one.peaks["u"][:2] == pytest.approx(two.peaks["u"][:2], rel=1e-9)
         assert one.folds == pytest.approx(two.folds, rel=1e-9)
+
+
+class CountingExecutor(ThreadPoolExecutor):
+    """One thread that counts what it is asked for."""
+
+    count = 0
+
+    def submit(self, *task, **further):
+        self.count += 1
+        return super().submit(*task, **further)
+
+
+@pytest.mark.parametrize(("batch_seconds", "batches"), [(60.0, 1), (1e-3, len(PRELOADS))])
+def test_curves_that_take_long_are_batches_of_their_own(scene, batch_seconds, batches):
+    """So a few of them are shared by the cores."""
+    options = ResponseOptions(sweep=SweepOptions(batch_seconds=batch_seconds))
+    with CountingExecutor(1) as executor:
+        response = trace(scene, "closed-form", Execution(place=place_of(executor)), options=options)
+    assert executor.count == batches and len(response.curves) == len(PRELOADS)
 
 
 @pytest.mark.slow
@@ -184,7 +204,7 @@ import fcm
 from deadly import Deadly
 from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.response.sweep import trace
-from fcm.run import Execution
+from fcm.run import Execution, place_of
 
 scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.3)
 curves = [replace(scene, contacts=(replace(scene.contacts[0], n_0=n),)) for n in (50.0, 1e12, 60.0)]

@@ -88,7 +88,9 @@ class SweepOptions(Frozen):
     Attributes
     ----------
     batch : int
-        Number of curves that are finished or interrupted together.
+        Most curves that are finished or interrupted together.
+    batch_seconds : float
+        [s] Estimated time of the curves of a batch; one that takes longer is a batch of its own.
     expected_harmonic : int
         Highest harmonic that is expected, where an accuracy decides.
     traced_share : float
@@ -104,6 +106,7 @@ class SweepOptions(Frozen):
     """
 
     batch: int = 10
+    batch_seconds: float = 1.0
     expected_harmonic: int = 9
     traced_share: float = 0.9
     max_rounds: int = 4

@@ -8,6 +8,7 @@ from copy import copy
 from dataclasses import replace
 from functools import cache, partial
 
+from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.model.scene import Scene
 from fcm.quoting import quoted
@@ -152,7 +153,7 @@ class _Sweep:
     def run(self, lighter: ReducedScenes, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
         every = tuple(replace(scene, draft=None) for scene in lighter.curves)
-        batches = in_batches(every, self.request.options.sweep.batch)
+        batches = in_batches(every, batch_size(every[0], self.request))
         samples = REDUCTION.max_checked_of_curve if lighter.above is not None else 0
         work = Work(replace(self.request, table=self._table(lighter)), self.peaks_only, samples)
         curves = self.curves.curves(work, batches, self.mark, progress)
@@ -180,6 +181,13 @@ def _opened() -> Table:
 def _shipped_table() -> Table:
     """The shipped table, opened once in a process; it counts for itself what it does not answer for."""
     return copy(_opened())
+
+
+def batch_size(scene: Scene, request: Request) -> int:
+    """Number of curves of a batch: fewer where each takes long, so that a few of them are shared by cores."""
+    options = request.options.sweep
+    each = seconds_of_curve(scene, len(request.harmonics or range(options.expected_harmonic)))
+    return min(max(int(options.batch_seconds / each), 1), options.batch)
 
 
 def in_batches(curves: tuple[Scene, ...], size: int) -> list[tuple[Scene, ...]]:
