@@ -14,8 +14,8 @@ from fcm.model.scene import InTime
 from fcm.response.exact import trace_exact
 from fcm.response.options import ResponseOptions
 from fcm.response.request import ResponseError
-from fcm.results.output import summary
 from fcm.results.result import Response
+from fcm.results.summary import summary
 from fcm.scene import load_scene
 
 COMPUTED = {"exact_motion": InTime.COMPUTED.value}

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fcm.cli.columns import aligned
-from fcm.results.output import without_nan
+from fcm.results.summary import without_nan
 
 from .row import Row
 from .verdict import excess, faults

@@ -265,8 +265,8 @@ def test_the_linear_response_is_told_at_the_resonances_of_each_driven_harmonic()
 
 def test_what_is_driven_is_said_and_an_exact_motion_is_offered():
     from fcm.cli.caveats import maybe_not_unique
-    from fcm.results.output import summary
     from fcm.results.result import Response
+    from fcm.results.summary import summary
 
     (note,) = scene(BOTH).notes
     assert note.startswith("force: at harmonics 1, 2 of the frequency") and not scene(BOTH[:1]).notes

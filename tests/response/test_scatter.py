@@ -12,8 +12,9 @@ import fcm
 from fcm.plot.read import DrawnCurve, read_response
 from fcm.response.sweep import trace
 from fcm.results.bands import bands_of, greatest_at
-from fcm.results.output import summary, write_netcdf
+from fcm.results.output import write_netcdf
 from fcm.results.scatter import scatter, summary_of
+from fcm.results.summary import summary
 from fcm.scene import scene_from_dict
 
 COUNT = 12

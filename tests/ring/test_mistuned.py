@@ -175,7 +175,8 @@ def test_drawn_rings_have_percentiles_and_each_is_as_if_it_were_given():
     assert np.sqrt(drawn).std() == pytest.approx(0.02, rel=0.5) and np.unique(drawn).size == 9
     whole = scene_from_dict(written_out(data, drawn[2]))
     assert scene_from_dict(data).curves[2].modal.frequency == pytest.approx(whole.modal.frequency, rel=1e-11)
-    from fcm.results.output import summary, to_dataset
+    from fcm.results.output import to_dataset
+    from fcm.results.summary import summary
 
     found, stored = summary(response), to_dataset(response)
     each = stored.amplification.sel(sector_dof="tip").values

@@ -69,7 +69,7 @@ class Outputs:
     def write(self, response: Response, to_json: bool) -> dict[str, Any]:
         """Write all files and print the summary; the curves are then no longer kept."""
         from fcm.results.condensed_curves import with_condensed
-        from fcm.results.output import summary
+        from fcm.results.summary import summary
 
         response = replace(response, curves=[with_condensed(curve) for curve in response.curves])
         result = summary(response)
@@ -92,6 +92,8 @@ class Outputs:
         return result
 
     def _files(self, response: Response) -> list[tuple[Path, Callable[[Response, Path], None]]]:
+        if all(path is None for path in (self.output, self.csv, self.history_csv)):
+            return list(self.exported)
         from fcm.results import output
         from fcm.results.csv_file import write_csv, write_tracked_csv
 

@@ -18,7 +18,6 @@ from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import OPTIMUM
 from fcm.results.peak import Peak
-from fcm.sensitivity.between_points import tops_between
 from fcm.structure.linear import Linear, linear_of
 from fcm.structure.ring import RingLinear
 
@@ -60,6 +59,8 @@ def of_all_dofs(found: UncheckedResponse, scene: Scene) -> UncheckedResponse:
 
 def with_tops(peaks: Mapping[str, Peak], found: RefinedResponse) -> dict[str, Peak]:
     """Peaks (by dof) raised to what is higher between the points."""
+    from fcm.sensitivity.between_points import tops_between
+
     raised = dict(peaks)
     for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True):
         height, omega = tops_between(found.system, path, quantities)

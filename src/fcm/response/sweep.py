@@ -187,7 +187,9 @@ def batch_size(scene: Scene, request: Request) -> int:
     """Number of curves of a batch: fewer where each takes long, so that a few of them are shared by cores."""
     options = request.options.sweep
     each = seconds_of_curve(scene, len(request.harmonics or range(options.expected_harmonic)))
-    return min(max(int(options.batch_seconds / each), 1), options.batch)
+    if each * options.batch <= options.batch_seconds:
+        return options.batch
+    return max(int(options.batch_seconds / each), 1)
 
 
 def in_batches(curves: tuple[Scene, ...], size: int) -> list[tuple[Scene, ...]]:

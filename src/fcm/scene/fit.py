@@ -15,7 +15,6 @@ from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.measured_file import read_measured
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
@@ -180,6 +179,8 @@ def _columns(
     length: str,
 ) -> dict[str, FloatArray] | None:
     """The columns of a file; None after a mistake."""
+    from fcm.scene.measured_file import read_measured
+
     backbone = "backbone" in section.data
     key = "backbone" if backbone else "file"
     wanted = ["frequency", "amplitude", *(["damping"] if backbone else []), *([level] if level else [])]

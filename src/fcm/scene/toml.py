@@ -13,7 +13,6 @@ from typing import Any
 from fcm.files import no_file
 from fcm.scene.errors import SceneError
 from fcm.scene.options import TOML, TomlOptions
-from fcm.scene.toml_mistakes import slips
 
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 
@@ -30,6 +29,8 @@ def read_toml(path: Path, source: str, options: TomlOptions = TOML) -> dict[str,
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
+        from fcm.scene.toml_mistakes import slips
+
         raise SceneError(source, slips(text)) from None
     except RecursionError:
         raise SceneError(source, ["is nested too deeply"]) from None
