@@ -28,6 +28,7 @@ from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
 
 from ..program import AS_A_MODULE, python
+from ..response.random_scenes import random_scene
 
 SCENES = Path(__file__).parent / "scenes"
 EVERY_MODE = CondensationOptions(min_unknowns=1, max_fraction=2.0)  # as of many contacts
@@ -334,3 +335,20 @@ def test_a_strip_that_ends_nowhere_is_crossed_once():
     """Crossed again and again, a search for folds never ended, and heeded no signal: so in a process."""
     done = python(*AS_A_MODULE, "respond", SCENES / "endless_strip.toml", "--json", "--peaks-only")
     assert done.code == 0 and json.loads(done.out)["curves"][0]["complete"]
+
+
+@pytest.mark.parametrize("seed", [22, 23, 611])
+def test_curves_of_folds_from_narrow_strips_are_followed_to_their_end(seed):
+    """Some begin within strips that a circle of the first step's length reaches beyond."""
+    assert not traced_curve(random_scene(seed), Request((1, 2, 3))).folds_uncertain_at
+
+
+@pytest.mark.slow
+def test_curves_of_folds_with_sharp_tips_lead_to_closed_branches():
+    """Where a tip was not passed, or not seen by tangents of the step before, two branches were missing."""
+    curve = traced_curve(random_scene(25), Request((1, 2, 3)))
+    closed = [part for part in branches_of(curve) if part[0][0] == part[0][-1]]
+    ranges = [(omega.min(), omega.max()) for omega, *_ in closed]
+    for low, high in ((0.5065, 0.5118), (0.684, 0.718)):
+        assert any(begin < low and high < end for begin, end in ranges)
+        assert len(list(passings(curve, 0.5 * (low + high)))) >= 3

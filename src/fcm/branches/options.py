@@ -19,9 +19,6 @@ class SurfaceOptions(Frozen):
     max_iterations: int = 8  # number of Newton steps after which a guess is given up as too far away
     tolerance: float = 1e-4  # length of a Newton step that is the last: about its square is left as an error
     singular_step: float = 1e-7  # length of a last Newton step after which the matrix is not factored anew
-    # length of a last Newton step, relative to the place's distance from the centre, after which the matrix
-    # is not factored anew
-    singular_fraction: float = 1e-3
     diverged_step: float = 1e6  # length of a Newton step from which on the iteration counts as divergent
 
 
@@ -49,7 +46,7 @@ class FoldOptions(Frozen):
     # tangent relative to the axes from which on a place lies on another part of the surface
     max_tangent: float = 100.0
     # radii, relative to `initial_step`, of the circles about a start on which folds are looked for in turn
-    start_circles: tuple[float, ...] = (1.0, 5.0, 25.0)
+    start_circles: tuple[float, ...] = (1.0, 0.1, 0.01, 5.0, 25.0)
     # ratio of the squared axes of the ellipse that a circle about a fold of a smooth surface maps to, in
     # (frequency, level): where it is rounder, the fold lies in a corner
     corner_roundness: float = 0.01

@@ -16,7 +16,6 @@ cdef class Surface:
     cdef double level_floor
     cdef double tolerance
     cdef double singular_step
-    cdef double singular_fraction
     cdef double diverged_step
     cdef double[::1] balance_point
     cdef double[::1] right

@@ -54,11 +54,7 @@ class Surface:
             options.diverged_step,
             options.max_iterations,
         )
-        self.tolerance, self.singular_step, self.singular_fraction = (
-            options.tolerance,
-            options.singular_step,
-            options.singular_fraction,
-        )
+        self.tolerance, self.singular_step = options.tolerance, options.singular_step
         self.balance, self.n, self.evaluations, self.value = balance, n, 0, 0.0
         self.z, self.centre, self.right = np.zeros(n + 2), np.zeros(n + 2), np.zeros(n + 2)
         self.scale, self.balance_point = np.ones(n + 2), np.zeros(n + 1)
@@ -145,8 +141,7 @@ class Surface:
             if not step < self.diverged_step:
                 return False
             if step < self.tolerance:
-                length: cython.double = self.singular_fraction * sqrt(ahead * ahead + aside * aside)
-                return (step < max(self.singular_step, length) or self.factor()) and self.compute_tangents()
+                return (step < self.singular_step or self.factor()) and self.compute_tangents()
         return False
 
     @cython.cfunc
@@ -382,6 +377,7 @@ class FoldSteps:
     target_turn: cython.double
     max_turn: cython.double
     corner_roundness: cython.double
+    widest: cython.double  # [rad] widest gap between angles that are tried in turn
 
     def __init__(
         self,
@@ -398,6 +394,7 @@ class FoldSteps:
             options.max_turn,
             options.corner_roundness,
         )
+        self.widest = 2.0 * PI / options.circle_points
 
     def departures(self, start: FloatArray, singular: FloatArray) -> list[Departure]:
         """The two ways in which the curve of folds leaves its start."""
@@ -420,7 +417,7 @@ class FoldSteps:
             return [], Ending.STALLED
         points = [(np.array(surface.centre), np.array(way.across))]
         first, retreats = np.array(surface.centre), options.max_retreats
-        before, taken = first, way
+        trail = [(first, way)]  # the places, and the ways to them
         step: cython.double = options.initial_step
         bend: cython.double = 0.0
         for count in range(options.max_steps):
@@ -441,18 +438,21 @@ class FoldSteps:
                     if found is not None or not self.cross_strip(aside):
                         break
                 found = self.next_departure(step, bend, way.left) or self.around_corner(step, way.left)
-            if found is None and retreats and len(points) > 1:  # the last step led to another part
-                retreats, way, step, bend = retreats - 1, taken, 0.3 * way.radius, 0.0
+            if found is None and retreats and len(trail) > 1:  # the last step led to another part
+                retreats, step, bend = retreats - 1, 0.3 * way.radius, 0.0
                 points.pop()
-                back: cython.double[::1] = before
+                trail.pop()
+                last, way = trail[len(trail) - 1]
+                back: cython.double[::1] = last
                 surface.z[:] = back
                 surface.recentre(way.along, way.across)
                 continue
             if found is None:
                 return points, Ending.STALLED
-            before, taken, way = np.array(surface.centre), way, found
+            before, way = np.array(surface.centre), found
             if not surface.recentre(way.along, way.across):
                 return points, Ending.STALLED
+            trail.append((np.array(surface.centre), way))
             z = np.array(surface.z)
             points.append((z, self.singular(way.across)))
             if count % options.report_interval == 0:
@@ -642,13 +642,36 @@ class FoldSteps:
         return bool(surface.find(0.0, aside) and surface.recentre(-axes[0], axes[1]))
 
     def around_corner(self, step: float, left: float) -> Departure | None:
-        """The way nearest ahead with the same sign on its left, on all of a circle but the way back."""
-        ways = [way for way in self.around(step, left) if abs(way.angle) < 0.8 * PI]
+        """The way nearest ahead of those beside the way back, to its left and to its right.
+
+        Between the way back and either of them the test function has no other sign: one side of the curve.
+        """
+        ways = [way for side in (1.0, -1.0) if (way := self.beside_way_back(step, side, left)) is not None]
         if not ways:
             return None
-        nearest = min(ways, key=lambda way: abs(way.angle))
+        nearest: Departure = min(ways, key=lambda way: abs(way.angle))
         self.test_value(Side(self.n), step, nearest.angle)
         return nearest
+
+    @cython.cfunc
+    def beside_way_back(self, step: cython.double, side: cython.double, left: cython.double) -> object:
+        """The first way on one side of the way back, by angles that grow; None where a place is missing."""
+        off: cython.double = 2.0 * self.angle_tolerance
+        width: cython.double = off
+        one: Side = Side(self.n)
+        other: Side = Side(self.n)
+        self.surface.z[:] = self.surface.centre
+        self.test_value(one, step, side * (PI - off))
+        while side * left * one.value > 0.0 and off < 2.0 * PI - 2.0 * self.angle_tolerance:
+            off = min(off + width, 2.0 * PI - 2.0 * self.angle_tolerance)
+            width = min(2.0 * width, self.widest)
+            self.test_value(other, step, side * (PI - off))
+            if one.value * other.value < 0.0:
+                return (
+                    self.sign_change(step, other, one) if side > 0.0 else self.sign_change(step, one, other)
+                )
+            one, other = other, one
+        return None
 
     @cython.cfunc
     def singular(self, across: cython.double[::1]) -> object:
