@@ -15,10 +15,10 @@ TMDSIMPY_COMMIT := 17d5fc3ffa22c8ac6f38e5b77e3a396aae261e7b
 LIMIT           ?= 20
 
 # What is compiled: a list of modules in pyproject.toml.
-KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*/*.pxd src/fcm/*/*/*.pxd)
+KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*.pxd src/fcm/*/*.pxd src/fcm/*/*/*.pxd)
 
 # What the pictures are made of, so that a change redoes only what it touches.
-ALL        := src/fcm/lazy_import.py src/fcm/frozen.py src/fcm/quoting.py src/fcm/resources.py src/fcm/signals.py src/fcm/rotational_dofs.py src/fcm/units.py src/fcm/unknown_stability.py src/fcm/files.py src/fcm/at_rest.py src/fcm/local_maxima.py src/fcm/model/question.py
+ALL        := src/fcm/lazy_import.py src/fcm/frozen.py src/fcm/quoting.py src/fcm/resources.py src/fcm/signals.py src/fcm/rotational_dofs.py src/fcm/units.py src/fcm/unknown_stability.py src/fcm/files.py src/fcm/at_rest.py src/fcm/cubic.py src/fcm/local_maxima.py src/fcm/model/question.py
 CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
 SOLVER     := $(CONTACT) tables/default.nc \
 	$(wildcard $(foreach part,model scene table structure continuation harmonic_balance sensitivity nonlinear_modes mesh stability accuracy branches results reduction run response,src/fcm/$(part)/*.py)) \

@@ -38,6 +38,7 @@ DIRECTIVES = {
 FLAGS = ["-g0", "-ffp-contract=off"]
 # What -O3 makes of loops over harmonics is a tenth of the time of a curve; elsewhere it only takes longer.
 LOOPS = (
+    "fcm.cubic",
     "fcm.contact.",
     "fcm.harmonic_balance.",
     "fcm.continuation.dense_solver",

@@ -16,6 +16,11 @@ from fcm.accuracy.options import CURVE_DISTANCE, CurveDistanceOptions
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.model.scene import FloatArray
 
+if cython.compiled:
+    from cython.cimports.fcm.cubic import cubic
+else:
+    from fcm.cubic import cubic
+
 LEAST = cython.declare(cython.double, 1e-300)  # unit of a curve that stays where it is
 INFINITY = cython.declare(cython.double, float("inf"))
 
@@ -57,7 +62,7 @@ class PartialInterpolant:
                 if self.known[points[i]] or self.known_points == 1:
                     out[i, j] = self.value[self.number[first], j]
                 else:
-                    out[i, j] = self.cubic(first, self.place[points[i]], j)
+                    out[i, j] = self.between(first, self.place[points[i]], j)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -97,17 +102,21 @@ class PartialInterpolant:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def cubic(self, k: cython.Py_ssize_t, place: cython.double, j: cython.Py_ssize_t) -> cython.double:
+    def between(self, k: cython.Py_ssize_t, place: cython.double, j: cython.Py_ssize_t) -> cython.double:
         """Value on the cubic from known point k to the next, or beyond the last known point."""
         last: cython.Py_ssize_t = self.known_points - 1
         k = min(k, last - 1)
         begin: cython.double = self.place[self.number[k]]
         length: cython.double = self.place[self.number[k + 1]] - begin
         x: cython.double = (place - begin) / (length if length > 0.0 else 1.0)
-        y: cython.double = 1.0 - x
-        value: cython.double = self.value[self.number[k], j] * (1.0 + 2.0 * x) * (y * y)
-        value += self.value[self.number[k + 1], j] * (x * x) * (3.0 - 2.0 * x)
-        return value + length * (self.slope(k, j) * x * (y * y) - self.slope(k + 1, j) * (x * x) * y)
+        return cubic(
+            self.value[self.number[k], j],
+            self.value[self.number[k + 1], j],
+            self.slope(k, j),
+            self.slope(k + 1, j),
+            length,
+            x,
+        )
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -276,7 +285,7 @@ class ReferenceCurveData:
                     out[i, j] = NAN
                 else:
                     length: cython.double = self.place[k + 1] - self.place[k]
-                    out[i, j] = cubic(
+                    out[i, j] = continued(
                         value[k, j], value[k + 1, j], slope[k, j] * length, slope[k + 1, j] * length, self.at
                     )
 
@@ -324,7 +333,7 @@ class ReferenceCurveData:
                 off: cython.double = 0.0
                 length: cython.double = self.place[k + 1] - self.place[k]
                 for j in range(value.shape[1]):
-                    at[j] = cubic(
+                    at[j] = continued(
                         value[k, j], value[k + 1, j], slope[k, j] * length, slope[k + 1, j] * length, self.at
                     )
                     if j < target.shape[1]:
@@ -381,7 +390,7 @@ class ReferenceCurveData:
             return True
         for _ in range(self.max_halvings):
             self.at = 0.5 * (low + high)
-            now: cython.double = cubic(
+            now: cython.double = continued(
                 before, after, self.rate[k] * length, self.rate[k + 1] * length, self.at
             )
             if (now < wanted) == rising:
@@ -394,20 +403,15 @@ class ReferenceCurveData:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def cubic(
+def continued(
     before: cython.double, after: cython.double, begin: cython.double, end: cython.double, x: cython.double
 ) -> cython.double:
-    """Hermite cubic with given values and slopes at 0 and 1, continued by its tangents outside."""
+    """The cubic with given values and slopes at 0 and 1, continued by its tangents outside."""
     if x < 0.0:
         return before + x * begin
     if x > 1.0:
         return after + (x - 1.0) * end
-    return (
-        before * (1.0 + 2.0 * x) * (1.0 - x) * (1.0 - x)
-        + after * x * x * (3.0 - 2.0 * x)
-        + begin * x * (1.0 - x) * (1.0 - x)
-        - end * x * x * (1.0 - x)
-    )
+    return cubic(before, after, begin, end, 1.0, x)
 
 
 def shifted(
@@ -508,7 +512,7 @@ def rises(
             for part in range(1, parts):
                 x: cython.double = cython.cast(cython.double, part) / parts
                 more: cython.double = moved[k, d] * (1.0 - x) + moved[k + 1, d] * x
-                more += cubic(amplitude[k, d], amplitude[k + 1, d], begin, end, x)
+                more += continued(amplitude[k, d], amplitude[k + 1, d], begin, end, x)
                 out[d] = max(out[d], more - now)
     return highest
 

@@ -15,6 +15,7 @@ import numpy as np
 from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Point
 from fcm.continuation.step_control import Stepper
+from fcm.cubic import curve_between, powers
 from fcm.frozen import Frozen
 
 
@@ -183,9 +184,7 @@ def _cubic(low: Sample, high: Sample, output: int | None, coarse: float) -> tupl
     part = begin / (begin - end)
     if width > coarse:
         part = _turn(begin, end, rise / width, part)
-    rest = 1.0 - part
-    z = low.z * (rest * rest * (1.0 + 2.0 * part)) + high.z * (part * part * (3.0 - 2.0 * part))
-    z += width * part * rest * (rest * low.slope - part * high.slope)
+    z = curve_between(low.z, high.z, low.slope, high.slope, width, part)
     return low.at + part * width, z
 
 
@@ -200,7 +199,8 @@ def _turn(begin: float, end: float, mean: float, otherwise: float) -> float:
     >>> round(_turn(1.0, -1.0, 0.0, 0.0), 3), round(_turn(1.0, -2.0, -0.25, 0.0), 3)
     (0.5, 0.457)
     """
-    a, b = 3.0 * (begin + end - 2.0 * mean), 6.0 * mean - 4.0 * begin - 2.0 * end
+    square, cube = powers(mean, begin, end)
+    a, b = 3.0 * cube, 2.0 * square
     root = b * b - 4.0 * a * begin
     if root <= 0.0:
         return otherwise

@@ -10,6 +10,7 @@ from fcm.continuation.corrector import Newton
 from fcm.continuation.options import PATH, PathOptions
 from fcm.continuation.path import FloatArray, Path
 from fcm.continuation.problem import Problem
+from fcm.cubic import curve_between
 
 
 class _Known(NamedTuple):
@@ -53,16 +54,16 @@ class Segment:
 
     def _guess(self, part: float) -> FloatArray:
         """The guess from which the point is looked for."""
-        first, last = (self._place(*end) for end in zip(self._ends, self._tangents, strict=True))
-        whole = _cubic(part, self._ends, self.length * self._tangents)
+        (one, other), (begin, end) = self._ends, self._tangents
+        first, last = self._place(one, begin), self._place(other, end)
+        whole = curve_between(one, other, begin, end, self.length, part)
         at = self._along(whole)
         low = max((one for one in self._found if one.at <= at), key=lambda one: one.at, default=first)
         high = min((one for one in self._found if one.at > at), key=lambda one: one.at, default=last)
         if not self._found or not low.at < at < high.at:
             return whole
         width = high.at - low.at
-        slopes = width * np.array([low.slope, high.slope])
-        near: FloatArray = _cubic((at - low.at) / width, np.array([low.z, high.z]), slopes)
+        near = curve_between(low.z, high.z, low.slope, high.slope, width, (at - low.at) / width)
         near += (at - self._along(near)) / self.length * self._chord
         return near
 
@@ -90,12 +91,3 @@ class Segment:
     def orientation(self) -> float:
         """Sign of the determinant at the point found last."""
         return float(self.newton.orientation)
-
-
-def _cubic(part: float, ends: FloatArray, slopes: FloatArray) -> FloatArray:
-    """The cubic (d,) with the ends (2, d) and the slopes (2, d) by the part of the way, at that part."""
-    rest = 1.0 - part
-    z: FloatArray = ends[0] * (rest * rest * (1.0 + 2.0 * part))
-    z += ends[1] * (part * part * (3.0 - 2.0 * part))
-    z += part * rest * (rest * slopes[0] - part * slopes[1])
-    return z

@@ -24,8 +24,10 @@ from fcm.continuation.problem import Point, Problem
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.predictor import Predictor, dot
+    from cython.cimports.fcm.cubic import cubic, powers
 else:
     from fcm.continuation.predictor import Predictor, dot
+    from fcm.cubic import cubic, powers
 
 
 @cython.cclass
@@ -286,16 +288,15 @@ class Stepper:
         """Fill the guess with the cubic through here and there with their tangents, at a length."""
         i: cython.Py_ssize_t
         x: cython.double = at / self.step
-        slope: cython.double = self.step / self.clipped_cosine()
+        along: cython.double = self.step / self.clipped_cosine()
         for i in range(self.guess.shape[0]):
-            self.guess[i] = (
-                self.here.z[i] * (1.0 + 2.0 * x) * (1.0 - x) * (1.0 - x)
-                + self.there.z[i] * x * x * (3.0 - 2.0 * x)
-                + self.newton.scale[i]
-                * (
-                    self.step * self.here.tangent[i] * x * (1.0 - x) * (1.0 - x)
-                    - slope * self.there.tangent[i] * x * x * (1.0 - x)
-                )
+            self.guess[i] = cubic(
+                self.here.z[i],
+                self.there.z[i],
+                self.step * self.here.tangent[i],
+                along * self.there.tangent[i],
+                self.newton.scale[i],
+                x,
             )
 
 
@@ -410,8 +411,7 @@ def cubic_reversal(
         return 0.0
     sign: cython.double = 1.0 if begin > 0.0 else -1.0
     a: cython.double = sign * begin
-    b: cython.double = sign * (3.0 * rise - 2.0 * begin - end)
-    c: cython.double = sign * (begin + end - 2.0 * rise)
+    b, c = powers(sign * rise, a, sign * end)
     if not c > 0.0:
         return 0.0
     x: cython.double = -b / (3.0 * c)
@@ -441,8 +441,7 @@ def cubic_beyond_zero(
     """
     sign: cython.double = 1.0 if before > 0.0 else -1.0
     a: cython.double = sign * begin
-    b: cython.double = sign * (3.0 * (after - before) - 2.0 * begin - end)
-    c: cython.double = sign * (begin + end - 2.0 * (after - before))
+    b, c = powers(sign * (after - before), a, sign * end)
     root: cython.double = b * b - 3.0 * a * c
     if not (a < 0.0 and sign * end > 0.0 and root > 0.0):
         return 0.0

@@ -30,6 +30,7 @@ from fcm.time_domain.options import TIME
 from fcm.time_domain.stop_reason import Stopped
 
 if cython.compiled:
+    from cython.cimports.fcm.cubic import value_bounds
     from cython.cimports.fcm.time_domain.flow import (
         SERIES_ORDER,
         STATE_NEGATIVE_SLIP,
@@ -40,6 +41,7 @@ if cython.compiled:
     )
     from cython.cimports.fcm.time_domain.segments import Segments
 else:
+    from fcm.cubic import value_bounds
     from fcm.time_domain.flow import (
         SERIES_ORDER,
         STATE_NEGATIVE_SLIP,
@@ -370,9 +372,8 @@ class EventDetector:
     def _suspect(self, k: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.bint:
         """Whether exit e may be passed in step k of the block.
 
-        The least of the Bernstein coefficients of the cubic through g and g' at both ends bounds g from below
-        but for h**4 / 384 times the greatest fourth derivative. A step is at most a radian of the fastest
-        motion: inside it that derivative is no more than twice the greater of its ends'.
+        Its values and slopes at both ends bound it from below. A step is at most a radian of the fastest
+        motion: inside it the fourth derivative is no more than twice the greater of its ends'.
         """
         exits: cython.Py_ssize_t = self.flows.exits[self.slot]
         owner: cython.Py_ssize_t = self.flows.owner[self.slot, e]
@@ -380,10 +381,8 @@ class EventDetector:
         b: cython.Py_ssize_t = a + 3 * exits
         first: cython.double = self._seen[a]
         last: cython.double = self._seen[b]
-        low: cython.double = min(
-            min(first, last), min(first + self._seen[a + exits] / 3.0, last - self._seen[b + exits] / 3.0)
-        )
-        low -= max(fabs(self._seen[a + 2 * exits]), fabs(self._seen[b + 2 * exits])) / 192.0
+        fourth: cython.double = 2.0 * max(fabs(self._seen[a + 2 * exits]), fabs(self._seen[b + 2 * exits]))
+        low, _ = value_bounds(1.0, fourth, first, self._seen[a + exits], last, self._seen[b + exits])
         self.slack[owner] = min(self.slack[owner], low)
         self._largest[e] = max(self._largest[e], fabs(first))
         return low < 0.0 and low < -self._floor(e)

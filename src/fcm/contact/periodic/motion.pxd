@@ -1,5 +1,5 @@
 cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH, OPEN, CLOSED, MIXED, UNKNOWN
-cdef double EPSILON, LEAST, TWO_PI, FIRST_NODE, VALUE_ERROR, SLOPE_ERROR
+cdef double EPSILON, LEAST, TWO_PI, FIRST_NODE
 
 cdef class Nodes:
     cdef readonly int highest, nodes

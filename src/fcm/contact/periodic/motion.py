@@ -7,12 +7,10 @@ is held are
 
 The mean of u is left out: it matters only to a slider that never moves.
 
-Where a row of that changes its sign none is missed. Between two nodes a row is its cubic Hermite interpolant
-within bound * step**4 / 384, its slope that of the interpolant within bound * step**3 sqrt(3) / 216, with the
-bound of the fourth derivative. So the Bernstein coefficients of the interpolant prove that the row has no
-zero, or that it is monotone; where they do not, the interval is halved, until what could be hidden is no more
-than the rounding of the row itself (`ZeroCrossings`). Each event has the limits of the slider there, and
-their rates (`Events`).
+Where a row of that changes its sign none is missed. Between two nodes its values and slopes at both, and a
+bound of its fourth derivative, prove that it has no zero, or that it is monotone (`fcm.cubic`). Where they do
+not, the interval is halved, until what could be hidden is no more than the rounding of the row itself
+(`ZeroCrossings`). Each event has the limits of the slider there, and their rates (`Events`).
 """
 
 from __future__ import annotations
@@ -24,15 +22,14 @@ from cython.cimports.libc.math import atan2, ceil, cos, fabs, floor, hypot, isfi
 
 from fcm.contact.options import PERIODIC, PeriodicOptions
 
+if cython.compiled:
+    from cython.cimports.fcm.cubic import powers, slope_bounds, value_bounds
+else:
+    from fcm.cubic import powers, slope_bounds, value_bounds
+
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
 FIRST_NODE = cython.declare(cython.double, 0.1171)
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
-
-
-# Of the cubic with the values and slopes at both ends of a length h, over its greatest fourth derivative:
-# of the value h^4 / 384 at most, of the slope h^3 sqrt(3) / 216.
-VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
-SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
 PI = cython.declare(cython.double, 3.141592653589793)
 
 
@@ -397,16 +394,11 @@ class ZeroCrossings:
 
     def proved(self, length: float, g_0: float, d_0: float, g_1: float, d_1: float) -> bool:
         """Whether the row provably has no zero inside, is monotone, or is within rounding."""
-        error: float = self.fourth * length * length * length
-        b_1: float = g_0 + length * d_0 / 3.0
-        b_2: float = g_1 - length * d_1 / 3.0
-        low: float = min(g_0, b_1, b_2, g_1) - VALUE_ERROR * error * length
-        high: float = max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length
+        low, high = value_bounds(length, self.fourth, g_0, d_0, g_1, d_1)
         if low > 0.0 or high < 0.0 or (low >= -self.noise and high <= self.noise):
             return True
-        middle: float = 3.0 * (b_2 - b_1) / length
-        error *= SLOPE_ERROR
-        return min(d_0, middle, d_1) > error or max(d_0, middle, d_1) < -error
+        low, high = slope_bounds(length, self.fourth, g_0, d_0, g_1, d_1)
+        return bool(low > 0.0 or high < 0.0)
 
     def note(self, theta: float, value: float, slope: float) -> None:
         """Takes the next point of the walk, and appends a crossing if its certain sign has changed."""
@@ -491,8 +483,7 @@ def _of_one(found: ZeroCrossings, motion: Motion, begin: float) -> cython.void:
 
 def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
     """Approximate root in [0, 1] of a cubic with given values and slopes at the ends, other than 0 itself."""
-    c_2: float = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
-    c_3: float = d_0 + d_1 - 2.0 * (g_1 - g_0)
+    c_2, c_3 = powers(g_1 - g_0, d_0, d_1)
     if g_0 == 0.0:
         return _last_root(d_0, c_2, c_3)
     t: float = g_0 / (g_0 - g_1) if (g_0 > 0.0) != (g_1 > 0.0) else 0.5

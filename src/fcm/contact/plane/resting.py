@@ -26,22 +26,15 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sin, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import (
-        EPSILON,
-        FIRST_NODE,
-        SLOPE_ERROR,
-        TWO_PI,
-        VALUE_ERROR,
-    )
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, FIRST_NODE, TWO_PI
     from cython.cimports.fcm.contact.plane.panel import REACH, SCAN, PlaneMotion, X, Y
+    from cython.cimports.fcm.cubic import VALUE_ERROR, greatest_bend, slope_bounds, value_bounds
 else:
-    from fcm.contact.periodic.motion import EPSILON, FIRST_NODE, SLOPE_ERROR, TWO_PI, VALUE_ERROR
+    from fcm.contact.periodic.motion import EPSILON, FIRST_NODE, TWO_PI
     from fcm.contact.plane.panel import REACH, SCAN, PlaneMotion, X, Y
+    from fcm.cubic import VALUE_ERROR, greatest_bend, slope_bounds, value_bounds
 
 FAR = cython.declare(cython.double, 1e300)
-# Of the cubic with the values and slopes at both ends of a length, over the greatest fourth derivative and
-# powers of the length: errors of the value, the slope and the second derivative (Birkhoff and Priver, 1967).
-BEND_ERROR = cython.declare(cython.double, 1.0 / 12.0)
 
 
 @cython.cclass
@@ -333,18 +326,13 @@ class Resting:
         self, length: float, g_0: float, d_0: float, g_1: float, d_1: float, least: float
     ) -> cython.int:
         """Greatest number of maxima of h above `least` in an interval; 2 if nothing is proved."""
-        error: float = self.fourth * length * length
-        b_1: float = g_0 + length * d_0 / 3.0
-        b_2: float = g_1 - length * d_1 / 3.0
-        if max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length * length <= least:
+        _, high = value_bounds(length, self.fourth, g_0, d_0, g_1, d_1)
+        if high <= least:
             return 0
-        middle: float = 3.0 * (b_2 - b_1) / length
-        off: float = SLOPE_ERROR * error * length
-        if min(d_0, middle, d_1) > off or max(d_0, middle, d_1) < -off:
+        low, high = slope_bounds(length, self.fourth, g_0, d_0, g_1, d_1)
+        if low > 0.0 or high < 0.0:
             return 0
-        if 2.0 * max(middle - d_0, d_1 - middle) + BEND_ERROR * error * length < 0.0:
-            return 1
-        return 2
+        return 1 if greatest_bend(length, self.fourth, g_0, d_0, g_1, d_1) < 0.0 else 2
 
     def missed(self, theta: float) -> tuple[float, float, float]:
         """Values of h, its slope, and |U - W| + |R + t| at an angle."""

@@ -13,14 +13,16 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, TWO_PI, VALUE_ERROR
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, TWO_PI
     from cython.cimports.fcm.contact.plane.integrals import Derivatives, Sums
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
+    from cython.cimports.fcm.cubic import slope_bounds, value_bounds
 else:
-    from fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, TWO_PI, VALUE_ERROR
+    from fcm.contact.periodic.motion import EPSILON, TWO_PI
     from fcm.contact.plane.integrals import Derivatives, Sums
     from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
+    from fcm.cubic import slope_bounds, value_bounds
 
 STICK = cython.declare(cython.int, 0)  # states
 SLIP = cython.declare(cython.int, 1)
@@ -453,23 +455,14 @@ class Slider:
             high: float = min(low + length, end)
             self.measure(high)
             h: float = high - low
-            value: float = VALUE_ERROR * fourth * h * h * h * h
-            slope: float = SLOPE_ERROR * fourth * h * h * h
-            b_1: float = g + h * d / 3.0
-            b_2: float = self.gap - h * self.gap_slope / 3.0
-            middle: float = 3.0 * (b_2 - b_1) / h
-            rises: bool = min(d, middle, self.gap_slope) > slope
-            falls: bool = max(d, middle, self.gap_slope) < -slope
+            _, most = value_bounds(h, fourth, g, d, self.gap, self.gap_slope)
+            least_slope, most_slope = slope_bounds(h, fourth, g, d, self.gap, self.gap_slope)
+            rises: bool = least_slope > 0.0
             if self.gap > self.noise:
                 if rises or h < self.shortest or high <= low:
                     self.release(begin, self.meet(low, high))
                     return
-            elif (
-                rises
-                or falls
-                or max(g, b_1, b_2, self.gap) + value <= min(noise, self.noise)
-                or h < self.shortest
-            ):
+            elif rises or most_slope < 0.0 or most <= min(noise, self.noise) or h < self.shortest:
                 low, g, d, noise = high, self.gap, self.gap_slope, self.noise
                 length *= 2.0
                 continue
