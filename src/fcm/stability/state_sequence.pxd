@@ -33,6 +33,7 @@ cdef class PlanarSequence:
     cdef readonly double[:, ::1] contact, begin, record
     cdef readonly int[::1] count, first
     cdef readonly int[:, ::1] state
+    cdef int[::1] piece
     cdef double[:, :, ::1] re, im
     cdef double[::1] mean, order
     cdef double[::1] bary, node
@@ -40,7 +41,6 @@ cdef class PlanarSequence:
     cpdef bint find_events(self, double[::1] x) except -1
     cdef bint look(self, double[::1] x, int c) except -1
     cdef bint keep(self, int c) except -1
-    cdef double length(self, int p) noexcept nogil
     cpdef int state_at(self, int c, double theta) except -1
     cpdef int remembers(self, int c, double theta) except -1
     cdef void rates(self, int c, double theta) noexcept nogil

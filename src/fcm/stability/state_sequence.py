@@ -21,14 +21,14 @@ from fcm.contact.plane.radau import radau
 from fcm.stability.options import STABILITY, PlanarStabilityOptions
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, join_states
     from cython.cimports.fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import UNSOLVED
     from cython.cimports.fcm.contact.plane.forces import PlanarContact
     from cython.cimports.fcm.contact.plane.panel import STAGES
     from cython.cimports.fcm.contact.plane.slider import SLIP
 else:
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, join_states
     from fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
     from fcm.contact.plane.cycle import UNSOLVED
     from fcm.contact.plane.forces import PlanarContact
@@ -251,6 +251,7 @@ class PlanarSequence:
         self.first = np.zeros(self.contacts + 1, dtype=np.intc)
         self.begin = np.zeros((self.contacts, self.capacity))
         self.state = np.zeros((self.contacts, self.capacity), dtype=np.intc)
+        self.piece = np.zeros(self.capacity, dtype=np.intc)
         self.record = np.zeros((self.contacts * options.initial_panels, 5 + STAGES))
         self.re, self.im = np.zeros((2, self.contacts, 3, len(numbers)))
         self.mean, self.order = np.zeros(self.contacts), np.array(numbers, dtype=np.float64)
@@ -303,8 +304,7 @@ class PlanarSequence:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keep(self, c: cython.int) -> cython.bint:
-        """Keeps the states of contact c without those within rounding, equal neighbours joined, and its
-        panels."""
+        """Keeps the states of contact c without those within rounding, joined, and its panels."""
         i: cython.int
         p: cython.int
         state: cython.int
@@ -312,18 +312,16 @@ class PlanarSequence:
         rubs: cython.bint = self.contact[c, 0] * self.contact[c, 1] != 0.0
         pieces: cython.int = self.kernel.cycle.slider.pieces
         for p in range(pieces):
-            if pieces > 1 and self.length(p) <= self.invisible:
+            if pieces > 1 and self.kernel.cycle.slider.length(p) <= self.invisible:
                 continue
             state = self.kernel.cycle.slider.state[p]
             if state != SEPARATION and not rubs:
                 state = FREE
-            if n == 0 or self.state[c, n - 1] != state:
-                self.state[c, n], self.begin[c, n] = state, self.kernel.cycle.slider.begin[p]
-                n += 1
-        if n > 1 and self.state[c, 0] == self.state[c, n - 1]:  # it goes on from one turn to the next
-            for i in range(1, n):
-                self.state[c, i - 1], self.begin[c, i - 1] = self.state[c, i], self.begin[c, i]
-            n -= 1
+            self.state[c, n], self.piece[n] = state, p
+            n += 1
+        n = join_states(self.state[c], self.piece, n)
+        for i in range(n):
+            self.begin[c, i] = self.kernel.cycle.slider.begin[self.piece[i]]
         self.count[c] = n
         if n > 1 or self.state[c, 0] == SLIP:
             self.moving += 1
@@ -338,13 +336,6 @@ class PlanarSequence:
                 self.record[first + p, i] = self.kernel.cycle.slider.record[p, i]
         self.first[c + 1] = first + panels
         return True
-
-    def length(self, p: cython.int) -> float:
-        """Length [rad] of piece p of the cycle."""
-        last: cython.bint = p + 1 == self.kernel.cycle.slider.pieces
-        length: float = self.kernel.cycle.slider.begin[0 if last else p + 1]
-        length -= self.kernel.cycle.slider.begin[p]
-        return length + TWO_PI if last else length
 
     def state_at(self, c: cython.int, theta: float) -> cython.int:
         """The state of a contact at an angle."""

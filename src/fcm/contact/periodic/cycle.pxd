@@ -2,6 +2,8 @@ from fcm.contact.periodic.motion cimport ZeroCrossings, Events
 
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
 
+cpdef int join_states(int[::1] state, int[::1] piece, int count) noexcept nogil
+
 cdef class Slider(Events):
     cdef readonly ZeroCrossings crossings
     cdef readonly int pieces

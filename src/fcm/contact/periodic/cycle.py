@@ -69,6 +69,29 @@ NEGATIVE = cython.declare(cython.int, -1)
 SEPARATION = cython.declare(cython.int, 2)
 
 
+def join_states(state: cython.int[::1], piece: cython.int[::1], count: cython.int) -> cython.int:
+    """Joins pieces of a cycle that follow one another in the same state; returns how many are left.
+
+    Of those that are joined the number of the first is kept; the last may go on in the first of the cycle.
+
+    >>> state, piece = (np.array(numbers, dtype=np.intc) for numbers in ([0, 1, 1, 2, 0], [0, 1, 2, 4, 5]))
+    >>> left = join_states(state, piece, 5)
+    >>> state[:left].tolist(), piece[:left].tolist()
+    ([1, 2, 0], [1, 4, 5])
+    """
+    i: cython.int
+    n: cython.int = 0
+    for i in range(count):
+        if n == 0 or state[n - 1] != state[i]:
+            state[n], piece[n] = state[i], piece[i]
+            n += 1
+    if n > 1 and state[0] == state[n - 1]:
+        n -= 1
+        for i in range(n):
+            state[i], piece[i] = state[i + 1], piece[i + 1]
+    return n
+
+
 @cython.cclass
 class Slider(Events):
     """The pieces of a cycle in order, up to `pieces`, and the slider at the beginning of the present span.

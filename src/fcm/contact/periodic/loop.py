@@ -10,12 +10,13 @@ import numpy.typing as npt
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import one_motion
-from fcm.contact.periodic.cycle import LineCycle
+from fcm.contact.periodic.cycle import LineCycle, join_states
 from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import LoadedPieces, friction, waves_at
 from fcm.frozen import Frozen
 
 LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
+STICK = 0
 
 
 class PeriodicLoop(Frozen, LoadedPieces):
@@ -137,23 +138,20 @@ def _visible(cycle: LineCycle) -> list[tuple[str, float, float]]:
     """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
     begin = np.asarray(cycle.begin)[: cycle.pieces]
     length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
-    regions: list[tuple[str, float, float]] = []
-    for p in range(cycle.pieces):
-        if length[p] > PERIODIC.min_state_length or cycle.pieces == 1:
-            state, rest = LETTERS[cycle.state[p]], float(cycle.rest[p])
-            if state in "PN":
-                rest, moves = _slip(cycle, p)
-                state = state if moves else "E"
-            if not regions or regions[-1][0] != state:
-                regions.append((state, float(begin[p]), rest))
-    return regions[1:] if len(regions) > 1 and regions[0][0] == regions[-1][0] else regions
+    shown = np.flatnonzero((length > PERIODIC.min_state_length) | (cycle.pieces == 1)).astype(np.intc)
+    seen = {p: _seen(cycle, p) for p in shown.tolist()}
+    left = join_states(np.array([state for state, _ in seen.values()], np.intc), shown, len(shown))
+    return [(LETTERS[seen[p][0]], float(begin[p]), seen[p][1]) for p in shown[:left].tolist()]
 
 
-def _slip(cycle: LineCycle, p: int) -> tuple[float, bool]:
-    """Place of the slider when slip p begins, and whether it visibly moves."""
-    limit = cycle.lower if cycle.state[p] > 0 else cycle.upper
+def _seen(cycle: LineCycle, p: int) -> tuple[int, float]:
+    """State of piece p, and the place of the slider when it begins; a slip that hardly moves is a stick."""
+    state = cycle.state[p]
+    if LETTERS[state] not in "PN":
+        return state, float(cycle.rest[p])
+    limit = cycle.lower if state > 0 else cycle.upper
     begin, end = (float(limit[cycle.event[q % cycle.pieces]]) for q in (p, p + 1))
-    return begin, abs(end - begin) > PERIODIC.min_state_length
+    return state if abs(end - begin) > PERIODIC.min_state_length else STICK, begin
 
 
 def _ordered(regions: list[tuple[str, float, float]]) -> list[tuple[str, float, float]]:

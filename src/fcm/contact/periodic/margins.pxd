@@ -1,21 +1,25 @@
 from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport ZeroCrossings, Motion
 
-cdef int CLOSES, OPENS, SLIPS, MOST, LEAST, MINIMUM, MAXIMUM, FIXED
+cdef int CLOSES, OPENS, SLIPS, MOST, LEAST, MINIMUM, MAXIMUM, GREATEST_LOAD
 cdef double PAST
 
-cdef class Margins:
-    cdef readonly Motion motion
-    cdef readonly LineCycle cycle
+cdef class RegimeMargins:
+    cdef readonly Motion normal
     cdef readonly ZeroCrossings crossings
     cdef readonly int most, count
     cdef readonly double[::1] value, angle
     cdef readonly int[::1] kind
-    cdef void find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void note(self, int kind, double angle, double value) noexcept nogil
     cdef void loads(self, int behaviour) noexcept nogil
+
+cdef class Margins(RegimeMargins):
+    cdef readonly LineCycle cycle
+    cdef void find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void slips(self, int kind, int behaviour, double start) noexcept nogil
     cdef void holders(self, int extreme, int kind, double[::1] limit, double side) noexcept nogil
+
+cdef double greatest_load(ZeroCrossings crossings) noexcept nogil
 
 cdef class Measures:
     cdef readonly Motion motion
@@ -28,7 +32,6 @@ cdef class Measures:
     cdef double[::1] points, weights, turn_cos, turn_sin
     cdef void measure(self, double k_u) noexcept nogil
     cdef void bear(self, double k_u) noexcept nogil
-    cdef void greatest(self) noexcept nogil
     cdef void extremes(self) noexcept nogil
     cdef void friction(self) noexcept nogil
     cdef int piece(self, double theta) noexcept nogil

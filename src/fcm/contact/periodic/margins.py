@@ -48,6 +48,7 @@ if cython.compiled:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
+        Motion,
         ZeroCrossings,
     )
 else:
@@ -69,6 +70,7 @@ else:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
+        Motion,
         ZeroCrossings,
     )
 
@@ -86,18 +88,51 @@ PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is 
 
 
 @cython.cclass
-class Margins:
-    """`find` computes the margins of a motion: value, kind, angle (margin,), the first `count` of `most`.
+class RegimeMargins:
+    """Margins of a motion: value, kind, angle (margin,), the first `count` of `most`.
 
     Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
 
-    def __init__(self, cycle: LineCycle) -> None:
-        self.cycle, self.motion = cycle, cycle.motion
-        self.crossings = ZeroCrossings(cycle.motion)
-        self.most, self.count = FIXED + self.crossings.capacity + 2 * cycle.motion.highest + 2, 0
+    def __init__(self, normal: Motion, of_slips: int) -> None:
+        self.normal, self.crossings = normal, ZeroCrossings(normal)
+        self.most, self.count = FIXED + self.crossings.capacity + of_slips, 0
         self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
         self.kind = np.zeros(self.most, dtype=np.intc)
+
+    def note(self, kind: cython.int, angle: float, value: float) -> None:
+        """Appends a margin, if there is room for it."""
+        if self.count < self.most:
+            self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
+            self.count += 1
+
+    def loads(self, behaviour: cython.int) -> None:
+        """Appends the margins of closing and opening, from the extremes of the load, which is sampled.
+
+        Where the extremes cannot matter, only the sign of a margin is set.
+        """
+        i: cython.int
+        value: float
+        self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
+        self.note(OPENS, 0.0, self.value[0])
+        if behaviour != MIXED:
+            return
+        self.value[0] = self.value[1] = self.normal.at[LOAD, 0]
+        self.crossings.begin()
+        self.crossings.search(LOAD_RATE, MINIMUM, MAXIMUM)
+        for i in range(self.crossings.count):
+            value, _ = self.normal.evaluate(LOAD, self.crossings.angle[i])
+            self.note(self.crossings.kind[i], self.crossings.angle[i], value)
+            self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
+
+
+@cython.cclass
+class Margins(RegimeMargins):
+    """`find` computes the margins of the motion of a contact on a line."""
+
+    def __init__(self, cycle: LineCycle) -> None:
+        RegimeMargins.__init__(self, cycle.motion, 2 * cycle.motion.highest + 2)
+        self.cycle = cycle
 
     def find(
         self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
@@ -110,30 +145,6 @@ class Margins:
         self.loads(self.cycle.behaviour)
         if mu * k_u > 0.0 and kind != OPEN:
             self.slips(kind, self.cycle.behaviour, self.cycle.start)
-
-    def note(self, kind: cython.int, angle: float, value: float) -> None:
-        """Appends a margin."""
-        self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
-        self.count += 1
-
-    def loads(self, behaviour: cython.int) -> None:
-        """Appends the margins of closing and opening, from the extremes of the load.
-
-        Where the extremes cannot matter, only the sign of a margin is set.
-        """
-        i: cython.int
-        value: float
-        self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
-        self.note(OPENS, 0.0, self.value[0])
-        if behaviour != MIXED:
-            return
-        self.value[0] = self.value[1] = self.motion.at[LOAD, 0]
-        self.crossings.begin()
-        self.crossings.search(LOAD_RATE, MINIMUM, MAXIMUM)
-        for i in range(self.crossings.count):
-            value, _ = self.motion.evaluate(LOAD, self.crossings.angle[i])
-            self.note(self.crossings.kind[i], self.crossings.angle[i], value)
-            self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
 
     def slips(self, kind: cython.int, behaviour: cython.int, start: float) -> None:
         """Appends the margins of slip, for a contact with friction that closes."""
@@ -187,6 +198,18 @@ _GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int still
 
 
+def greatest_load(crossings: ZeroCrossings) -> float:
+    """Greatest load of a sampled motion, at one of the extremes found, divided by the scale of the load."""
+    i: cython.int
+    value: float
+    high: float = crossings.motion.at[LOAD, 0]
+    for i in range(crossings.count):
+        if crossings.kind[i] == GREATEST_LOAD:
+            value, _ = crossings.motion.evaluate(LOAD, crossings.angle[i])
+            high = max(high, value)
+    return high
+
+
 @cython.cclass
 class Measures:
     """Forces, energy and state sequence of the cycle that a contact has solved last, in the units of its
@@ -236,19 +259,9 @@ class Measures:
         """Computes only greatest load and friction, energy and slip path, which costs less than `measure`."""
         self.motion.sample()
         self.friction()
-        self.greatest()
+        # of the extremes that `friction` has found
+        self.greatest_load = greatest_load(self.crossings) * self.motion.load_scale
         self.slips(k_u)
-
-    def greatest(self) -> None:
-        """Computes the greatest load, at one of the extremes that `friction` has found."""
-        i: cython.int
-        value: float
-        high: float = self.motion.at[LOAD, 0]
-        for i in range(self.crossings.count):
-            if self.crossings.kind[i] == GREATEST_LOAD:
-                value, _ = self.motion.evaluate(LOAD, self.crossings.angle[i])
-                high = max(high, value)
-        self.greatest_load = high * self.motion.load_scale
 
     def extremes(self) -> None:
         """Computes the extremes of the load and of both limits, as if the contact never opened."""

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
+from fcm.contact.periodic.cycle import join_states
 from fcm.contact.pieces import LoadedPieces, waves_at
 from fcm.contact.plane.coefficients import one_motion
 from fcm.contact.plane.forces import PlanarContact
@@ -182,15 +183,12 @@ def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float
     slider = contact.cycle.slider
     begin = np.asarray(slider.begin)[: slider.pieces]
     lengths = np.diff(begin, append=begin[0] + 2.0 * np.pi)
-    regions: list[tuple[str, float, tuple[float, float]]] = []
-    for p in range(slider.pieces):
-        if lengths[p] > FINEST.min_state_length or slider.pieces == 1:
-            state = LETTERS[slider.state[p]]
-            if not regions or regions[-1][0] != state:
-                place = (float(slider.rest_x[p]), float(slider.rest_y[p]))
-                regions.append((state, float(begin[p]), place))
-    if len(regions) > 1 and regions[0][0] == regions[-1][0]:
-        regions = regions[1:]
+    shown = np.flatnonzero((lengths > FINEST.min_state_length) | (slider.pieces == 1)).astype(np.intc)
+    left = join_states(np.asarray(slider.state)[shown], shown, len(shown))
+    regions = [
+        (LETTERS[slider.state[p]], float(begin[p]), (float(slider.rest_x[p]), float(slider.rest_y[p])))
+        for p in shown[:left].tolist()
+    ]
     states = [state for state, _, _ in regions]
     first = next((i for i, state in enumerate(states) if state == "E"), 0)
     turned = [(state, begin + 2.0 * np.pi, place) for state, begin, place in regions[:first]]

@@ -1,21 +1,16 @@
+from fcm.contact.periodic.margins cimport RegimeMargins
 from fcm.contact.periodic.motion cimport ZeroCrossings
 from fcm.contact.plane.cycle cimport PlanarCycle
 from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 
-cdef class PlanarMargins:
+cdef class PlanarMargins(RegimeMargins):
     cdef double steps
     cdef readonly PlaneMotion motion
     cdef readonly PlanarCycle cycle
     cdef readonly Resting resting
-    cdef readonly ZeroCrossings crossings
-    cdef readonly int most, count
-    cdef readonly double[::1] value, angle
-    cdef readonly int[::1] kind
     cdef void hold(self, double[::1] x, double mu, double k_u, double k_v, double n_0, bint start) noexcept nogil
     cdef int find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
-    cdef void note(self, int kind, double angle, double value) noexcept nogil
-    cdef void loads(self, int behaviour) noexcept nogil
     cdef void rests(self, double s_x, double s_y) noexcept nogil
     cdef double other(self) noexcept nogil
     cdef double weaker(self, double s_x, double s_y) noexcept nogil
@@ -31,6 +26,7 @@ cdef class PlanarMeasures:
     cdef readonly double greatest_load, greatest_friction, dissipation, slip_path
     cdef readonly int pieces
     cdef readonly int[::1] state
+    cdef int[::1] piece
     cdef void bear(self, double mu, double k_u) noexcept nogil
     cdef void loads(self) noexcept nogil
     cdef void friction(self) noexcept nogil

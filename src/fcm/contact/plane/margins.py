@@ -20,18 +20,16 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.cycle import join_states
     from cython.cimports.fcm.contact.periodic.margins import (
-        CLOSES,
-        FIXED,
-        MAXIMUM,
-        MINIMUM,
-        OPENS,
+        GREATEST_LOAD,
         PAST,
         SLIPS,
+        RegimeMargins,
+        greatest_load,
     )
     from cython.cimports.fcm.contact.periodic.motion import (
         CLOSED,
-        LOAD,
         LOAD_RATE,
         MIXED,
         OPEN,
@@ -42,8 +40,9 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.panel import SCAN
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
-    from fcm.contact.periodic.margins import CLOSES, FIXED, MAXIMUM, MINIMUM, OPENS, PAST, SLIPS
-    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN, ZeroCrossings
+    from fcm.contact.periodic.cycle import join_states
+    from fcm.contact.periodic.margins import GREATEST_LOAD, PAST, SLIPS, RegimeMargins, greatest_load
+    from fcm.contact.periodic.motion import CLOSED, LOAD_RATE, MIXED, OPEN, UNKNOWN, ZeroCrossings
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from fcm.contact.plane.panel import SCAN
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
@@ -56,20 +55,13 @@ FAR = cython.declare(cython.double, 1e300)
 
 
 @cython.cclass
-class PlanarMargins:
-    """`find` computes the margins of a motion: value, kind, angle (margin,), the first `count` of `most`.
-
-    Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
-    """
+class PlanarMargins(RegimeMargins):
+    """`find` computes the margins of the motion of a contact in its plane."""
 
     def __init__(self, cycle: PlanarCycle) -> None:
-        given = cycle.motion.options
-        self.steps = given.samples_per_radian
+        RegimeMargins.__init__(self, cycle.motion.normal, 4 * cycle.motion.highest + 4)
+        self.steps = cycle.motion.options.samples_per_radian
         self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
-        self.crossings = ZeroCrossings(cycle.motion.normal)
-        self.most, self.count = FIXED + self.crossings.capacity + 4 * cycle.motion.highest + 4, 0
-        self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
-        self.kind = np.zeros(self.most, dtype=np.intc)
 
     def find(
         self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
@@ -82,6 +74,8 @@ class PlanarMargins:
         s_x: float = -self.motion.mean_x
         s_y: float = -self.motion.mean_y
         kind: cython.int = self.cycle.solve(behaviour, s_x, s_y, False)
+        if behaviour == MIXED:
+            self.normal.sample()
         self.loads(behaviour)
         if not mu * k_u > 0.0 or kind in (OPEN, UNKNOWN):
             return kind
@@ -130,32 +124,6 @@ class PlanarMargins:
             self.resting.farthest_of_all(-self.motion.mean_x, -self.motion.mean_y)
         else:
             self.resting.encloses(True)
-
-    def note(self, kind: cython.int, angle: float, value: float) -> None:
-        """Appends a margin, if there is room."""
-        if self.count < self.most:
-            self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
-            self.count += 1
-
-    def loads(self, behaviour: cython.int) -> None:
-        """Appends the margins of closing and opening, from the extremes of the load.
-
-        Where the extremes cannot matter, only the sign of a margin is set.
-        """
-        i: cython.int
-        value: float
-        self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
-        self.note(OPENS, 0.0, self.value[0])
-        if behaviour != MIXED:
-            return
-        self.motion.normal.sample()
-        self.value[0] = self.value[1] = self.motion.normal.at[LOAD, 0]
-        self.crossings.begin()
-        self.crossings.search(LOAD_RATE, MINIMUM, MAXIMUM)
-        for i in range(self.crossings.count):
-            value, _ = self.motion.normal.evaluate(LOAD, self.crossings.angle[i])
-            self.note(self.crossings.kind[i], self.crossings.angle[i], value)
-            self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
 
     def rests(self, s_x: float, s_y: float) -> None:
         """Appends the margins of a contact that never slips: to slip, and of its start being left."""
@@ -273,7 +241,8 @@ class PlanarMeasures:
         self.crossings = ZeroCrossings(cycle.motion.normal)
         self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0
         self.growth = 0.0
-        self.pieces, self.state = 0, np.zeros(cycle.slider.capacity + 1, dtype=np.intc)
+        self.pieces, most = 0, cycle.slider.capacity + 1
+        self.state, self.piece = np.zeros(most, dtype=np.intc), np.zeros(most, dtype=np.intc)
 
     def bear(self, mu: float, k_u: float) -> None:
         """Computes all attributes of the present cycle."""
@@ -290,16 +259,10 @@ class PlanarMeasures:
 
     def loads(self) -> None:
         """Computes the greatest load, at one of its extremes."""
-        i: cython.int
-        value: float
         self.motion.normal.sample()
-        high: float = self.motion.normal.at[LOAD, 0]
         self.crossings.begin()
-        self.crossings.search(LOAD_RATE, 0, 1)
-        for i in range(self.crossings.count):
-            value, _ = self.motion.normal.evaluate(LOAD, self.crossings.angle[i])
-            high = max(high, value)
-        self.greatest_load = max(high, 0.0) * self.motion.load_scale
+        self.crossings.search(LOAD_RATE, -1, GREATEST_LOAD)
+        self.greatest_load = max(greatest_load(self.crossings), 0.0) * self.motion.load_scale
 
     def friction(self) -> None:
         """Computes the greatest magnitude of friction: at the ends of a piece, or where it stops growing."""
@@ -374,15 +337,19 @@ class PlanarMeasures:
         self.pieces = 0
         for i in range(n):
             p = (first + i) % n
-            if n > 1 and self.cycle.slider.length(p) < self.invisible:
+            if n > 1 and self.cycle.slider.length(p) <= self.invisible:
                 continue
             state = self.cycle.slider.state[p]
             if state == SLIP and not rubs:
                 state = STICK
-            if self.pieces == 0 or self.state[self.pieces - 1] != state:
-                self.state[self.pieces] = state
-                self.pieces += 1
-        if self.pieces > 1 and self.state[self.pieces - 1] == self.state[0]:
-            self.pieces -= 1
+            self.state[self.pieces], self.piece[self.pieces] = state, p
+            self.pieces += 1
+        first = self.piece[0]
+        self.pieces = join_states(self.state, self.piece, self.pieces)
+        if self.piece[0] != first:  # the last goes on in the first: it stands in the place of that
+            state = self.state[self.pieces - 1]
+            for i in range(self.pieces - 1, 0, -1):
+                self.state[i] = self.state[i - 1]
+            self.state[0] = state
         if self.cycle.kind == OPEN:
             self.pieces, self.state[0] = 1, SEPARATION
