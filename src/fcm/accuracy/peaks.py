@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.accuracy.curve_distance import rises
-from fcm.accuracy.options import PAIR
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
 from fcm.continuation import Mark
 from fcm.harmonic_balance.consecutive_points import runs
@@ -74,17 +73,14 @@ def _highest(reference: ReferenceCurve, change: FloatArray) -> tuple[FloatArray,
     Neighbours whose interpolated height is clearly greater are computed as well, until the highest is a
     computed one.
     """
-    change, count, near = (
-        change.copy(),
-        len(change),
-        np.arange(-PAIR.peak_neighbours, PAIR.peak_neighbours + 1)[:, None],
-    )
+    change, count, options = change.copy(), len(change), reference.options
+    near = np.arange(-options.peak_neighbours, options.peak_neighbours + 1)[:, None]
     while True:
         expected = reference.amplitude + reference.unit * change
         value = np.where(reference.known[:, None] & np.isfinite(change), expected, 0.0)
         places = value.argmax(axis=0)
         d, around = np.arange(len(places)), np.clip(places + near, 0, count - 1)
-        least = value[places, d] * (1.0 + reference.options.negligible_displacement)
+        least = value[places, d] * (1.0 + options.negligible_displacement)
         higher = ~reference.known[around] & (expected[around, d] > least)
         if not higher.any():
             return change, places

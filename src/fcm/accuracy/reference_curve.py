@@ -16,7 +16,7 @@ from fcm.accuracy.curve_distance import (
     shifted,
     steepness,
 )
-from fcm.accuracy.options import PAIR, PairOptions
+from fcm.accuracy.options import PairOptions
 from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, reference_harmonics
 from fcm.accuracy.reference_pieces import (
     CurvePiece,
@@ -68,9 +68,9 @@ class ComparedQuantities(Frozen):
 class SecondReference:
     """The reference of a reference, computed at single points of it."""
 
-    def __init__(self, finer: System, more: tuple[int, ...]) -> None:
+    def __init__(self, finer: System, more: tuple[int, ...], options: PairOptions) -> None:
         self.finer, self.more = finer, more
-        self.system, self.prolongation = finer.with_harmonics(more), prolongation_to(finer, more)
+        self.system, self.prolongation = finer.with_harmonics(more), prolongation_to(finer, more, options)
         self.before = self.prolongation.newton.evaluations
         self.amplitude = np.empty(0)
 
@@ -120,7 +120,7 @@ class ReferenceCurve:
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)
         self.unit[self.unit == 0.0] = 1.0
-        prolongation, finer = prolongation_to(system, more), system.with_harmonics(more)
+        prolongation, finer = prolongation_to(system, more, options), system.with_harmonics(more)
         self.system, self.more = system, more
         self.finding = PointwiseDisplacement(prolongation)
         self.stretches = StretchFollower(system, finer, prolongation, path, options, budget)
@@ -181,9 +181,9 @@ class ReferenceCurve:
 
     def release(self) -> None:
         """Returns the prolongations to the cache, for the next curve."""
-        keep_for_next(self.finding.prolongation, self.system, self.more)
+        keep_for_next(self.finding.prolongation, self.system, self.more, self.options)
         if self.second is not None:
-            keep_for_next(self.second.prolongation, self.second.finer, self.second.more)
+            keep_for_next(self.second.prolongation, self.second.finer, self.second.more, self.options)
 
     def seconds(self) -> float:
         """Estimated seconds that all searches of this reference have taken."""
@@ -325,7 +325,7 @@ class ReferenceCurve:
             more = reference_harmonics(finer.harmonics, share, finer.layout.ports, options.second_pair)
             unknowns = 2 * finer.layout.ports * len(more)  # besides the means
             self.is_costly = more == finer.harmonics or unknowns > options.max_second_unknowns
-            self.second = None if self.is_costly else SecondReference(finer, more)
+            self.second = None if self.is_costly else SecondReference(finer, more, options)
         return self.second
 
     def amplitude_at_frequency(self, i: int) -> FloatArray | None:
@@ -552,8 +552,8 @@ class ReferenceCurve:
         same = (
             np.flatnonzero(of_reference == of_curve) if len(one.pieces) == 1 else np.empty(0, dtype=np.intp)
         )
-        for first in range(0, len(same), PAIR.batch):
-            some = same[first : first + PAIR.batch]
+        for first in range(0, len(same), self.options.batch):
+            some = same[first : first + self.options.batch]
             passes = _passes(own, omega[some])
             before = np.arange(passes.shape[1]) < (offset + some - 1)[:, None]
             number[some] = (passes & before).sum(axis=1)

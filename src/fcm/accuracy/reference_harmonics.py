@@ -61,18 +61,18 @@ class _BalanceCache(threading.local):
 _BALANCES = _BalanceCache()
 
 
-def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
+def prolongation_to(system: System, more: tuple[int, ...], options: PairOptions = PAIR) -> Prolongation:
     """The prolongation from points of a system to those of its reference, from the cache if possible.
 
     A cached one is reset for the present contacts. It has one owner until `keep_for_next` returns it.
     """
-    made = _BALANCES.by_key.pop(_key(system, more), None) if _is_shareable(system) else None
+    made = _BALANCES.by_key.pop(_key(system, more, options), None) if _is_shareable(system) else None
     if made is None:
         made = Prolongation(
             system.with_harmonics(more).new_balance(),
             list(system.harmonics),
             list(more),
-            PAIR.newton_tolerance,
+            options.newton_tolerance,
         )
     else:
         contacts = system.scene.contacts
@@ -81,12 +81,14 @@ def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
     return made
 
 
-def keep_for_next(prolongation: Prolongation, system: System, more: tuple[int, ...]) -> None:
+def keep_for_next(
+    prolongation: Prolongation, system: System, more: tuple[int, ...], options: PairOptions = PAIR
+) -> None:
     """Returns the prolongation made by `prolongation_to` for the same arguments to the cache."""
     prolongation.newton.poll = None
     if _is_shareable(system):
-        _BALANCES.by_key[_key(system, more)] = prolongation
-        if len(_BALANCES.by_key) > PAIR.max_kept:
+        _BALANCES.by_key[_key(system, more, options)] = prolongation
+        while len(_BALANCES.by_key) > options.max_kept:
             _BALANCES.by_key.popitem(last=False)
 
 
@@ -95,5 +97,6 @@ def _is_shareable(system: System) -> bool:
     return system.scene.ring is None and not system.scene.loads and not system.own_laws
 
 
-def _key(system: System, more: tuple[int, ...]) -> tuple[object, ...]:
-    return (*system.linear.numbers, system.scene.frequency_range, system.harmonics, more)
+def _key(system: System, more: tuple[int, ...], options: PairOptions) -> tuple[object, ...]:
+    of_scene = (*system.linear.numbers, system.scene.frequency_range)
+    return (*of_scene, system.harmonics, more, options.newton_tolerance)

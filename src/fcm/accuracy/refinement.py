@@ -234,7 +234,7 @@ def with_errors(
         none = np.full(len(system.scene.modal.dofs), np.nan)
         return RefinedResponse(*own, none, np.nan, np.nan, accuracy)
     heights = np.array([one.amplitude.max(axis=0) for one in quantities])
-    height, peak = heights.max(axis=0), _peaks(heights, errors)
+    height, peak = heights.max(axis=0), _peaks(heights, errors, options)
     matter = peak[dofs_of_interest(system.scene, height)]
     each = np.concatenate((matter, *(one.fold for one in errors)))
     worst, worst_known = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
@@ -252,7 +252,7 @@ def without_errors(outline: UncheckedResponse) -> RefinedResponse:
     )
 
 
-def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
+def _peaks(heights: FloatArray, errors: tuple[Errors, ...], options: PairOptions) -> FloatArray:
     """Relative errors (dof,) of the greatest of heights (path, dof) over all paths.
 
     Another path may be the highest of the reference's; unknown where that of one nearly as high is.
@@ -264,7 +264,7 @@ def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
     greatest = np.where(np.isnan(of_reference), 0.0, of_reference).max(axis=0)
     other = greatest > of_reference[which, d]
     peak = np.where(other, np.abs(greatest - now) / np.where(now > 0.0, now, 1.0), peak)
-    unknown = (np.isnan(of_reference) & (heights > PAIR.rival_fraction * now)).any(axis=0)
+    unknown = (np.isnan(of_reference) & (heights > options.rival_fraction * now)).any(axis=0)
     return np.where(unknown, np.nan, peak)
 
 

@@ -78,7 +78,7 @@ def required_harmonics(
     more = reference_harmonics(system.harmonics, share, system.layout.ports, pair)
     if not share.any() or more == system.harmonics:
         return RequiredHarmonics(0.0, True, share, system.harmonics)
-    prolongation, motions, change, is_known = prolongation_to(system, more), [], 0.0, True
+    prolongation, motions, change, is_known = prolongation_to(system, more, pair), [], 0.0, True
     for place in places:
         values = _displaced(prolongation, place)
         if values is None:
@@ -86,7 +86,7 @@ def required_harmonics(
             continue
         motions.append(np.array(prolongation.newton.z))
         change = max(change, float((values / np.append(1.0, size))[place.counts].max(initial=0.0)))
-    keep_for_next(prolongation, system, more)
+    keep_for_next(prolongation, system, more, pair)
     if motions:
         finer = FurtherHarmonics(system.with_harmonics(more))
         of_reference = _greatest_shares(finer, np.array(motions), size, ())

@@ -47,7 +47,7 @@ def stability_limits(
     known: dict[tuple[int, ...], _ReferenceGrowth] = {}
     found = [_lost(system, path, one, accuracy, known) for one in crossings]
     for more, beside in known.items():
-        keep_for_next(beside.prolongation, system, more)
+        keep_for_next(beside.prolongation, system, more, AT_POINTS)
     return found
 
 
@@ -85,7 +85,7 @@ def _lost(
         return StabilityLimit(one.frequency, 0.0, more)
     if more not in known:
         known[more] = _ReferenceGrowth(
-            system.with_harmonics(more), path, prolongation_to(system, more), system
+            system.with_harmonics(more), path, prolongation_to(system, more, AT_POINTS), system
         )
     found = known[more].crossing(one, STABILITY_LIMITS.relative_tolerance * accuracy)
     error = abs(found / one.frequency - 1.0)

@@ -12,6 +12,7 @@ from fcm.fit.options import FIT, FitOptions
 from fcm.frozen import Frozen
 from fcm.model.scene import Address, FloatArray, Scene
 from fcm.scene.draft import Number, number_of
+from fcm.scene.optimum import without_bounds
 
 
 class FitError(ValueError):
@@ -85,7 +86,7 @@ def parameters_of(
     for i, (number, ends) in enumerate(zip(numbers, bounds, strict=True)):
         values = [value / weight for _, value, weight in number.each(scene)]
         start[i] = np.mean(values)
-        low[i], high[i] = ends or _wide(start[i], number, options)
+        low[i], high[i] = ends or _up_and_down(start[i], number, options)
         start[i] = min(max(start[i], low[i]), high[i])
     log = ((low > 0.0) & (start > 0.0)).astype(float)
     unit = np.where(
@@ -94,12 +95,12 @@ def parameters_of(
     return Parameters(scene, numbers, start, low, high, log, unit)
 
 
-def _wide(start: float, number: Number, options: FitOptions) -> tuple[float, float]:
+def _up_and_down(start: float, number: Number, options: FitOptions) -> tuple[float, float]:
     """Default bounds of a number that has none: its start divided and multiplied by a factor."""
     if start > 0.0:
         return start / options.unbounded_factor, start * options.unbounded_factor
     if start == 0.0:
-        raise FitError(f"fit: bounds: give [from, to] for {number.key}, which is 0 in the scene")
+        raise FitError(f"fit: bounds: {without_bounds(number)}")
     return start * options.unbounded_factor, -start * options.unbounded_factor
 
 

@@ -104,7 +104,7 @@ def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> lis
     if not numbers:
         return []
     if value is None:
-        return [_wide(section, number, draft) for number in numbers if number]
+        return [_of_sweep_or_from_0(section, number, draft) for number in numbers if number]
     pairs: Any = None
     if isinstance(value, Mapping):
         keys = words_of(section, "vary", "")
@@ -144,7 +144,12 @@ def pair_of_bounds(section: Section, number: Number, pair: object) -> tuple[floa
     return (low, high)
 
 
-def _wide(section: Section, number: Number, draft: Draft) -> tuple[float, float]:
+def without_bounds(number: Number) -> str:
+    """What is said of a number without bounds that is 0: no others follow from it."""
+    return f"give [from, to] for {number.key}, which is 0 in the scene"
+
+
+def _of_sweep_or_from_0(section: Section, number: Number, draft: Draft) -> tuple[float, float]:
     """Default bounds of a number: those of its sweep, if there is one; else from 0 to ten times its value."""
     for one in draft.swept:
         if set(one.addresses) <= set(number.addresses) and min(one.values) < max(one.values):
@@ -152,7 +157,7 @@ def _wide(section: Section, number: Number, draft: Draft) -> tuple[float, float]
     values = [value / weight for value, weight in draft.present(number)]
     furthest = max(values, key=abs, default=0.0)
     if furthest == 0.0:
-        section.wrong("bounds", f"missing; give [from, to] for {number.key}, which is 0 in the scene")
+        section.wrong("bounds", f"missing; {without_bounds(number)}")
     return (
         (0.0, LIMITS.optimum_range * furthest) if furthest > 0.0 else (LIMITS.optimum_range * furthest, 0.0)
     )

@@ -59,17 +59,16 @@ def onset(
     load[0] += law.n_0
     if kind == "slip" or kind in LIMITS:
         push = _polynomial(x, law, 0) * law.k_u
-        upper = _least(push + law.mu * load, harmonics, options)
-        lower = _least(law.mu * load - push, harmonics, options)
-        parts = [(upper, 1.0, law.mu), (lower, -1.0, law.mu)]
+        parts = [(push + law.mu * load, 1.0, law.mu), (law.mu * load - push, -1.0, law.mu)]
         parts = parts if kind == "slip" else [parts[LIMITS.index(kind)]]
     else:
         sign = 1.0 if kind == "separation" else -1.0
-        parts = [(_least(sign * load, harmonics, options), 0.0, sign)]
+        parts = [(sign * load, 0.0, sign)]
     value, slope, numbers = 0.0, np.zeros(x.size), np.zeros(4)
     sign = -1.0 if kind in ("closing", "lower limit") else 1.0  # max n = -min(-n)
-    for (least, theta), of_push, of_load in parts:
-        value += sign * least
+    least, angles = _least(np.array([c for c, _, _ in parts]), harmonics, options)
+    for lowest, theta, (_, of_push, of_load) in zip(least.tolist(), angles.tolist(), parts, strict=True):
+        value += sign * lowest
         at = _waves(theta, harmonics)  # of a displacement's own numbers, at the extreme
         along, across = _places(law, x, 0), _places(law, x, NORMAL)
         slope[along] += sign * of_push * law.k_u * at
@@ -106,7 +105,7 @@ def values(
     load[:, 0] += n_0
     limit = mu[:, None] * load
     open_, shut, upper, lower = np.split(
-        _all_least(np.concatenate((load, -load, push + limit, limit - push)), harmonics, options), 4
+        _least(np.concatenate((load, -load, push + limit, limit - push)), harmonics, options)[0], 4
     )
     rests = upper + lower > 0.0
     return np.concatenate(
@@ -114,26 +113,22 @@ def values(
     )
 
 
-def _all_least(
-    c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
-) -> FloatArray:
-    """Least value over the cycle for each row of coefficients c, as `_least`."""
+def _least(
+    c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions
+) -> tuple[FloatArray, FloatArray]:
+    """Least value (row,) of c_0 + Re sum c_h exp(i h theta) for each row of c, and the angle there."""
     h, wave = np.array(harmonics), c[:, 1:]
     if h.size == 1:
-        return c[:, 0].real - np.abs(wave[:, 0])
-    theta = (
-        2.0
-        * np.pi
-        * np.arange(options.onset.samples_per_period * h[-1])
-        / (options.onset.samples_per_period * h[-1])
-    )
+        return c[:, 0].real - np.abs(wave[:, 0]), np.pi - np.angle(wave[:, 0])
+    samples = options.onset.samples_per_period * h[-1]
+    theta = 2.0 * np.pi * np.arange(samples) / samples
     at = theta[(wave @ np.exp(1j * np.outer(h, theta))).real.argmin(axis=1)]
     for _ in range(options.onset.max_iterations):
         turned = np.exp(1j * np.outer(at, h)) * wave
         bend = (h * h * turned).real.sum(axis=1)
         step = (h * turned).imag.sum(axis=1) / np.where(bend < 0.0, bend, 1.0)
         at = at - np.where(bend < 0.0, step, 0.0)
-    return c[:, 0].real + (np.exp(1j * np.outer(at, h)) * wave).real.sum(axis=1)  # type: ignore[no-any-return]
+    return c[:, 0].real + (np.exp(1j * np.outer(at, h)) * wave).real.sum(axis=1), at
 
 
 def _values_in_plane(
@@ -211,26 +206,3 @@ def _waves(theta: float, harmonics: tuple[int, ...]) -> FloatArray:
     """Derivatives of a displacement at an angle by its coefficients: mean, then Re, Im of each harmonic."""
     h = np.array(harmonics) * theta
     return np.concatenate(([1.0], np.stack((np.cos(h), -np.sin(h)), axis=1).ravel()))
-
-
-def _least(
-    c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
-) -> tuple[float, float]:
-    """Least value of c_0 + Re sum c_h exp(i h theta), and the angle there."""
-    h, wave = np.array(harmonics), c[1:]
-    if h.size == 1:
-        return float(c[0].real - abs(wave[0])), float(np.pi - np.angle(wave[0]))
-    theta = (
-        2.0
-        * np.pi
-        * np.arange(options.onset.samples_per_period * h[-1])
-        / (options.onset.samples_per_period * h[-1])
-    )
-    at = float(theta[(np.exp(1j * np.outer(theta, h)) @ wave).real.argmin()])
-    for _ in range(options.onset.max_iterations):
-        turned = np.exp(1j * h * at) * wave
-        bend = float((h * h * turned).real.sum())
-        if bend >= 0.0:
-            break
-        at -= float((h * turned).imag.sum()) / bend
-    return float(c[0].real + (np.exp(1j * h * at) * wave).real.sum()), at
