@@ -5,7 +5,8 @@ import pytest
 
 from fcm.scene import scene_from_dict
 from fcm.structure.linear import linear_of
-from fcm.structure.receptance import Receptance
+from fcm.structure.options import DAMPING
+from fcm.structure.receptance import ForcedModes, Receptance, dynamic_stiffness
 
 
 @pytest.mark.parametrize(("ports", "modes"), [(2, 5), (4, 7), (8, 38), (20, 30)])
@@ -54,3 +55,21 @@ def test_answers_with_springs_of_few_modes_are_those_of_the_receptance() -> None
         for k, (G, X) in enumerate(zip(*linear.at(w), strict=True)):
             for answer, springs in zip(found[:, j, k], held, strict=True):
                 assert answer + G @ (springs * answer) == pytest.approx(X, rel=1e-11)
+
+
+def test_an_undamped_mode_at_its_own_frequency_answers_alike_to_all_that_ask() -> None:
+    """A quarter of a period behind the force, as a damped one does: its stiffness is a little damping."""
+    natural, damping, one = np.array([3.0]), np.zeros(1), np.ones((1, 1))
+    stiffness = dynamic_stiffness(natural, damping, natural)[0, 0]
+    assert stiffness == 9j * DAMPING.min_loss_factor
+    seen = Receptance(one, natural, damping, np.ones(1), np.zeros((1, 1)), np.ones(1))
+    seen.at(3.0)
+    assert seen.of_harmonic(0)[0, 0] == pytest.approx(1.0 / stiffness, rel=1e-14)
+    share = np.zeros(1)
+    damped = np.array([0.5 * DAMPING.min_loss_factor])
+    together = np.hstack((natural, natural)), np.hstack((damping, damped))
+    shapes = np.array([[1.0], [1.0]])
+    # beside a mode with that damping: what both do together is twice as much, and not the root of two
+    modes = ForcedModes(*together, shapes, shapes)
+    modes.shares(np.ones(1, dtype=np.intp), 3.0, np.array([[[1.0, 0.0]]]), np.ones(1), share)
+    assert share[0] == pytest.approx(2.0 / abs(stiffness), rel=1e-14)

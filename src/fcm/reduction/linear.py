@@ -9,6 +9,7 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.options import REDUCTION
 from fcm.structure.linear import Linear, linear_of
 from fcm.structure.loads import driven_harmonics
+from fcm.structure.receptance import dynamic_stiffness
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -44,7 +45,7 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
     for k, h in enumerate(linear.driven):
         driven = DrivenModes(few, k, omega, springs)
         ports = driven.response @ few.ports
-        compliance = _compliance(linear, h * omega[:, None])
+        compliance = 1.0 / dynamic_stiffness(linear.natural, linear.damping, h * omega)
         moved = compliance * (_force(linear, k, omega) - (springs * ports) @ linear.ports.T)
         error = moved @ linear.ports - ports
         error -= driven.solved((springs * error) @ few.ports.T) @ few.ports
@@ -63,7 +64,7 @@ class DrivenModes:
     """
 
     def __init__(self, linear: Linear, k: int, omega: FloatArray, springs: FloatArray) -> None:
-        stiffness = 1.0 / _compliance(linear, linear.driven[k] * omega[:, None])
+        stiffness = dynamic_stiffness(linear.natural, linear.damping, linear.driven[k] * omega)
         held = (linear.ports * springs) @ linear.ports.T
         self.matrix = stiffness[..., None] * np.eye(linear.natural.size) + held
         self.response = self.solved(_force(linear, k, omega))
@@ -71,12 +72,6 @@ class DrivenModes:
     def solved(self, force: ComplexArray) -> ComplexArray:
         """Amplitudes (frequency, mode) under forces on the modes."""
         return np.asarray(np.linalg.solve(self.matrix, force[..., None])[..., 0])
-
-
-def _compliance(linear: Linear, w: FloatArray) -> ComplexArray:
-    """Compliance of each mode (frequency, mode)."""
-    natural, rate = linear.natural, 2.0 * linear.damping * linear.natural
-    return np.asarray(1.0 / ((natural - w) * (natural + w) + 1j * rate * w))
 
 
 def _force(linear: Linear, k: int, omega: FloatArray) -> ComplexArray:

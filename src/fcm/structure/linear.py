@@ -12,8 +12,8 @@ import numpy.typing as npt
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.loads import loads_of
-from fcm.structure.options import DAMPING, REDUCTION
-from fcm.structure.receptance import Receptance
+from fcm.structure.options import REDUCTION
+from fcm.structure.receptance import Receptance, dynamic_stiffness
 from fcm.structure.rigid import settled
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -93,7 +93,7 @@ class Linear(Frozen):
         That is as large as the modes are many, where the ports' receptance is as large as these are.
         """
         orders = np.array(self.driven, dtype=np.float64)
-        stiffness = dynamic_stiffness(self.natural, self.damping, omega, orders)
+        stiffness = _stiffness(self.natural, self.damping, omega, orders)
         modal = self.force + self.square * omega[:, None, None] ** 2
         found = np.empty((len(springs), *modal.shape[:2], self.ports.shape[1]), dtype=np.complex128)
         for answer, held in zip(found, springs, strict=True):
@@ -181,17 +181,15 @@ def amplitudes(
     natural: FloatArray, damping: FloatArray, omega: FloatArray, harmonics: FloatArray, force: ComplexArray
 ) -> ComplexArray:
     """Modal amplitudes (point, harmonic, mode) under modal forces, at frequencies omega (point,)."""
-    return force / dynamic_stiffness(natural, damping, omega, harmonics)
+    return force / _stiffness(natural, damping, omega, harmonics)
 
 
-def dynamic_stiffness(
+def _stiffness(
     natural: FloatArray, damping: FloatArray, omega: FloatArray, harmonics: FloatArray
 ) -> ComplexArray:
-    """w_n^2 - w^2 + 2i zeta w_n w of modes (point, harmonic, mode), w = h omega; never zero."""
-    w = (omega[:, None] * harmonics)[..., None]
-    dynamic = (natural - w) * (natural + w) + 2j * damping * natural * w
-    found: ComplexArray = np.where(dynamic == 0.0, DAMPING.min_ratio * w * w, dynamic)
-    return found
+    """Dynamic stiffness of modes (point, harmonic, mode) at harmonics of frequencies omega (point,)."""
+    w = omega[:, None] * harmonics
+    return dynamic_stiffness(natural, damping, w.ravel()).reshape(*w.shape, natural.size)
 
 
 class _Last(threading.local):

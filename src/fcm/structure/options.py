@@ -33,8 +33,8 @@ class DampingOptions(Frozen):
     # error
     rounding: float = 1e-9
     cancellation_tolerance: float = 1e-13  # sum of terms, relative to their sizes, up to which it is rounding
-    # relative dynamic stiffness that stands for that of an undamped mode at its own frequency
-    min_ratio: float = 1e-9
+    # loss factor of a mode that nothing damps, at its own frequency alone
+    min_loss_factor: float = 1e-9
 
 
 class ReceptanceOptions(Frozen):

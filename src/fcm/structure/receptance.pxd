@@ -1,3 +1,5 @@
+cdef (double, double) modal_stiffness(double natural, double rate, double w, double least_loss) noexcept nogil
+
 cdef class Receptance:
     cdef public int modes
     cdef public int ports
@@ -21,7 +23,7 @@ cdef class Receptance:
     cdef public double[:, ::1] static
     cdef public bint large
     cdef bint many
-    cdef double min_ratio
+    cdef double least_loss
     cdef public bint summed
     cdef public double[:, ::1] pairs
     cdef public double[:, ::1] total
@@ -55,7 +57,7 @@ cdef class TravellingReceptance(Receptance):
     cdef void from_real(self, int j, Receptance wave) noexcept
 
 cdef class ForcedModes:
-    cdef double min_ratio
+    cdef double least_loss
     cdef double[:, ::1] ports
     cdef double[:, ::1] dofs
     cdef double[::1] natural

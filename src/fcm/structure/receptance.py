@@ -27,6 +27,37 @@ from fcm.structure.layout import Layout
 from fcm.structure.options import DAMPING, RECEPTANCE
 
 
+def modal_stiffness(natural: float, rate: float, w: float, least_loss: float) -> tuple[float, float]:
+    """Dynamic stiffness w_n^2 - w^2 + i rate w of a mode of mass 1, its real and imaginary part.
+
+    Never zero: nothing damps an undamped mode that is excited at its own frequency, and a little does here.
+    """
+    # the difference of squares as a product: exact next to an undamped resonance
+    re: float = (natural - w) * (natural + w)
+    im: float = rate * w
+    if re == 0.0 and im == 0.0:
+        im = least_loss * w * w
+    return re, im
+
+
+def dynamic_stiffness(
+    natural: npt.NDArray[np.float64], damping: npt.NDArray[np.float64], w: npt.NDArray[np.float64]
+) -> npt.NDArray[np.complex128]:
+    """Dynamic stiffness (frequency, mode) of modes of mass 1 at frequencies w (frequency,)."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    at: cython.double[::1] = np.array(w)
+    own: cython.double[::1] = np.array(natural)
+    rate: cython.double[::1] = 2.0 * np.asarray(damping) * natural
+    least: cython.double = DAMPING.min_loss_factor
+    found = np.empty((len(w), len(natural)), dtype=np.complex128)
+    out: cython.double[:, :, ::1] = found.view(np.float64).reshape(len(w), len(natural), 2)
+    for k in range(at.shape[0]):
+        for i in range(own.shape[0]):
+            out[k, i, 0], out[k, i, 1] = modal_stiffness(own[i], rate[i], at[k], least)
+    return found
+
+
 @cython.cclass
 class Receptance:
     """Receptances at the ports of contacts, and the response to external forces, at one frequency.
@@ -76,7 +107,7 @@ class Receptance:
         sums = np.asarray(self.sum).reshape(4, count, size, size)
         self.G_re, self.G_im, self.dG_re, self.dG_im = sums
         low, self.large = np.tril_indices(ports), modes * ports * ports > RECEPTANCE.blas_products
-        self.many, self.min_ratio = ports >= RECEPTANCE.many_ports, DAMPING.min_ratio
+        self.many, self.least_loss = ports >= RECEPTANCE.many_ports, DAMPING.min_loss_factor
         pairs = self.many and summed and not self.large
         self.pairs = (
             np.ascontiguousarray(shapes[:, low[0]] * shapes[:, low[1]]) if pairs else np.zeros((0, 0))
@@ -153,11 +184,7 @@ class Receptance:
             h: cython.double = self.harmonics[j]
             w: cython.double = h * self.omega
             for i in range(self.modes):
-                # the difference of squares as a product: exact next to an undamped resonance
-                re: cython.double = (self.natural[i] - w) * (self.natural[i] + w)
-                im: cython.double = self.rate[i] * w
-                if re == 0.0 and im == 0.0:  # nothing damps a mode that is excited at its own frequency
-                    im = self.min_ratio * w * w
+                re, im = modal_stiffness(self.natural[i], self.rate[i], w, self.least_loss)
                 size: cython.double = re * re + im * im
                 c_re: cython.double = re / size
                 c_im: cython.double = -im / size
@@ -344,7 +371,7 @@ class ForcedModes:
         ports: npt.NDArray[np.float64],
         dofs: npt.NDArray[np.float64],
     ) -> None:
-        self.min_ratio = DAMPING.min_ratio
+        self.least_loss = DAMPING.min_loss_factor
         self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
         self.ports, self.dofs = np.ascontiguousarray(ports), np.ascontiguousarray(dofs)
         self.q_re, self.q_im = np.zeros((2, len(natural)))
@@ -384,10 +411,7 @@ class ForcedModes:
             for p in range(self.ports.shape[1]):
                 f_re += self.ports[m, p] * force[p, 0]
                 f_im += self.ports[m, p] * force[p, 1]
-            re: cython.double = (self.natural[m] - w) * (self.natural[m] + w)
-            im: cython.double = self.rate[m] * w
-            if re == 0.0 and im == 0.0:
-                re = self.min_ratio * w * w
+            re, im = modal_stiffness(self.natural[m], self.rate[m], w, self.least_loss)
             square: cython.double = re * re + im * im
             self.q_re[m] = (f_re * re + f_im * im) / square
             self.q_im[m] = (f_im * re - f_re * im) / square
