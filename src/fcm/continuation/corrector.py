@@ -168,7 +168,7 @@ class Newton(BorderedSystem):
         """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
-        than the most, or the second neither slight nor half as long, it is given up; moved is then the first.
+        than the most, or the second neither slight nor much shorter, it is given up; moved is then the first.
         A point counts as converged by the order 1.5, that of a force whose slope changes as a root.
         """
         i: cython.Py_ssize_t
@@ -231,9 +231,10 @@ class Newton(BorderedSystem):
                 return False
             if self.problem.labelled and self.at_rounding(step, step / before, count):
                 return self.compute_tangent()
-            noise: cython.bint = count > 0 and step > 0.25 * before and self.is_rounding(step, count)
+            stays: cython.bint = count > 0 and step > self.options.rounding_ratio * before
+            noise: cython.bint = stays and self.is_rounding(step, count)
             hasten: cython.bint = self.problem.labelled or self.problem.costly
-            worse: cython.double = self.options.divergence_ratio if hasten else 2.0
+            worse: cython.double = self.options.divergence_ratio if hasten else self.options.max_growth
             if not step < self.options.max_step or (count > 2 and step > worse * before and not noise):
                 return False
             if noise:
@@ -261,12 +262,13 @@ class Newton(BorderedSystem):
     def too_far(
         self, step: cython.double, before: cython.double, most: cython.double, count: cython.int
     ) -> cython.bint:
-        """Whether the first step is longer than the most, or the second neither slight nor half as long."""
+        """Whether the first step is longer than the most, or the second neither slight nor much shorter."""
         if count == 0:
             self.moved = step
             return not step < most
         if count == 1:  # of short steps the first may be rounding, in a stiff direction
-            return not step < max(0.5 * before, self.options.small_second_step * most)
+            slight: cython.double = self.options.small_second_step * most
+            return not step < max(self.options.max_second_ratio * before, slight)
         return not step < self.options.max_step
 
     @cython.cfunc
@@ -299,7 +301,7 @@ class Newton(BorderedSystem):
             return True
         return (
             count > 0
-            and ratio > 0.25
+            and ratio > self.options.rounding_ratio
             and step < (self.options.stalled_rounding if ratio < 1.0 else self.options.growing_rounding)
         )
 
@@ -307,7 +309,7 @@ class Newton(BorderedSystem):
     @cython.exceptval(-1, check=False)
     def chord_steps(self, before: cython.double) -> cython.bint:
         """Take Newton steps with the same Jacobian from the end of a step; whether they come to the curve."""
-        return _chord_steps(self, before, self.options.max_chord_steps, 0.1)
+        return _chord_steps(self, before, self.options.max_chord_steps, self.options.chord_contraction)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -350,7 +352,7 @@ def correct_with_kept_jacobian(newton: Newton, most: float) -> bool:
             return False
         _move(newton)
         if step < newton.options.final_step or _chord_steps(
-            newton, step, newton.options.max_cheap_chord_steps, newton.options.chord_contraction
+            newton, step, newton.options.max_cheap_chord_steps, newton.options.cheap_chord_contraction
         ):
             return bool(newton.compute_tangent())
         before = step

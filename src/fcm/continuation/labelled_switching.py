@@ -41,12 +41,13 @@ class Follower(Protocol):
         """Make the next step no longer, or no shorter, than a length."""
 
 
-def step_factor(aim: float, error: float, cubic: bool = False) -> float:
+def step_factor(options: LabelOptions, error: float, cubic: bool) -> float:
     """Ratio of the next step to one whose prediction missed the curve by an error, for the miss aimed at.
 
     The prediction is a parabola, and what it misses grows as the third power; or a cubic: as the fourth.
     """
-    return float(0.9 * (aim / max(error, 1e-12)) ** (0.25 if cubic else 1.0 / 3.0))
+    ratio = options.target_error / max(error, options.min_error)
+    return float(options.safety * ratio ** (1.0 / 4.0 if cubic else 1.0 / 3.0))
 
 
 def clipped(value: float, low: float, high: float) -> float:
@@ -90,9 +91,7 @@ class LabelledSwitching:
                 step = at
                 continue
             if step > self.control.any_turn_step:
-                shorter = step_factor(
-                    self.options.target_error, stepper.newton.moved, stepper.predictor.cubic
-                )
+                shorter = step_factor(self.options, stepper.newton.moved, stepper.predictor.cubic)
                 step = max(
                     self.control.any_turn_step, step * clipped(shorter, *self.options.rejection_factors)
                 )
@@ -108,7 +107,7 @@ class LabelledSwitching:
                 status = self.accept_step(follower, self.options.max_factor)
                 follower.limit_step(self.control.any_turn_step, False)
                 return status
-            step = 0.25 * min(step, reach)
+            step = self.options.retreat * min(step, reach)
         return self.search_beyond(
             follower, 0.0 if self.departure else next_corner(stepper, self.options.reached_distance)
         )
@@ -178,10 +177,7 @@ class LabelledSwitching:
             return Status.STALLED
         if self.store.count > count:
             follower.limit_step(
-                step
-                * clipped(
-                    step_factor(self.options.target_error, error, cubic), self.options.min_factor, longer
-                ),
+                step * clipped(step_factor(self.options, error, cubic), self.options.min_factor, longer),
                 True,
             )
             follower.limit_step(step * longer, False)
@@ -319,5 +315,6 @@ def _found(
     step = (np.asarray(newton.z) - here) / scale
     length = float(np.linalg.norm(step))
     stepper.problem.bound(newton.z)
-    forward = bool(np.asarray(newton.tangent) @ step > 0.5 * length)
+    least = stepper.options.labels.min_way_cosine * length
+    forward = bool(np.asarray(newton.tangent) @ step > least)
     return forward and is_new_direction(float(incoming @ step) / length)

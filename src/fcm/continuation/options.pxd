@@ -3,8 +3,8 @@ cdef class Options:
 
 cdef class NewtonOptions(Options):
     cdef readonly int max_iterations, max_chord_steps, max_cheap_chord_steps, half_steps
-    cdef readonly double max_step, tolerance, preliminary_tolerance, final_step, negligible_step, stalled_rounding, growing_rounding, chord_step, chord_contraction, last_chord_step, divergence_ratio
-    cdef readonly double small_second_step, max_rounding, rounding_multiple
+    cdef readonly double max_step, tolerance, preliminary_tolerance, final_step, negligible_step, stalled_rounding, growing_rounding, chord_step, chord_contraction, cheap_chord_contraction, last_chord_step, max_growth, divergence_ratio
+    cdef readonly double rounding_ratio, max_second_ratio, small_second_step, max_rounding, rounding_multiple
 
 cdef class StepOptions(Options):
     cdef readonly double initial_step, min_step, min_cosine, min_cubic_cosine, any_turn_step, max_branch_distance, max_miss, target_turn, target_miss, target_output_error, max_output_error_ratio, min_factor, max_factor

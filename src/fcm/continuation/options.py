@@ -114,13 +114,19 @@ class NewtonOptions(Options):
     max_chord_steps, max_cheap_chord_steps : int
         Most Newton steps in a row with the same Jacobian. The second number holds where solving takes far
         less work than factoring.
-    chord_contraction : float
-        Length of such a step, relative to the one before, from which on the Jacobian is computed anew.
+    chord_contraction, cheap_chord_contraction : float
+        Length of such a step, relative to the one before, from which on the Jacobian is computed anew; the
+        second where the second number holds.
     last_chord_step : float
         Scaled length of a Newton step below which a last one with the same Jacobian is tried.
-    divergence_ratio : float
+    max_growth, divergence_ratio : float
         Length of the fourth or a later Newton step, relative to the one before, beyond which the iteration
-        diverges; where a problem is costly or has labels.
+        diverges; the second where a problem is costly or has labels.
+    rounding_ratio : float
+        Length of a Newton step, relative to the one before, above which rounding may have made it.
+    max_second_ratio : float
+        Length of the second Newton step, relative to the first, from which on the iteration has failed, where
+        the first is limited.
     small_second_step : float
         Length of the second Newton step, relative to the greatest first one, below which it is no sign of
         failure even if it does not shrink.
@@ -143,9 +149,13 @@ class NewtonOptions(Options):
     chord_step: cython.double = 1e-6
     max_chord_steps: cython.int = 3
     max_cheap_chord_steps: cython.int = 16
-    chord_contraction: cython.double = 0.3
+    chord_contraction: cython.double = 0.1
+    cheap_chord_contraction: cython.double = 0.3
     last_chord_step: cython.double = 1e-5
+    max_growth: cython.double = 2.0
     divergence_ratio: cython.double = 0.5
+    rounding_ratio: cython.double = 0.25
+    max_second_ratio: cython.double = 0.5
     small_second_step: cython.double = 0.02
     max_rounding: cython.double = 1e-6
     rounding_multiple: cython.double = 8.0
@@ -441,6 +451,15 @@ class LabelOptions(Frozen):  # of no kernel
         along the incoming direction.
     random_directions : int
         Number of random directions in which other smooth pieces are looked for.
+    safety : float
+        Factor on the step with which the prediction is expected to miss the curve by the error aimed at.
+    min_error : float
+        Scaled distance of a point from its prediction that stands for any smaller one.
+    retreat : float
+        Length of a step, relative to the way to a change of label or to the step before, after no curve was
+        found.
+    min_way_cosine : float
+        Cosine between the curve's direction beyond a corner and the way there, below which it goes back.
     """
 
     target_error: float = 5e-4
@@ -466,6 +485,10 @@ class LabelOptions(Frozen):  # of no kernel
     departure_lengths: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-6)
     departure_fractions: tuple[float, ...] = (1.0, 0.1, 1e-2, 1e-3)
     random_directions: int = 16
+    safety: float = 0.9
+    min_error: float = 1e-12
+    retreat: float = 0.25
+    min_way_cosine: float = 0.5
 
 
 @cython.cclass

@@ -51,7 +51,7 @@ class Corner:
         length, last, worth = 0.0, 0.0, 0.0
         for count in range(self.options.max_iterations):
             newton.z[:], newton.row[:] = start + length * scale * direction, direction
-            if abs(length) > self.options.max_distance or not newton.correct(1e-3):
+            if abs(length) > self.options.max_distance or not newton.correct(self.of.options.pieces.reach):
                 return None
             at = np.array(newton.z)
             before, worth = worth, self.special(at) if side is None else float(self.sides(at)[side])

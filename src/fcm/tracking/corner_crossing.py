@@ -48,7 +48,7 @@ class CornerCrossing:
 
     def solve(self, guess: FloatArray, row: FloatArray) -> bool:
         self.newton.z[:], self.newton.row[:] = guess, row
-        return bool(self.newton.correct(1e-3)) and bool(np.isfinite(self.newton.z).all())
+        return bool(self.newton.correct(self.options.reach)) and bool(np.isfinite(self.newton.z).all())
 
     def measure_at(self, z: FloatArray) -> None:
         """Set the units, and the row of the tangent, at a point."""

@@ -55,7 +55,7 @@ def _crosses(
     problem.measure(guess)
     newton = Newton(problem)
     newton.scale[:], newton.z[:], newton.row[:] = scale, guess, row
-    if not newton.correct(1e-3):
+    if not newton.correct(setup.options.pieces.reach):
         return False
     return bool(
         np.linalg.norm((np.asarray(newton.z) - point.z) / scale) < setup.options.known.point_tolerance

@@ -21,6 +21,8 @@ class PieceOptions(Frozen):
         Options of the step control of a piece.
     max_points, max_pieces : int
         Most points, and most pieces, of a curve; with more it ends as too long.
+    reach : float
+        Length that stands before the first Newton step to a point of the curve, see `Newton.correct`.
     max_correction : float
         Length of the correction of a start from which on it is no start of this curve.
     short_steps : int
@@ -58,6 +60,7 @@ class PieceOptions(Frozen):
     step: StepOptions = PIECE_STEPS
     max_points: int = 3000
     max_pieces: int = 300
+    reach: float = 1e-3
     max_correction: float = 0.3
     short_steps: int = 4
     short_step: float = 1e-3
@@ -246,6 +249,13 @@ class EnvelopeOptions(Frozen):
         Number of the lowest points about which the least value is looked for.
     value_tolerance : float
         Error of the number at the least value, relative to its range.
+    search_tolerance : float
+        Error of it, relative to the range, up to which it is sought by the values alone.
+    bracket : float
+        Distance from there, relative to the range, at which the slopes on both sides tell what lies between.
+    smooth_slope : float
+        Relative change of a peak over the whole range, by its slope at the least value, below which that is
+        where the peak turns, and no corner.
     chord_fraction : float
         Height of a peak by the chords, relative to the highest, below which it is not computed.
     min_gap : float
@@ -268,6 +278,9 @@ class EnvelopeOptions(Frozen):
 
     brackets: int = 4
     value_tolerance: float = 1e-9
+    search_tolerance: float = 1e-5
+    bracket: float = 1e-4
+    smooth_slope: float = 1e-3
     chord_fraction: float = 0.7
     min_gap: float = 1e-3
     height_tolerance: float = 1e-7

@@ -115,7 +115,7 @@ class MonotonePiece:
         newton = Newton(problem)
         newton.scale[:], newton.z[:] = problem.scale, guess
         newton.row[:] = np.eye(guess.size)[-1]
-        return (problem, newton) if newton.correct(1e-3) else None
+        return (problem, newton) if newton.correct(problem.options.pieces.reach) else None
 
     def _problem(self, corner: Condition | None) -> ExtendedSystem:
         if corner not in self._problems:
@@ -275,13 +275,13 @@ def _refined(
             lambda s: min(highest(s)[0].value, most),
             bounds=(low, high),
             method="bounded",
-            options={"xatol": 1e-5 * span},
+            options={"xatol": options.search_tolerance * span},
         )
         tried = [float(bounded.x), low, middle, high]
         s = min(tried, key=lambda s: highest(s)[0].value)
     else:
         s = middle
-    width = 1e-4 * span
+    width = options.bracket * span
     left, right = max(low, s - width), min(high, s + width)
     (before, one), (after, other) = highest(left), highest(right)
     kind = "bound"
@@ -316,13 +316,15 @@ def _turned(
 ) -> tuple[str, float]:
     """The value of s where the envelope turns: where pieces cross, or one has its least value."""
     (one, other), span = pieces, setup.span[1] - setup.span[0]
-    fine = setup.options.envelope.value_tolerance * span
+    options = setup.options.envelope
+    fine = options.value_tolerance * span
     if one is not other:
         crossing = _root(lambda s: one.at(s).value - other.at(s).value, *between, fine)
         if one.covers(crossing) and other.covers(crossing):
             return "kink", crossing
     at = _root(lambda s: highest(s)[0].slope, *between, fine)
-    return "smooth" if abs(highest(at)[0].slope) * span < 1e-3 * highest(at)[0].value else "corner", at
+    top = highest(at)[0]
+    return "smooth" if abs(top.slope) * span < options.smooth_slope * top.value else "corner", at
 
 
 def _root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:

@@ -72,7 +72,7 @@ class _StabilityAlongCurve:
             return None
         newton.z[:], newton.row[:] = z, chord / length
         try:
-            if not newton.correct(1e-3) or newton.moved > length:
+            if not newton.correct(problem.options.pieces.reach) or newton.moved > length:
                 return None
         except np.linalg.LinAlgError:
             return None

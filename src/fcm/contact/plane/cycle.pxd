@@ -6,7 +6,7 @@ from fcm.contact.plane.slider cimport Slider
 cdef int STUCK, UNSOLVED
 
 cdef class PlanarCycle:
-    cdef double double_point, slight, hardly, inside
+    cdef double double_point, slight, hardly, inside, fine, next_change, contraction, determinant
     cdef int most_periods
     cdef readonly PlaneMotion motion
     cdef readonly Slider slider

@@ -17,6 +17,7 @@ if cython.compiled:
         CLOSED,
         CLOSES,
         EPSILON,
+        FIRST_NODE,
         LOAD,
         MIXED,
         OPEN,
@@ -25,12 +26,23 @@ if cython.compiled:
         UNKNOWN,
     )
     from cython.cimports.fcm.contact.plane.panel import SCAN, PlaneMotion
-    from cython.cimports.fcm.contact.plane.resting import Resting
+    from cython.cimports.fcm.contact.plane.resting import FAR, Resting
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 else:
-    from fcm.contact.periodic.motion import CLOSED, CLOSES, EPSILON, LOAD, MIXED, OPEN, OPENS, TWO_PI, UNKNOWN
+    from fcm.contact.periodic.motion import (
+        CLOSED,
+        CLOSES,
+        EPSILON,
+        FIRST_NODE,
+        LOAD,
+        MIXED,
+        OPEN,
+        OPENS,
+        TWO_PI,
+        UNKNOWN,
+    )
     from fcm.contact.plane.panel import SCAN, PlaneMotion
-    from fcm.contact.plane.resting import Resting
+    from fcm.contact.plane.resting import FAR, Resting
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 
 from fcm.contact.periodic.motion import ZeroCrossings
@@ -59,7 +71,8 @@ class PlanarCycle:
             given.slight_miss,
             given.min_way,
         )
-        self.inside = given.min_depth
+        self.inside, self.fine, self.next_change = given.min_depth, given.place_tolerance, given.next_change
+        self.contraction, self.determinant = given.max_contraction, given.min_determinant
         self.motion = motion
         self.slider = Slider(motion, outputs, most_panels)
         self.resting = Resting(motion)
@@ -157,12 +170,12 @@ class PlanarCycle:
         i: cython.int
         j: cython.int
         begin: float = 0.0
-        least: float = 1e300
+        least: float = FAR
         self.resting.sample()
         for j in range(self.resting.nodes):
             if self.resting.at[2, j] < least:
                 least = self.resting.at[2, j]
-                begin = self.resting.step * (j + 0.1171)
+                begin = self.resting.step * (FIRST_NODE + j)
         self.motion.place(SCAN, begin)
         speed: float = hypot(self.motion.value[SCAN, 3], self.motion.value[SCAN, 4])
         r: float = max(self.motion.value[SCAN, 2], 0.0)
@@ -178,14 +191,14 @@ class PlanarCycle:
             for j in range(self.resting.nodes):
                 if self.resting.gap[j] < least:
                     least = self.resting.gap[j]
-                    begin = self.resting.step * (j + 0.1171)
+                    begin = self.resting.step * (FIRST_NODE + j)
                     w_x, w_y = self.resting.w_x, self.resting.w_y
         change: float
-        before: float = 1e300
-        nearest: float = 1e300
+        before: float = FAR
+        nearest: float = FAR
         nearest_x: float = w_x
         nearest_y: float = w_y
-        fine: float = 1e-14 * min(self.motion.reach, self.motion.size)
+        fine: float = self.fine * min(self.motion.reach, self.motion.size)
         rounding: float = 4.0 * EPSILON * self.motion.size
         self.slider.gathering, self.slider.varying, self.slider.gradient = False, True, False
         self.slider.derivatives.take(0, 2)
@@ -206,7 +219,8 @@ class PlanarCycle:
             c: float = -self.slider.derivatives.w_y[0]
             d: float = 1.0 - self.slider.derivatives.w_y[1]
             by: float = a * d - b * c
-            hardly: cython.bint = self.slider.gone < self.hardly * self.motion.reach and fabs(by) > 1e-13
+            known: cython.bint = fabs(by) > self.determinant
+            hardly: cython.bint = known and self.slider.gone < self.hardly * self.motion.reach
             if change <= fine + rounding and not (
                 hardly and hypot(d * x - b * y, a * y - c * x) > (fine + rounding) * fabs(by)
             ):
@@ -215,16 +229,16 @@ class PlanarCycle:
                 w_x, w_y = w_x + x, w_y + y
                 break
             bounded: cython.bint = self.bracket(w_x, w_y)
-            if change < 0.5 * before and fabs(by) > 1e-13:
+            if change < self.contraction * before and known:
                 before = change
                 w_x, w_y = w_x + (d * x - b * y) / by, w_y + (a * y - c * x) / by
                 # the next change is of the square of this one
-                if change * change < 0.01 * fine * self.motion.reach * by * by:
+                if change * change < self.next_change * fine * self.motion.reach * by * by:
                     break
                 if bounded and not self.between(w_x, w_y):
                     w_x, w_y = self.place_x, self.place_y
             else:
-                before = 2.0 * change if change < before else 1e300
+                before = 2.0 * change if change < before else FAR
                 w_x, w_y = (self.place_x, self.place_y) if bounded else (w_x + x, w_y + y)
         else:
             if nearest > self.double_point * self.motion.reach:

@@ -38,6 +38,7 @@ if cython.compiled:
     )
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from cython.cimports.fcm.contact.plane.panel import SCAN
+    from cython.cimports.fcm.contact.plane.resting import FAR
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
     from fcm.contact.periodic.cycle import join_states
@@ -45,13 +46,13 @@ else:
     from fcm.contact.periodic.motion import CLOSED, LOAD_RATE, MIXED, OPEN, UNKNOWN, ZeroCrossings
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from fcm.contact.plane.panel import SCAN
+    from fcm.contact.plane.resting import FAR
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 
 
 STARTS = cython.declare(cython.int, 3)
 HOLDS = cython.declare(cython.int, 4)
 PUSHES = cython.declare(cython.int, 5)
-FAR = cython.declare(cython.double, 1e300)
 
 
 @cython.cclass

@@ -52,6 +52,13 @@ class PlanarOptions(Frozen):
     Of steady cycles
     ----------------
     max_periods : most periods that are computed in search of a steady cycle.
+    place_tolerance : change of a slider's place in a period, relative to the lesser of radius and motion, up
+        to which it is steady.
+    next_change : change expected next, relative to that, below which a step of Newton's method is the last.
+    max_contraction : change of the place in a period, relative to the one before, from which on Newton's
+        method is of no help.
+    min_determinant : determinant of the derivatives of that change by the place, up to which there are none
+        to go by.
     double_point_tolerance : change of a slider's place in a period, relative to the radius, up to which it is
         steady where nothing improves it: at the slip limit itself the fixed point is double, and as uncertain
         as the square root of the rounding.
@@ -101,6 +108,10 @@ class PlanarOptions(Frozen):
     first_step: float = 1e-8
     edge_tolerance: float = 1e-12
     max_periods: int = 100
+    place_tolerance: float = 1e-14
+    next_change: float = 0.01
+    max_contraction: float = 0.5
+    min_determinant: float = 1e-13
     double_point_tolerance: float = 1e-9
     slight_miss: float = 0.02
     min_depth: float = 0.1

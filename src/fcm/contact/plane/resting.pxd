@@ -1,5 +1,7 @@
 from fcm.contact.plane.panel cimport PlaneMotion
 
+cdef double FAR
+
 cdef class Resting:
     cdef double same, least_bend
     cdef int exchanges, max_halvings
