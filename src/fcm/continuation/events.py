@@ -34,8 +34,6 @@ class SignChange:
     """A bracket of a change of sign, low to high, which evaluations at `at` make narrower.
 
     width: the distance of its sides; secant: where the secant leads.
-
-    width: their distance; secant: where the secant leads.
     """
 
     def __init__(

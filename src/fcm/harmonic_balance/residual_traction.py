@@ -202,8 +202,6 @@ class _FixedTractionBalance:
         """Derivatives of amplitudes and of mean normal displacements by the mean friction at some ports.
 
         Along a row; (port, dof) of the amplitudes, (port, contact) of the displacements.
-
-        Of the amplitudes (port, dof), and of the mean normal displacements (port, contact).
         """
         balance, scale, layout = self.balance, self.scale, self.system.layout
         normal = np.asarray(balance.layout.mean_at)[layout.directions - 1 :: layout.directions]

@@ -95,9 +95,6 @@ def _step(system: System, a: FloatArray) -> tuple[float, bool]:
 
     It is halved only as often as bounding the frequency of the forces takes, so that the step is the same
     whenever it is made.
-
-    And whether that is halved, as often as it takes to bound the frequency of the forces: never more often,
-    so that the step is the same whenever it is made.
     """
     loads = slice(system.f.start, system.n.stop)
     root = np.sqrt(system.scene.modal.mass)

@@ -67,9 +67,6 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
 
     Returns the shapes of the springs (spring, mode), these times stiffness over modal masses, and the steady
     modal forces.
-
-    The shapes of springs (spring, mode), these times their stiffness divided by the modal masses, and the
-    steady modal forces.
     """
     modal, steady = scene.modal, np.zeros(scene.modal.mass.size)
     stretch, stiffness = list[FloatArray](), list[float]()

@@ -612,8 +612,6 @@ class March:
         """Sets y and states from x = (q, q', f), the forces' angle and level; f is clipped to its limits.
 
         Returns whether all of these numbers are finite.
-
-        Whether all of these numbers are finite.
         """
         m: cython.Py_ssize_t = self.flows.modes
         c: cython.Py_ssize_t = self.flows.contacts

@@ -321,8 +321,6 @@ class Integrals(Walk):
 
         Row k is a state vector, or a sum over steps of it times sin or cos of the forces' angle at the first
         end.
-
-        It is what it is, or a sum over steps of it times sin or cos of the forces' angle at the first end.
         """
         i: cython.Py_ssize_t
         j: cython.int

@@ -433,8 +433,6 @@ class PeriodicContact:
         """Fills `forces` (point, equation) of motions (point, unknown), each with mu, k_u, k_v, n_0, start.
 
         `jacobians` (point, equation, unknown) is filled as well, unless it has no points.
-
-        And `jacobians` (point, equation, unknown), unless there is no room for them.
         """
         gradient: cython.bint = jacobians.shape[0] > 0
         i: cython.Py_ssize_t

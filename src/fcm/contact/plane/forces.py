@@ -92,9 +92,6 @@ class PlanarContact:
 
         `jacobians` (point, equation, unknown) is filled as well, unless it has no points. Returns the number
         of a point without a steady cycle, or -1.
-
-        And `jacobians` (point, equation, unknown), unless there is no room for them. Returns the number of a
-        point of which no steady cycle was found, or -1.
         """
         gradient: cython.bint = jacobians.shape[0] > 0
         i: cython.Py_ssize_t

@@ -100,8 +100,6 @@ class PlanarMargins(RegimeMargins):
         """How far all discs of a motion x must grow to share a place [force]; see `resting`.
 
         With `start` the discs must contain the place where the slider began.
-
-        With start, so that they hold the slider where it began.
         """
         self.hold(x, mu, k_u, k_v, n_0, start)
         reach: float = self.resting.beyond if start else self.resting.overlap
