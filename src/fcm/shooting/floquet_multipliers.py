@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from fcm.stability.disturbance import Stiffness
 from fcm.stability.eigenvalues import eigenvalues
+from fcm.stability.following_modes import Modes
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.time_domain.segments import Segments, SegmentSequence
@@ -33,7 +34,8 @@ class Floquet:
             self.monodromy = Monodromy(stiffness, self.states)
         else:
             none = np.zeros(modal.frequency.size, dtype=bool)
-            self.monodromy = ManyMonodromy(ports, modal.frequency, modal.damping, none, law, self.states)
+            modes = Modes(ports, modal.frequency, modal.damping, none)
+            self.monodromy = ManyMonodromy(modes, law, self.states)
 
     def multipliers(self, segments: Segments, duration: float) -> ComplexArray:
         """The multipliers of segments that last for a duration [s], after which the motion repeats.

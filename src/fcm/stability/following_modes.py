@@ -1,4 +1,4 @@
-r"""Modes that follow without delay, as few combinations of them as yield beside the springs of contacts.
+r"""Modes that follow without delay, and few combinations of them that yield beside the springs of contacts.
 
 With springs k of the contacts' directions, and shapes P on them of modes of mass 1,
 
@@ -10,10 +10,33 @@ more than a mode for each s_i above a tolerance, the springs would change by no 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+
+
+class Modes(NamedTuple):
+    """Modes of mass 1 on the contacts' ports, of which some follow the contacts' forces without delay."""
+
+    shapes: FloatArray  # (mode, port)
+    natural: FloatArray  # (mode,) [rad/s]
+    damping: FloatArray  # (mode,) ratio
+    far: npt.NDArray[np.bool_]  # (mode,) which follow without delay
+
+    @property
+    def near(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Shapes, natural frequencies and damping of those that move on their own."""
+        return self.shapes[~self.far], self.natural[~self.far], self.damping[~self.far]
+
+    @property
+    def flexibility(self) -> FloatArray:
+        """Displacements (port, port) of those that follow, under unit forces on the ports."""
+        following: FloatArray = self.shapes[self.far]
+        found: FloatArray = (following.T * self.natural[self.far] ** -2.0) @ following
+        return found
 
 
 def combined(shapes: FloatArray, natural: FloatArray, springs: FloatArray, tolerance: float) -> FloatArray:

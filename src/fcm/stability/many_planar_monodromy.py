@@ -36,6 +36,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 from fcm.contact.plane.radau import radau
+from fcm.stability.following_modes import Modes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
@@ -57,29 +58,19 @@ class ManyPlanarMonodromy(VariationalSteps):
 
     Parameters
     ----------
-    shapes, natural, damping : (mode, port), (mode,), (mode,)
-        Of all modes, of mass 1; three ports for each contact; natural frequencies in rad/s.
-    far : (mode,) bool
-        Which follow without delay.
+    modes : Modes
+        With three ports for each contact.
     poll : callable, optional
         Called at every event, which it may interrupt.
     """
 
-    def __init__(
-        self,
-        shapes: FloatArray,
-        natural: FloatArray,
-        damping: FloatArray,
-        far: npt.NDArray[np.bool_],
-        sequence: PlanarSequence,
-        poll: Callable[[], object] = int,
-    ) -> None:
+    def __init__(self, modes: Modes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
         self.poll, self.options = poll, sequence.options
         options = self.options
         VariationalSteps.__init__(self, sequence, options.stages_of_many, options.tolerance_of_many)
         self.coefficient_floor = options.coefficient_floor
-        self.shapes, self.natural, self.damping = shapes[~far], natural[~far], damping[~far]
-        self.all_soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
+        self.shapes, self.natural, self.damping = modes.near
+        self.all_soft = modes.flexibility
         self.modes = len(self.natural)
         rule = radau(self.stages)
         self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner

@@ -98,7 +98,7 @@ cdef class ManyMonodromy:
     cdef Py_ssize_t pushing
     cdef bint soft, by_modes
     cdef double rate, omega, step_radians, series_tolerance
-    cdef object shapes, natural, ratio, following, stiff, all_stuck
+    cdef object shapes, natural, ratio, following, stiff, static, all_stuck
     cdef public list remembering
     cdef double[:, ::1] contact, K, lower, upper, left, right, changed, pulled, own, weights
     cdef double[:, ::1] q, v, tq, tv, work, g, w, phi, port, followed, row

@@ -58,6 +58,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import ceil, fabs, sqrt
 
 from fcm.stability.disturbance import Propagator
+from fcm.stability.following_modes import Modes
 from fcm.stability.options import STABILITY, PropagationOptions
 
 if cython.compiled:
@@ -319,31 +320,27 @@ class ManyMonodromy:
 
     Parameters
     ----------
-    shapes, natural, damping : (mode, port), (mode,), (mode,)
-        Of all modes; natural frequencies in rad/s.
-    far : (mode,) bool
-        Which follow without delay.
+    modes : Modes
+        With two ports for each contact.
     contact : (contact, 4)
         mu, k_u, k_v, n_0.
     """
 
     def __init__(
         self,
-        shapes: npt.NDArray[np.float64],
-        natural: npt.NDArray[np.float64],
-        damping: npt.NDArray[np.float64],
-        far: npt.NDArray[np.bool_],
+        modes: Modes,
         contact: npt.NDArray[np.float64],
         sequence: StateSequence,
         options: PropagationOptions = STABILITY.propagation,
     ) -> None:
         self.step_radians, self.series_tolerance = options.step_radians_of_many, options.series_tolerance
-        self.shapes, self.natural, self.ratio = shapes[~far], natural[~far], damping[~far]
+        self.shapes, self.natural, self.ratio = modes.near
         self.modes, self.contacts = len(self.shapes), contact.shape[0]
         self.contact, self.sequence = np.ascontiguousarray(contact), sequence
-        self.following, self.stiff = shapes[far], natural[far]
+        self.following, self.stiff = modes.shapes[modes.far], modes.natural[modes.far]
+        self.static = modes.flexibility
         self.all_stuck: npt.NDArray[np.float64] | None = None
-        self.soft, self.by_modes = bool(far.any()), False
+        self.soft, self.by_modes = bool(modes.far.any()), False
         self.K = np.zeros((self.modes, self.modes))
         self.damping, self.state = np.zeros(self.modes), np.zeros(self.contacts, dtype=np.intc)
         self.first, self.rate, self.omega = 0, 1.0, 1.0
@@ -353,11 +350,10 @@ class ManyMonodromy:
 
     def with_springs(self) -> npt.NDArray[np.float64]:
         """The matrix [[-K, V], [U, G]] of modes, tangential and normal ports, where all contacts stick."""
-        flexibility = (self.following.T * self.stiff**-2.0) @ self.following
         order, m = _by_direction(np.arange(self.contacts)), self.modes
         k_u, k_v = np.asarray(self.contact).T[1:3]
         springs, P = np.concatenate((k_u, k_v)), self.shapes[:, order]
-        S = flexibility[np.ix_(order, order)]
+        S = self.static[np.ix_(order, order)]
         R = np.eye(len(S)) + S * springs
         found = np.asarray(np.linalg.solve(R, np.concatenate((P.T, S), axis=1)), dtype=np.float64)
         K = np.diag(self.natural**2) + (P * springs) @ found[:, :m]

@@ -35,7 +35,7 @@ from fcm.stability.classification import (
 )
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.following_modes import combined
+from fcm.stability.following_modes import Modes, combined
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -123,13 +123,13 @@ class Multipliers:
             )
             return make(self.system, self.far, self.contact, (fine, plain), self.options)
         linear = self.system.linear
-        structure = linear.ports, linear.natural, linear.damping, self.far
+        modes = Modes(linear.ports, linear.natural, linear.damping, self.far)
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
         options = self.options.structure
         most = options.flexible_contacts if self.far.any() else options.many_contacts
         if len(self.contact) < most:
-            return [VariationalProblem(one, PlanarMonodromy(*structure, one)) for one in planar]
-        return [VariationalProblem(one, ManyPlanarMonodromy(*structure, one, self._poll)) for one in planar]
+            return [VariationalProblem(one, PlanarMonodromy(modes, one)) for one in planar]
+        return [VariationalProblem(one, ManyPlanarMonodromy(modes, one, self._poll)) for one in planar]
 
     def _poll(self) -> None:
         self.system.work.poll()  # of now, which may be another later
@@ -438,10 +438,9 @@ def _few_contacts(
 ) -> list[VariationalProblem]:
     """Variational problems of few contacts: each combination of states is assembled anew."""
     linear = system.linear
-    soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
-    stiffness = Stiffness(
-        linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact, options.propagation
-    )
+    modes = Modes(linear.ports, linear.natural, linear.damping, far)
+    soft = modes.flexibility if far.any() else None
+    stiffness = Stiffness(*modes.near, soft, contact, options.propagation)
     carried = system.cache.setdefault((Propagator, stiffness.modes), Propagator(options.propagation))
     assert isinstance(carried, Propagator)
     return [VariationalProblem(one, Monodromy(stiffness, one, carried)) for one in states]
@@ -459,14 +458,14 @@ def _many_contacts(
     following = combined(
         linear.ports[far], linear.natural[far], contact[:, 1:3].ravel(), options.structure.min_yield
     )
-    shown = (
+    shown = Modes(
         np.concatenate((linear.ports[near], following)),
         np.concatenate((linear.natural[near], np.ones(len(following)))),
         np.concatenate((linear.damping[near], np.zeros(len(following)))),
         np.arange(near.sum() + len(following)) >= near.sum(),
     )
     return [
-        VariationalProblem(one, ManyMonodromy(*shown, contact, one, options.propagation)) for one in states
+        VariationalProblem(one, ManyMonodromy(shown, contact, one, options.propagation)) for one in states
     ]
 
 

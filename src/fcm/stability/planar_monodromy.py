@@ -36,6 +36,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 from fcm.contact.plane.radau import radau
+from fcm.stability.following_modes import Modes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI
@@ -249,26 +250,16 @@ class PlanarMonodromy(VariationalSteps):
 
     Parameters
     ----------
-    shapes, natural, damping : (mode, port), (mode,), (mode,)
-        Of all modes, of mass 1; three ports for each contact; natural frequencies in rad/s.
-    far : (mode,) bool
-        Which follow without delay.
+    modes : Modes
+        With three ports for each contact.
     """
 
-    def __init__(
-        self,
-        shapes: npt.NDArray[np.float64],
-        natural: npt.NDArray[np.float64],
-        damping: npt.NDArray[np.float64],
-        far: npt.NDArray[np.bool_],
-        sequence: PlanarSequence,
-    ) -> None:
+    def __init__(self, modes: Modes, sequence: PlanarSequence) -> None:
         options = sequence.options
         VariationalSteps.__init__(self, sequence, options.stages, options.tolerance)
         self.coefficient_floor, self.max_disturbances = options.coefficient_floor, options.max_disturbances
-        self.shapes = np.ascontiguousarray(shapes[~far])
-        self.natural, self.damping = natural[~far], damping[~far]
-        self.soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
+        shapes, self.natural, self.damping = modes.near
+        self.shapes, self.soft = np.ascontiguousarray(shapes), modes.flexibility
         m, c, s = len(self.natural), sequence.contacts, options.stages
         self.modes = m
         rule = radau(s)
@@ -281,7 +272,7 @@ class PlanarMonodromy(VariationalSteps):
         self.system = np.zeros((s, 2 * s))
         # of the unknowns at the nodes, by the forces on closed contacts there; those of modes, and the rest
         self.answer, self.seen = np.zeros((s, 3 * c, s, 3 * c)), np.zeros((m, 3 * c))
-        self.remote = bool(far.any())
+        self.remote = bool(modes.far.any())
         # of s at the nodes: what it feels of displacements there, and what is kept of s at the start
         self.inverse, self.feels = np.zeros((c, s, s)), np.zeros((c, s, 3))
         self.kept, self.e_x, self.e_y = np.zeros((3, c, s))
@@ -879,16 +870,13 @@ class RingPlanarMonodromy(PlanarMonodromy):
 
     def __init__(
         self,
-        shapes: npt.NDArray[np.float64],
-        natural: npt.NDArray[np.float64],
-        damping: npt.NDArray[np.float64],
-        far: npt.NDArray[np.bool_],
+        modes: Modes,
         sequence: PlanarSequence,
         part: float,
         renumber: npt.NDArray[np.float64],
         source: npt.NDArray[np.intp],
     ) -> None:
-        PlanarMonodromy.__init__(self, shapes, natural, damping, far, sequence)
+        PlanarMonodromy.__init__(self, modes, sequence)
         self.part, self.renumber, self.source = part, renumber, source
 
     def disturbances(self) -> npt.NDArray[np.float64]:

@@ -21,6 +21,7 @@ from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.stability.classification import Classification
 from fcm.stability.disturbance import Stiffness
+from fcm.stability.following_modes import Modes
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -87,21 +88,18 @@ class RingMultipliers(Multipliers):
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics, spectrum)
         self.ring, self.planar = ring, system.scene.planar
-        near = around.selected(~far)
+        near, modes = around.selected(~far), Modes(around.ports, around.natural, around.damping, far)
         source = np.roll(np.arange(n * self.contacts), sector_shifts(ring) * self.contacts)
         turned = 2.0 * np.pi / n, near.renumber, source
         if self.planar:
-            structure = around.ports, around.natural, around.damping, far
             self.fine, self.plain = (
-                VariationalProblem(states, RingPlanarMonodromy(*structure, states, *turned))
+                VariationalProblem(states, RingPlanarMonodromy(modes, states, *turned))
                 for states in (
                     PlanarSequence(contact, tuple(numbers), options.planar) for numbers in (finer, harmonics)
                 )
             )
         else:
-            soft = None
-            if far.any():
-                soft = (around.ports[far].T * around.natural[far] ** -2.0) @ around.ports[far]
+            soft = modes.flexibility if far.any() else None
             stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
             self.fine, self.plain = (
                 VariationalProblem(states, RingMonodromy(stiffness, states, *turned))
