@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from fcm.contact.periodic.cycle import join_states
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.time_domain.segments import Segments, sample
@@ -45,14 +46,19 @@ class Cycle(Frozen):
 @lru_cache
 def _sequences(states: bytes, contacts: int) -> tuple[str, ...]:
     """State sequences of all contacts, from their codes in each segment; cached, as most repeat."""
-    return tuple(_sequence([LETTERS[code] for code in states[j::contacts]]) for j in range(contacts))
+    return tuple(_sequence(states[j::contacts]) for j in range(contacts))
 
 
-def _sequence(letters: list[str]) -> str:
-    """Letters of a cycle without repetition, from separation on, or else from the stick before P."""
-    kept = "".join(x for i, x in enumerate(letters) if i == 0 or letters[i - 1] != x)
-    if len(kept) > 1 and kept[0] == kept[-1]:
-        kept = kept[:-1]
+def _sequence(codes: bytes) -> str:
+    """Letters of a cycle without repetition, from separation on, or else from the stick before P.
+
+    >>> _sequence(bytes(map(LETTERS.index, "NEEPPEN")))
+    'EPEN'
+    """
+    state, segment = np.frombuffer(codes, np.int8).astype(np.intc), np.arange(len(codes), dtype=np.intc)
+    kept = "".join(LETTERS[code] for code in state[: join_states(state, segment, len(codes))])
+    if segment[0] > 0:  # the last goes on in the first
+        kept = kept[-1:] + kept[:-1]
     for first in ("S", "EP", "E"):
         at = (kept + kept[:1]).find(first)
         if at >= 0:
