@@ -264,8 +264,14 @@ def _peaks(heights: FloatArray, errors: tuple[Errors, ...], options: PairOptions
     greatest = np.where(np.isnan(of_reference), 0.0, of_reference).max(axis=0)
     other = greatest > of_reference[which, d]
     peak = np.where(other, np.abs(greatest - now) / np.where(now > 0.0, now, 1.0), peak)
-    unknown = (np.isnan(of_reference) & (heights > options.rival_fraction * now)).any(axis=0)
-    return np.where(unknown, np.nan, peak)
+    return np.where(has_unknown_rival(of_reference, heights, options), np.nan, peak)
+
+
+def has_unknown_rival(known: FloatArray, heights: FloatArray, options: PairOptions) -> Mask:
+    """Whether what is known (path, ...) of a path nearly as high as the highest is NaN."""
+    rivals = heights > options.rival_fraction * heights.max(axis=0)
+    found: Mask = (np.isnan(known) & rivals).any(axis=0)
+    return found
 
 
 def enlarged(found: RefinedResponse, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.contact.closed_form import Sequence
 from fcm.contact.limits import FloatArray
-from fcm.contact.pieces import Pieces, friction
+from fcm.contact.pieces import Pieces, friction, within_turn
 from fcm.frozen import Frozen
 
 
@@ -100,9 +100,7 @@ def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:
     if len(sequence) == 1:
         return Loop(n0_bar, b_bar, phi, sequence, np.empty(0), w)
     since = np.clip(np.maximum.accumulate(since), 0.0, 2.0 * np.pi)
-    angles = np.mod(first + since, 2.0 * np.pi)
-    angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
-    return Loop(n0_bar, b_bar, phi, sequence, angles, w, since)
+    return Loop(n0_bar, b_bar, phi, sequence, within_turn(first + since), w, since)
 
 
 def sequences(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -> npt.NDArray[np.str_]:

@@ -44,6 +44,13 @@ class LoadedPieces(Pieces):
         return self.mu * self.normal_load(theta)
 
 
+def within_turn(angle: FloatArray) -> FloatArray:
+    """Angles [rad] in [0, 2 pi)."""
+    found = np.mod(angle, 2.0 * np.pi)
+    found[found >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
+    return found
+
+
 def waves_at(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
     """Value of the series Re sum_h X_h exp(i h theta)."""
     angle = np.asarray(theta, dtype=np.float64)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from fcm.accuracy.options import PAIR, VALIDITY
 from fcm.accuracy.refinement import (
     RefinedResponse,
+    has_unknown_rival,
     refined_response,
     with_errors,
     with_given_harmonics,
@@ -284,9 +285,8 @@ def _of_greatest(found: RefinedResponse, path: Rows, contact_loads: FloatArray) 
     """
     heights = np.array([contact_loads[path == k].max(axis=0) for k in range(len(found.errors))])
     errors = np.array([one.greatest for one in found.errors])
-    unknown = (np.isnan(errors) & (heights > PAIR.rival_fraction * heights.max(axis=0))).any(axis=0)
     own = np.take_along_axis(errors, heights.argmax(axis=0)[None], axis=0)[0]
-    return np.where(unknown, np.nan, own)
+    return np.where(has_unknown_rival(errors, heights, PAIR), np.nan, own)
 
 
 def _peaks(

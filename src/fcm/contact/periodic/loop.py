@@ -12,7 +12,7 @@ from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import one_motion
 from fcm.contact.periodic.cycle import LineCycle, join_states
 from fcm.contact.periodic.margins import Measures
-from fcm.contact.pieces import LoadedPieces, friction, waves_at
+from fcm.contact.pieces import LoadedPieces, friction, waves_at, within_turn
 from fcm.frozen import Frozen
 
 LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
@@ -118,8 +118,7 @@ def periodic_loop(
     mean = float(x[0])
     regions = _ordered(_visible(contact.cycle))
     since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
-    angles = np.mod(regions[0][1] + since, 2.0 * np.pi)
-    angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
+    angles = within_turn(regions[0][1] + since)
     single = len(regions) == 1
     return PeriodicLoop(
         np.atleast_1d(np.asarray(u, np.complex128)),

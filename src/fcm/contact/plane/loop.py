@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.periodic.cycle import join_states
-from fcm.contact.pieces import LoadedPieces, waves_at
+from fcm.contact.pieces import LoadedPieces, waves_at, within_turn
 from fcm.contact.plane.coefficients import one_motion
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, LOOP
@@ -143,8 +143,7 @@ def planar_loop(
     length = scale / k_u if k_u > 0.0 else 0.0
     regions = visible(contact)
     since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
-    angles = np.mod(regions[0][1] + since, 2.0 * np.pi)
-    angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
+    angles = within_turn(regions[0][1] + since)
     single = len(regions) == 1
     rest = np.array([place if state == "E" else (np.nan, np.nan) for state, _, place in regions])
     sequence = "".join(state for state, _, _ in regions)
