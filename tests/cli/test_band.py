@@ -2,6 +2,10 @@
 
 import pytest
 
+from fcm.plot.band import draw_bands
+from fcm.plot.read import read_response
+from fcm.results.bands import bands_of
+
 DRAWS = '[sweep]\n"contact.shroud.n_0" = { distribution = "norm", loc = 5, scale = 0.2, count = 4 }\n'
 
 
@@ -37,3 +41,18 @@ def test_without_draws_there_is_no_band(fcm, scene):
     assert fcm("respond", scene, "--harmonics", 1, "-o", "plain.nc").code == 0
     done = fcm("plot", "response", "plain.nc", "--band", 5, 95)
     assert done.code == 2 and "nothing was drawn at random" in done.err
+
+
+@pytest.mark.parametrize(
+    ("span", "said"),
+    [
+        ((5.0, 95.0), "median, and 5 to 95 % of 4 draws: too few to bound these, 59 are needed"),
+        ((50.0, 50.0), "median, and 50 to 50 % of 4 draws: too few to bound these, 5 are needed"),
+        ((0.0, 100.0), "median, and 0 to 100 % of 4 draws"),
+    ],
+)
+def test_a_band_says_of_how_many_draws_it_is(result, span, said):
+    drawn = read_response(result)
+    bands = bands_of(drawn.curves, drawn.drawn, 0, span)
+    figure = draw_bands(drawn, 0, bands, span, None)
+    assert figure.axes[0].get_title(loc="right") == said

@@ -101,7 +101,14 @@ def test_the_same_percentiles_of_draws_as_with_all_points(fcm, scene):
     peaks = [one["peak"]["u"]["amplitude"] for one in json.loads(only.out)["curves"]]
     assert found["peak"]["u"]["amplitude"]["50"] == pytest.approx(np.median(peaks))
     with netCDF4.Dataset("full.nc") as all_points, netCDF4.Dataset("only.nc") as file:
-        for name in ("peak_percentile", "peak_frequency_percentile", "jump_percentile", "jump_share"):
+        for name in (
+            "peak_percentile",
+            "peak_percentile_low",
+            "peak_percentile_high",
+            "peak_frequency_percentile",
+            "jump_percentile",
+            "jump_share",
+        ):
             np.testing.assert_array_equal(file[name][:], all_points[name][:])
     assert "percentiles of 6 curves" in fcm("respond", scene, "--peaks-only").out
 

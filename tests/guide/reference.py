@@ -19,6 +19,7 @@ import netCDF4
 import fcm
 from fcm.cli import main as program
 from fcm.scene.keys import LISTS, TABLES
+from fcm.scene.load import path_of
 
 from ..layers import PACKAGES
 from ..program import called
@@ -95,16 +96,22 @@ RUNS = {  # what writes the files whose variables are listed: what it is, and ho
     "peaks only": ("`--peaks-only`: of curves without their points", ("yang1998-n5", "--peaks-only")),
     "single motions": ("`--contact-forces` or `--modal-amplitudes`: motions at peaks, or at `--motion-at`",
                        ("yang1998-n5", "--contact-forces", "FORCES", "--modal-amplitudes")),
+    "random draws": ("curves of numbers that `[sweep]` draws", ("DRAWS", "--harmonics", "1")),
 }  # fmt: skip
+
+DRAWS = '[sweep]\n"contact.shroud.n_0" = { normal = [5.0, 0.5], count = 5 }\n'
 
 
 def files() -> str:
     """Every variable of a file of results, with the runs that write it."""
     found: dict[str, tuple[str, str, str, list[str]]] = {}
     with tempfile.TemporaryDirectory() as folder:
+        one = path_of("yang1998-n5").read_text(encoding="utf-8")
+        Path(folder, "draws.toml").write_text(f"{one}\n{DRAWS}", encoding="utf-8")
         for kind, (_, arguments) in RUNS.items():
             path = Path(folder, "out.nc")
-            words = [str(Path(folder, "forces.csv")) if word == "FORCES" else word for word in arguments]
+            given = {"FORCES": str(Path(folder, "forces.csv")), "DRAWS": str(Path(folder, "draws.toml"))}
+            words = [given.get(word, word) for word in arguments]
             done = called("respond", *words, "-o", path)
             assert done.code == 0, done.err
             with netCDF4.Dataset(path) as data:
@@ -132,7 +139,32 @@ def files() -> str:
         where = where if others else "all"
         rows.append((f"`{name}`", of, unit, said, where))
     parts.append(table(("variable", "dimensions", "unit", "meaning", "of"), rows))
+    parts.append(OF_DRAWS)
     return "\n".join(parts)
+
+
+OF_DRAWS = """## Percentiles of random draws with `--json`
+
+`scatter` has an entry for each combination of the swept numbers that are not drawn:
+
+| key | meaning |
+| --- | --- |
+| `parameters` | those numbers |
+| `curves` | how many draws are complete, and count |
+| `confidence` | of the intervals, 0.9 |
+| `curves_needed` | the least number of draws with which both ends of the interval of a percentile are known |
+| `peak.DOF.amplitude` | percentiles of the greatest amplitude, by their percentage |
+| `peak.DOF.interval` | ends of the interval of each; null where draws are too few, or an error is unknown |
+| `peak.DOF.greatest_error` | the greatest of the draws' errors of the peak, relative |
+| `peak.DOF.error_unknown` | the number of draws whose error is unknown |
+| `peak.DOF.frequency` | percentiles of the peak's frequency |
+| `peak.DOF.unstable` | share of the draws whose peak is not stable |
+| `peak.DOF.untold` | share of the draws of which that is unknown |
+| `jumps.up`, `jumps.down` | of the first jump: `share`, `untold`, percentiles of its `frequency` |
+| `blades.DOF` | of mistuned rings: percentiles of `amplitude` and `amplification` of the worst blade |
+
+Intervals are of order statistics: [random draws](../howto/sweeps.md#random-draws).
+"""
 
 
 def python() -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import Any
 
 from fcm.cli.columns import (
@@ -179,8 +180,13 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     rows = []
     for dof in dofs if found["peak"] else ():
         for name, kind in ((f"peak {dof}", "amplitude"), (f"at {unit}", "frequency")):
-            stays = _of_stable(found["peak"][dof]) if kind == "amplitude" else ""
-            rows.append([name, *map(number, found["peak"][dof][kind].values()), stays])
+            peak = found["peak"][dof]
+            stays = _of_stable(peak) if kind == "amplitude" else ""
+            rows.append([name, *map(number, peak[kind].values()), stays])
+            ends = list(zip(*peak["interval"].values(), strict=True)) if kind == "amplitude" else []
+            if any(end is not None for both in ends for end in both):
+                words = zip(("from", "to"), ends, strict=True)
+                rows += [[f"  {word}", *(_outwards(end, word) for end in each), ""] for word, each in words]
     rows += [
         [name, *map(number, one["frequency"].values()), _of_how_many(one)] for name, one in jumps.items()
     ]
@@ -199,9 +205,44 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
         lines.append(
             "each line is in its own order: a peak and a frequency of one column are not of one draw"
         )
+        lines += _of_intervals(found, dofs)
     if any(one["untold"] for one in jumps.values()):
         lines.append("unknown: stability is not known, and a sweep may jump")
     return "\n".join(lines)
+
+
+def _outwards(end: float | None, word: str) -> str:
+    """An end of an interval with three digits, which leave the interval no narrower.
+
+    >>> _outwards(3.1419, "from"), _outwards(3.1419, "to"), _outwards(5e-05, "to"), _outwards(None, "to")
+    ('3.14', '3.15', '5.00e-05', '-')
+    """
+    if end is None:
+        return "-"
+    digits = Context(prec=3, rounding=ROUND_FLOOR if word == "from" else ROUND_CEILING)
+    return f"{float(digits.create_decimal(repr(end))):#.3g}"
+
+
+def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
+    """What the intervals of percentiles of peaks mean, and of which there are too few draws."""
+    peaks = [found["peak"][dof] for dof in dofs]
+    ends = [end for peak in peaks for both in peak["interval"].values() for end in both]
+    lines, count, sure = [], found["curves"], f"{100.0 * found['confidence']:g} %"
+    if any(end is not None for end in ends):
+        known = [peak["greatest_error"] for peak in peaks if peak["greatest_error"] is not None]
+        unknown = max(peak["error_unknown"] for peak in peaks)
+        errors = [f"{_amount(max(known))} at most"] if max(known, default=0.0) else []
+        errors += [f"unknown of {unknown} of {count}"] if unknown else []
+        counted = f" and errors of peaks, {', '.join(errors)}" if errors else ""
+        lines.append(f"from, to: bounds for all possible draws, with {sure} confidence{counted}")
+    short_of = {percent: needed for percent, needed in found["curves_needed"].items() if count < needed}
+    if short_of:
+        *before, last = short_of
+        named = f"{', '.join(before)} and {last}" if before else last
+        few = f"{count} draw is" if count == 1 else f"{count} draws are"
+        needed = max(short_of.values())
+        lines.append(f"{few} too few for both bounds of {named} %: {needed} are needed")
+    return lines
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -58,10 +59,23 @@ def draw_bands(
         if wide(response.curves):
             axes.set_xscale("log")
         _finish(axes, bands, log)
-        axes.set_title(f"median, and {span[0]:g} to {span[1]:g} % of the draws", loc="right", fontsize=8)
+        axes.set_title(_said(response, span), loc="right", fontsize=8)
         say_unfinished(axes, response.unfinished)
         name_at_side(figure, axes.get_lines(), [band.parameters for band in bands], response.units)
     return figure
+
+
+def _said(response: DrawnResponse, span: tuple[float, float]) -> str:
+    """What the band is, of how many draws, and how many its ends take."""
+    from fcm.results.quantile_interval import draws_needed
+
+    draws = Counter(
+        tuple((key, value) for key, value in curve.parameters.items() if key not in response.drawn)
+        for curve in response.curves
+    )
+    count, needed = min(draws.values()), max(map(draws_needed, span))
+    few = f": too few to bound these, {needed:g} are needed" if count < needed < np.inf else ""
+    return f"median, and {span[0]:g} to {span[1]:g} % of {count} draws{few}"
 
 
 def _finish(axes: Axes, bands: Sequence[Band], log: bool | None) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fcm.results.condensed_curves import CondensedCurve, condense
 from fcm.results.contact_maxima import Greatest
 from fcm.results.curve_summary import at_edge
+from fcm.results.options import RESULTS
 from fcm.results.padded_arrays import Field, by_fold
 from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
@@ -178,14 +179,21 @@ def _greatest_of_contacts(response: Response) -> dict[str, Field]:
 def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
     """Percentiles over the curves that differ in drawn numbers alone."""
     of_dof, of_sweep = ("scatter", "percent", "dof"), ("scatter", "percent", "sweep_direction")
-    peak, frequency, jump = (
-        np.stack([getattr(one, x) for one in found]) for x in ("peak", "frequency", "jump")
+    peak, interval, frequency, jump = (
+        np.stack([getattr(one, x) for one in found]) for x in ("peak", "interval", "frequency", "jump")
+    )
+    sure = (
+        f"of all possible draws, with {100.0 * RESULTS.draws.confidence:g} % confidence and errors of peaks"
     )
     at = {"units": CF_UNIT[unit]}
     return {
         "percent": Field(("percent",), np.array(PERCENTS), {"long_name": "percentage of curves below"}),
         "sweep_direction": Field(("sweep_direction",), np.array(SWEEPS), {"long_name": "of a slow sweep"}),
-        "peak_percentile": Field(of_dof, peak, {"long_name": "percentile of the greatest amplitude"}),
+        "peak_percentile": Field(
+            of_dof, peak, {"long_name": "percentile of the greatest amplitude over the draws"}
+        ),
+        "peak_percentile_low": Field(of_dof, interval[..., 0], {"long_name": f"least it may be, {sure}"}),
+        "peak_percentile_high": Field(of_dof, interval[..., 1], {"long_name": f"most it may be, {sure}"}),
         "peak_frequency_percentile": Field(
             of_dof, in_unit(frequency, unit), {"long_name": "percentile of its frequency"} | at
         ),

@@ -36,10 +36,13 @@ class DrawOptions(Frozen):
     frequency_tolerance : float
         Relative error of the frequency of a jump, by which it may be so much earlier. It is the default
         accuracy.
+    confidence : float
+        Probability of the intervals of percentiles, of which either tail has half of the rest.
     """
 
     band_frequencies: int = 600
     frequency_tolerance: float = 1e-2
+    confidence: float = 0.9
 
 
 class FileOptions(Frozen):

@@ -13,6 +13,7 @@ from fcm.model.scene import FloatArray
 from fcm.results.condensed_curves import condense
 from fcm.results.options import RESULTS
 from fcm.results.peak import Peak
+from fcm.results.quantile_interval import draws_needed, intervals
 from fcm.results.result import Curve, Response
 from fcm.units import in_unit
 
@@ -26,12 +27,16 @@ class Scatter(Frozen):
 
     Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves
     that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is unknown,
-    that is not known: the share of such curves, too.
+    that is not known: the share of such curves, too. The interval of a percentile of peaks is that of all
+    possible draws, see `fcm.results.quantile_interval`.
     """
 
     parameters: dict[str, float]  # the swept values that are not drawn
     curves: int
     peak: FloatArray  # (percent, dof)
+    interval: FloatArray  # (percent, dof, end) of the peak; NaN where an end is unknown
+    greatest_error: FloatArray  # (dof,) of the peaks of the curves, relative; NaN where none is known
+    error_unknown: npt.NDArray[np.intp]  # (dof,) number of the curves whose peak has an unknown error
     frequency: FloatArray  # (percent, dof)
     jump: FloatArray  # (percent, sweep); NaN where no curve jumps
     jumping: FloatArray  # (sweep,)
@@ -66,13 +71,18 @@ def groups(response: Response) -> list[tuple[dict[str, float], list[int]]]:
 
 
 def _of(parameters: dict[str, float], curves: Sequence[Curve], dofs: int) -> Scatter:
-    peaks = np.array([[peak[:2] for peak in curve.peaks.values()] for curve in curves])
-    heights, frequencies = (peaks[..., i] if curves else np.full((1, dofs), np.nan) for i in range(2))
+    peaks = np.array([[peak[:3] for peak in curve.peaks.values()] for curve in curves])
+    heights, frequencies, errors = (peaks[..., i] if curves else np.full((1, dofs), np.nan) for i in range(3))
+    moving = np.isfinite(heights) & (heights != 0.0)
+    confidence = RESULTS.draws.confidence
+    bounds = [intervals(*of, PERCENTS, confidence) for of in zip(heights.T, errors.T, strict=True)]
     stable = np.array([[_stays(peak) for peak in curve.peaks.values()] for curve in curves] or [[1.0] * dofs])
     each = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves]
     jumps = np.array(each or [[NONE] * len(SWEEPS)])
     return Scatter(
-        parameters, len(curves), percentiles(heights), percentiles(frequencies),
+        parameters, len(curves), percentiles(heights),
+        np.stack(bounds, axis=1), np.fmax.reduce(np.where(moving, errors, np.nan), axis=0),
+        (moving & np.isnan(errors)).sum(axis=0), percentiles(frequencies),
         percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
         (stable == 0.0).mean(axis=0), np.isnan(stable).mean(axis=0),
     )  # fmt: skip
@@ -115,13 +125,21 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
     def by_percent(values: FloatArray) -> dict[str, float]:
         return {f"{percent:g}": float(value) for percent, value in zip(PERCENTS, values, strict=True)}
 
+    def ends(values: FloatArray) -> dict[str, list[float]]:
+        return {f"{percent:g}": pair.tolist() for percent, pair in zip(PERCENTS, values, strict=True)}
+
     frequency, jump = in_unit(one.frequency, unit), in_unit(one.jump, unit)
     return {
         "parameters": one.parameters,
         "curves": one.curves,
+        "confidence": RESULTS.draws.confidence,
+        "curves_needed": {f"{percent:g}": draws_needed(percent) for percent in PERCENTS},
         "peak": {
             dof: {
                 "amplitude": by_percent(one.peak[:, d]),
+                "interval": ends(one.interval[:, d]),
+                "greatest_error": float(one.greatest_error[d]),
+                "error_unknown": int(one.error_unknown[d]),
                 "frequency": by_percent(frequency[:, d]),
                 "unstable": float(one.peak_unstable[d]),
                 "untold": float(one.peak_unknown[d]),

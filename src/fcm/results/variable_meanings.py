@@ -78,7 +78,8 @@ LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
     "harmonic_amplitude", "contact_amplitude", "contact_mean", "slip_path", "peak_slip_path",
-    "peak_percentile", "tracked_amplitude", "optimum_peak", "contact_position",
+    "peak_percentile", "peak_percentile_low", "peak_percentile_high", "tracked_amplitude", "optimum_peak",
+    "contact_position",
 )  # fmt: skip
 FORCES = (
     "spring_force", "greatest_normal_force", "greatest_friction_force", "peak_greatest_normal_force",

@@ -1,0 +1,73 @@
+r"""Confidence intervals of quantiles from a sample whose values have errors, without a distribution.
+
+Of n independent draws, the number below the quantile of order p is binomial. So the quantile is between the
+ordered values of ranks l < u with the probability
+
+.. math:: P(l \le B < u), \qquad B \sim \mathrm{Bin}(n, p).
+
+Ranks are the innermost with P(B < l) and P(B >= u) of half of what the confidence leaves at most. With few
+draws no rank is extreme enough: the least count is that of Wilks (1941), 59 for 5 or 95 % at a confidence of
+90 %.
+
+Errors of the values count beside it. Where each value is within an interval of its own, each ordered value is
+between the ordered lower ends and the ordered upper ends. So the lower end is that of rank l among the lower
+ends, and the upper end that of rank u among the upper ones.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fcm.model.scene import FloatArray
+from fcm.results.options import RESULTS
+
+
+def ranks(count: int, percent: float, confidence: float = RESULTS.draws.confidence) -> tuple[int, int]:
+    """Ranks (l, u) of the ordered values that bound a percentile; 0 and count + 1 where none does.
+
+    >>> ranks(10, 50.0), ranks(59, 95.0), ranks(58, 95.0)
+    ((2, 9), (53, 59), (52, 59))
+    """
+    lower = _lower_rank(count, percent / 100.0, confidence)
+    return lower, count + 1 - _lower_rank(count, 1.0 - percent / 100.0, confidence)
+
+
+def _lower_rank(count: int, share: float, confidence: float) -> int:
+    """The greatest l with P(B < l) within the tail, 0 where there is none."""
+    from scipy.special import bdtr  # which most runs do without
+
+    below = bdtr(np.arange(count), count, share)  # P(B <= k)
+    return int(np.searchsorted(below, 0.5 * (1.0 - confidence), side="right"))
+
+
+def draws_needed(percent: float, confidence: float = RESULTS.draws.confidence) -> float:
+    """Least number of draws with which both ends of the interval of a percentile are known.
+
+    >>> [draws_needed(percent) for percent in (5.0, 25.0, 50.0, 95.0, 100.0)]
+    [59, 11, 5, 59, inf]
+    """
+    inner = max(percent, 100.0 - percent) / 100.0
+    return math.ceil(math.log(0.5 * (1.0 - confidence)) / math.log(inner)) if inner < 1.0 else math.inf
+
+
+def intervals(
+    values: FloatArray, errors: FloatArray, percents: tuple[float, ...], confidence: float
+) -> FloatArray:
+    """Intervals (percent, 2) of percentiles of values with relative errors, NaN where an end is unknown.
+
+    Values that are NaN are left out; the error of a value may be NaN, unknown, and is none of a value of 0.
+    """
+    known = np.isfinite(values)
+    value, error = values[known], np.where(values[known] == 0.0, 0.0, errors[known])
+    low = np.sort(np.where(np.isnan(error), -np.inf, np.maximum(value * (1.0 - error), 0.0)))
+    high = np.sort(np.where(np.isnan(error), np.inf, value * (1.0 + error)))
+    found = np.full((len(percents), 2), np.nan)
+    for row, percent in zip(found, percents, strict=True):
+        lower, upper = ranks(value.size, percent, confidence)
+        if lower > 0:
+            row[0] = low[lower - 1]
+        if upper <= value.size:
+            row[1] = high[upper - 1]
+    return np.where(np.isfinite(found), found, np.nan)
