@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import tomllib
 from math import pi
 
 import numpy as np
 import pytest
 
-from fcm.scene import scene_from_dict
+from fcm.model.question import Question
+from fcm.scene import bundled_scenes, load_scene, scene_from_dict
 from fcm.scene.listing import listing, resonance_doubt
 
+from ..guide.pages import PAGES, files
 from ..program import called
 
 STRUCTURE = {"dofs": ["u"], "mass": [1.0], "stiffness": [1.0]}
@@ -35,7 +38,11 @@ def notes(data, **more):
         ),
         (("modal", "damping"), [0.0, 0.01], []),
         (("modal", "damping"), [0.01, 0.99], []),
-        (("modal", "damping"), 0.2, ["It is 20 % of critical damping; if 0.2 % is meant, write 0.002"]),
+        (
+            ("modal", "damping"),
+            0.2,
+            ["so that a resonance is 2.5 times the static displacement; if 0.2 % is meant, write 0.002"],
+        ),
         (("modal", "damping"), 0.19, []),
         (
             ("force", 0, "phase"),
@@ -203,8 +210,8 @@ def test_a_force_of_a_higher_harmonic_meets_resonances_above_the_range(harmonics
     [
         (1e13, ["1.0e+08 times as stiff as the structure there. Are k_u and k_v in its units?"]),
         (1e9, []),
-        (1e3, []),
-        (1.0, ["the contacts are soft beside the structure: 1.0e-05 times its stiffness at most"]),
+        (1e3, []),  # 0.5 %
+        (100.0, ["the resonance at 316.23 rad/s is 0.05 % higher, so that friction changes little"]),
         (0.0, []),  # no spring
     ],
 )
@@ -242,3 +249,172 @@ def test_a_first_resonance_far_below_the_range_is_asked_about(factor, asked):
     scene = scene_from_dict(data)
     assert resonance_doubt(scene) == ""
     assert len([one for one in scene.notes if "are the units those meant?" in one]) == asked
+
+
+def blade(units=("m", "N"), **more):
+    """One mode of 100 Hz at a tip, in m, N and kg: 1 kg, 3.9e5 N/m, 0.63 mm in resonance."""
+    data = {
+        "frequency_unit": "Hz",
+        "modal": {"dofs": ["x", "z"], "frequency": [100.0, 400.0], "damping": 0.002,
+                  "shapes": [[1.0, 0.3], [-0.3, 1.0]]},
+        "contact": [{"name": "tip", "tangential": "x", "normal": "z", "mu": 0.3, "k_u": 2e5, "k_v": 3e5,
+                     "n_0": 10.0} | more.pop("contact", {})],
+        "force": [{"dof": "x", "amplitude": 1.0}],
+        "response": {"frequency": [80.0, 150.0]},
+    }  # fmt: skip
+    given = {"units": dict(zip(("length", "force"), units, strict=True))} if units else {}
+    return data | given | more
+
+
+def asked(data):
+    return [one for one in scene_from_dict(data).notes if isinstance(one, Question)]
+
+
+@pytest.mark.parametrize(
+    ("contact", "units", "words"),
+    [
+        ({}, ("m", "N"), ""),
+        (
+            {"k_u": 200.0, "k_v": 300.0},
+            ("m", "N"),
+            "read in N/m; if they are in N/mm, write 1000 times as much",
+        ),
+        ({"k_u": 200.0, "k_v": 300.0}, (), "Are k_u and k_v in its units?"),
+        (
+            {"k_u": 200.0},
+            ("m", "N"),
+            "are k_u = 200 and k_v = 300000 N/m both right? They differ 1.5e+03 times",
+        ),
+        ({"k_v": 300.0}, ("m", "N"), "are k_u = 200000 and k_v = 300 N/m both right?"),
+        ({"k_u": 200.0}, (), ""),
+        ({"k_u": 1200.0}, ("m", "N"), ""),  # by a factor of 250
+        ({"k_u": 200.0, "mu": 0.0}, ("m", "N"), ""),
+        ({"k_v": 0.0}, ("m", "N"), ""),
+    ],
+)
+def test_stiffnesses_a_thousand_times_too_soft(contact, units, words):
+    said = asked(blade(units, contact=contact))
+    assert len(said) == bool(words) and all(words in one for one in said)
+
+
+def test_soft_contacts_that_together_are_not_soft():
+    """A thousand contacts, each of a ten-thousandth of the structure's stiffness."""
+    data = blade()
+    data["contact"] = [data["contact"][0] | {"name": f"c{i}", "k_u": 40.0, "k_v": 40.0} for i in range(1000)]
+    assert asked(data) == []
+
+
+@pytest.mark.parametrize("table", ["sweep", "optimum", "fit"])
+def test_stiffnesses_that_vary_are_not_asked_about(table, tmp_path):
+    key, soft = "contact.tip.k_u", blade(contact={"k_u": 200.0, "k_v": 300.0})
+    (tmp_path / "a.csv").write_text("frequency,amplitude\n" + "".join(f"{f},1e-4\n" for f in range(90, 110)))
+    more = {
+        "sweep": {key: [1e2, 1e3]},
+        "optimum": {"vary": [key], "bounds": [[1e2, 1e6]], "minimise": "peak.x"},
+        "fit": {"vary": [key], "bounds": [[1e2, 1e6]], "data": [{"file": "a.csv", "dof": "x"}]},
+    }
+    assert len(asked(soft)) == 1
+    made = scene_from_dict(soft | {table: more[table]}, folder=tmp_path)
+    assert not any("soft" in one for one in made.notes)
+
+
+@pytest.mark.parametrize(
+    ("damping", "units", "count"),
+    [(0.1, ("m", "N"), 1), (0.09, ("m", "N"), 0), (0.1, (), 0), ([0.002, 0.1], ("m", "N"), 0)],
+)
+def test_damping_ratios_in_percent_of_a_structure_with_units(damping, units, count):
+    data = blade(units)
+    data["modal"]["damping"] = damping
+    said = asked(data)
+    assert len(said) == count
+    assert all("a resonance is 5 times the static displacement; if 0.1 % is meant" in one for one in said)
+
+
+@pytest.mark.parametrize(
+    ("loss", "units", "count"), [(0.2, ("m", "N"), 1), (0.19, ("m", "N"), 0), (0.4, (), 0)]
+)
+def test_a_loss_factor_in_percent(loss, units, count):
+    data = blade(units)
+    del data["modal"], data["contact"]
+    data["structure"] = {"dofs": ["x"], "mass": [1.0], "stiffness": [3.9e5], "damping": {"loss_factor": loss}}
+    said = [one for one in asked(data) if "loss_factor" in one]
+    assert len(said) == count
+    assert all("20 % of the stiffness, so that a resonance is 5 times" in one for one in said)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"gap": 1e-4}, ""),
+        ({"gap": 0.1}, "is a gap of 0.1 m (-n_0 / k_v) right? Forces move its faces by"),
+        ({"n_0": -3e4}, "is a gap of 0.1 m"),
+        ({"gap": 0.1, "units": ()}, ""),
+        ({"gap": 0.1, "sweep": {"contact.tip.gap": [1e-4, 0.1]}}, ""),
+        ({"gap": 0.1, "sweep": {"force.0.amplitude": [1.0, 1e3]}}, ""),
+        ({"gap": 0.1, "load": [{"dof": "z", "force": 1e4}]}, ""),
+        ({"n_0": -1.0, "k_v": 0.0}, ""),
+    ],
+)
+def test_a_gap_in_another_unit_of_length(change, words):
+    of_contact = {key: change[key] for key in ("gap", "n_0", "k_v") if key in change}
+    more = {key: change[key] for key in ("sweep", "load") if key in change}
+    data = blade(change.get("units", ("m", "N")), contact=of_contact, **more)
+    if "gap" in of_contact:
+        del data["contact"][0]["n_0"]
+    said = [one for one in asked(data) if "gap" in one]
+    assert len(said) == bool(words) and all(words in one for one in said)
+    assert all("never closes. If it is in mm, divide it by 1000" in one for one in said)
+
+
+def test_a_gap_is_measured_by_the_motion_of_the_structure_without_contact():
+    """The mode at 100 Hz alone, in resonance: 1 N over 2 * 0.002 (2 pi 100)^2 kg/s^2, times 0.3."""
+    data = blade(contact={"gap": 0.1})
+    del data["contact"][0]["n_0"]
+    data["modal"] |= {"frequency": [100.0], "shapes": [[1.0, 0.3]]}
+    motion = 0.3 / (2 * 0.002 * (2 * pi * 100.0) ** 2)
+    (said,) = asked(data)
+    assert f"by {motion:.2g} m at most" in said
+    for times, count in ((9.9, 0), (10.1, 1)):
+        data["contact"][0]["gap"] = times * motion
+        assert len(asked(data)) == count
+
+
+def test_a_gap_that_a_closed_contact_carries_the_motion_to_is_not_asked_about():
+    """A second body that no force moves but through a closed contact."""
+    data = blade()
+    data["modal"] = {"dofs": ["x", "y"], "frequency": [100.0, 90.0], "damping": 0.002,
+                     "shapes": [[1.0, 1e-9], [1e-9, 1.0]]}  # fmt: skip
+    shared = {"mu": 0.3, "k_u": 2e5, "k_v": 3e5}
+    link = {"name": "link", "tangential": {"x": 1.0, "y": -1.0}, "normal": "x", "n_0": 10.0}
+    stop = {"name": "stop", "tangential": "x", "normal": "y", "gap": 1e-4}
+    assert len([one for one in asked(data | {"contact": [stop | shared]}) if "gap" in one]) == 1
+    assert [one for one in asked(data | {"contact": [link | shared, stop | shared]}) if "gap" in one] == []
+
+
+def test_of_bundled_scenes_those_are_asked_about_that_are_extreme():
+    """And dampings of 0, of two scenes that others published without any."""
+    found = {name: asked_of(name) for name in bundled_scenes()}
+    plain = {name: said for name, said in found.items() if said and not name.startswith("extreme/")}
+    assert set(plain) == {"beam", "den-hartog"}
+    assert all("damping: is 0 right?" in one for said in plain.values() for one in said)
+    soft = {name for name, said in found.items() if any("are soft" in one for one in said)}
+    assert soft == {
+        "extreme/close-modes-1e-6", "extreme/separation-limit-met", "extreme/slip-limit-just-exceeded",
+        "extreme/slip-limit-met", "extreme/soft-both",
+    }  # fmt: skip
+
+
+def test_scenes_of_the_guide_are_not_asked_about(tmp_path):
+    """Those that stand alone, by their modes."""
+    texts = {
+        f"{page.name}:{name}": text
+        for page in PAGES
+        for name, text in files(page).items()
+        if name.endswith(".toml") and "[modal]" in text and "[fit]" not in text
+    }
+    assert len(texts) >= 3
+    assert {name: said for name, text in texts.items() if (said := asked(tomllib.loads(text)))} == {}
+
+
+def asked_of(name):
+    return [one for one in load_scene(name).notes if isinstance(one, Question)]

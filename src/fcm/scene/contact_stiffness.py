@@ -5,21 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.model.question import Question
-from fcm.model.scene import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene, has_friction
+from fcm.scene.contact_springs import stuck_stiffness
 from fcm.scene.errors import several
 from fcm.scene.options import MESSAGES
+from fcm.units import UNIT
+
+SHORTER = {"m": "mm", "mm": "um"}  # by a thousand: a stiffness per shorter unit is a thousand times as much
 
 
 def notes_of_stiffness(scene: Scene) -> list[str]:
-    """Notes on contacts far stiffer than the structure at them, or if all are far softer.
+    """Questions about contacts far stiffer than the structure at them, and about those that are far softer.
 
-    The measure is k times the flexibility of the elastic modes along the contact's displacement, sum phi^2 /
-    (m omega^2). Nothing is said of rings, of stiffnesses that are swept, nor of soft contacts that hold rigid
+    The measure of stiff ones is k times the flexibility of the elastic modes along the contact's
+    displacement, sum phi^2 / (m omega^2). Contacts are soft if they change no resonance near the range while
+    all of them stick. Where units are given, k_u and k_v of very different size are asked about. Nothing is
+    said of rings, of stiffnesses that are swept, chosen or fitted, nor of soft contacts that hold rigid
     bodies.
     """
-    varied = () if scene.draft is None else scene.draft.swept
-    swept = any(one.key.endswith((".k_u", ".k_v")) for one in varied)
-    if scene.ring is not None or swept or not scene.contacts:
+    if scene.ring is not None or not scene.contacts or varies(scene, ".k_u", ".k_v"):
         return []
     ratio = _stiffness_beside_structure(scene)
     stiff = np.flatnonzero(ratio > MESSAGES.stiff_contact)
@@ -32,14 +36,72 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
                 "Are k_u and k_v in its units? Beyond some hundred times little changes, and runs take long"
             )
         ]
-    if not 0.0 < ratio.max() < MESSAGES.soft_contact or not scene.modal.frequency.all():
-        return []
-    return [
-        Question(
-            f"the contacts are soft beside the structure: {ratio.max():.1e} times its stiffness at most, "
-            "so that they change little. Are k_u and k_v in its units?"
-        )
-    ]
+    soft = _soft(scene) if ratio.max() > 0.0 else ""
+    return [Question(one) for one in (soft or _unequal(scene),) if one]
+
+
+def varies(scene: Scene, *ends: str) -> bool:
+    """Whether numbers whose paths end so are swept, chosen or fitted."""
+    keys = [] if scene.draft is None else [one.key for one in scene.draft.swept]
+    keys += [key for one in (scene.optimum, scene.fit) if one is not None for key in one.vary]
+    return any(key.endswith(ends) for key in keys)
+
+
+def _soft(scene: Scene) -> str:
+    """Question about contacts that change no resonance near the range while they stick; or ''."""
+    modal = scene.modal
+    if not modal.frequency.all():
+        return ""
+    opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
+    squares = np.linalg.eigvalsh(stuck_stiffness(scene))[: opened.size]
+    stuck = np.sqrt(np.maximum(squares, 0.0))
+    near = np.ones(opened.size, np.bool_)
+    if scene.has_range:
+        low, high = scene.frequency_range
+        near = (stuck >= low / MESSAGES.range_near) & (opened <= high * MESSAGES.range_near)
+    if not near.any():
+        return ""
+    change = np.where(near, stuck / opened - 1.0, -np.inf)
+    most = int(np.argmax(change))
+    if change[most] >= MESSAGES.soft_contacts:
+        return ""
+    unit = scene.frequency_unit
+    percent = f"{100.0 * max(change[most], 0.0):.2g} %"
+    return (
+        "the contacts are soft beside the structure: while all stick, the resonance at "
+        f"{opened[most] / UNIT[unit]:.5g} {unit} is {percent} higher, so that friction changes little. Are "
+        f"k_u and k_v in its units?{_per_shorter(*scene.units)}"
+    )
+
+
+def _per_shorter(length: str, force: str) -> str:
+    """Sentence on the usual slip of units by which stiffnesses are a thousand times too small; or ''.
+
+    >>> _per_shorter("m", "N"), _per_shorter("", "")
+    (' They are read in N/m; if they are in N/mm, write 1000 times as much', '')
+    """
+    if not force or length not in SHORTER:
+        return ""
+    read, shorter = f"{force}/{length}", f"{force}/{SHORTER[length]}"
+    return f" They are read in {read}; if they are in {shorter}, write 1000 times as much"
+
+
+def _unequal(scene: Scene) -> str:
+    """Question about a contact whose springs differ as by a slip of units, where units are given; or ''."""
+    if not all(scene.units):
+        return ""
+    length, force = scene.units
+    for one in scene.contacts:
+        if not has_friction(one) or not one.k_v:
+            continue
+        size = max(one.k_u / one.k_v, one.k_v / one.k_u)
+        if size > MESSAGES.unequal_springs:
+            given = f"k_u = {one.k_u:.6g} and k_v = {one.k_v:.6g} {force}/{length}"
+            return (
+                f'contact "{one.name}": are {given} both right? They differ {size:.3g} times. Of metal faces '
+                "k_u is mostly 0.5 to 1 times k_v"
+            )
+    return ""
 
 
 def _stiffness_beside_structure(scene: Scene) -> FloatArray:

@@ -27,6 +27,7 @@ from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, sugges
 from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
 from fcm.scene.files import Files
 from fcm.scene.fit import notes_of_data, read_fit
+from fcm.scene.gap_reach import questions_of_gaps
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     check_matrices,
@@ -254,6 +255,7 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None) -> Sce
             *notes_of_slopes(scene),
             *notes_of_planes(scene),
             *notes_of_stiffness(scene),
+            *questions_of_gaps(scene),
         ),
     )
 

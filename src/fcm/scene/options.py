@@ -47,9 +47,14 @@ class MessageOptions(Frozen):
     range_above: float = 2.0
     # stiffness of a contact relative to the structure's there, above which it is asked about
     stiff_contact: float = 1e6
-    # stiffness of all contacts relative to the structure's there, below which it is asked about: friction
-    # then adds no damping ratio beyond about 1e-3
-    soft_contact: float = 5e-3
+    # relative change of a resonance while all contacts stick, below which it is asked about: friction then
+    # adds no damping ratio beyond about 1e-3
+    soft_contacts: float = 2.5e-3
+    # ratio of a contact's stiffnesses, or its inverse, above which it is asked about: metal faces and a slip
+    # of units by a thousand leave it that large
+    unequal_springs: float = 300.0
+    # ratio of a gap to a bound of the motion there, above which it is asked about
+    far_gap: float = 10.0
     # distance from the ends of the range, relative to it in logarithms, that a mode has to have where a
     # slip of units would put it
     range_margin: float = 0.05
@@ -96,6 +101,8 @@ class LimitOptions(Frozen):
     friction: float = 2.0  # coefficient of friction above which more likely a percentage is meant
     # damping ratio of every mode from which on no resonance is seen, and a percentage may be meant
     damping_of_all: float = 0.2
+    # the same of a scene with units, thus of a real structure: bolted ones have some 0.01 to 0.03
+    damping_with_units: float = 0.1
     # damping ratio from which on a mode does not vibrate, and more likely a percentage is meant
     damping_ratio: float = 1.0
     # number of degrees of freedom up to which all are in the results, where no others are asked for

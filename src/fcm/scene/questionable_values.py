@@ -22,11 +22,12 @@ CRITICAL = "critical damping"
 def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str]:
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
-    damping ratios and loss factors of 1 and more, damping ratios of which the least is large,
-    no damping at all, coefficients of friction above two, negative gaps, and angles of more than a turn that
-    are given in rad.
+    damping ratios and loss factors of 1 and more, damping ratios of which the least is large, and where units
+    are given loss factors, too; no damping at all, coefficients of friction above two, negative gaps, and
+    angles of more than a turn that are given in rad.
     """
-    found = [_of_ratio(*one) for one in _ratios(top, parts, swept)]
+    real = isinstance(top.data.get("units"), Mapping)
+    found = [_of_ratio(*one, real) for one in _ratios(top, parts, swept)]
     found += [_of_nothing(*one) for one in _ratios(top, parts, swept)]
     found += [_of_friction(*one) for one in _of_contacts("mu", top, swept)]
     found += [_of_gap(*one) for one in _of_contacts("gap", top, swept)]
@@ -86,14 +87,18 @@ def _numbers(value: Any) -> list[float]:
     return [number for one in several if (number := as_float(one)) is not None and np.isfinite(number)]
 
 
-def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
+def _of_ratio(key: str, values: Iterable[float], whole: str, real: bool) -> str:
     each = list(values)
     value = max(each, default=0.0)
-    all_large = whole == CRITICAL and min(each, default=0.0) >= LIMITS.damping_of_all
+    large = LIMITS.damping_with_units if real else LIMITS.damping_of_all
+    ratios = each if whole == CRITICAL else [0.5 * one for one in each]
+    all_large = (whole == CRITICAL or real) and min(ratios, default=0.0) >= large
     if value < LIMITS.damping_ratio and not all_large:
         return ""
+    height = f"{0.5 / max(ratios):.2g} times the static displacement"
+    high = f", so that a resonance is {height}" if value < LIMITS.damping_ratio else ""
     meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
-    return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}; {meant}"
+    return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}{high}; {meant}"
 
 
 def _of_nothing(key: str, values: Iterable[float], _whole: str) -> str:

@@ -1,0 +1,81 @@
+r"""Gaps that no motion of the structure can close: mostly in millimetres where metres are meant.
+
+Without contact the relative displacement along a contact's normal is at most
+
+.. math:: \sum_m |n^T \phi_m| \, |\phi_m^T f| / \min_\omega |\omega_m^2 - \omega^2 + i r_m \omega|
+
+over the range of frequencies, with modes of mass 1 and their rates of damping r_m. Modes are those with all
+contacts open, and those with all stuck that are closed at rest, which may carry the motion to the gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.model.question import Question
+from fcm.model.scene import FloatArray, Scene
+from fcm.scene.contact_springs import stuck_stiffness
+from fcm.scene.contact_stiffness import SHORTER, varies
+from fcm.scene.options import MESSAGES
+
+
+def questions_of_gaps(scene: Scene) -> list[str]:
+    """A question about gaps far beyond the motion, where the unit of length is given.
+
+    None about rings, static loads, and preloads or gaps that are swept, chosen or fitted.
+    """
+    (length, _), contacts = scene.units, scene.contacts
+    gap = np.array([max(-one.n_0 / one.k_v, 0.0) if one.k_v > 0.0 else 0.0 for one in contacts])
+    if not length or scene.ring is not None or scene.loads or not scene.has_range or not gap.any():
+        return []
+    if varies(scene, ".n_0", ".gap", ".amplitude") or varies(scene, "level"):
+        return []
+    reach = _reach(scene)
+    far = np.flatnonzero((gap > MESSAGES.far_gap * reach) & (reach > 0.0))
+    if not far.size:
+        return []
+    first = int(far[np.argmax(gap[far] / reach[far])])
+    said = f'contact "{contacts[first].name}": is a gap of {gap[first]:.6g} {length} (-n_0 / k_v) right?'
+    meant = f". If it is in {SHORTER[length]}, divide it by 1000" if length in SHORTER else ""
+    others = f". So of {far.size - 1} more" if far.size > 1 else ""
+    return [
+        Question(
+            f"{said} Forces move its faces by {reach[first]:.2g} {length} at most, so that it never closes"
+            f"{meant}{others}"
+        )
+    ]
+
+
+def _reach(scene: Scene) -> FloatArray:
+    """Bounds (contact,) of the amplitude along the normals, without contact where there is a gap."""
+    modal = scene.modal
+    mass_one = modal.shapes / np.sqrt(modal.mass)[:, None]
+    damping = 2.0 * modal.damping * modal.frequency
+    normals = np.array([one.normal for one in scene.contacts]).T
+    closed = tuple(one for one in scene.contacts if one.n_0 >= 0.0)
+    stiffness = [np.diag(modal.frequency**2)]
+    stiffness += [stuck_stiffness(replace(scene, contacts=closed))] if closed else []
+    found = np.zeros(len(scene.contacts))
+    for one in stiffness:
+        squares, turn = np.linalg.eigh(one)
+        shapes = turn.T @ mass_one
+        size = _sizes(scene, shapes, np.sqrt(np.maximum(squares, 0.0)), damping @ turn**2)
+        found = np.maximum(found, size @ np.abs(shapes @ normals))
+    return found
+
+
+def _sizes(scene: Scene, shapes: FloatArray, omega: FloatArray, rate: FloatArray) -> FloatArray:
+    """Bounds (mode,) of the modal amplitudes in the range of frequencies, of all forces."""
+    size = np.zeros(omega.size)
+    for force in scene.forces:
+        low, high = (force.harmonic * end for end in scene.frequency_range)
+        at = np.clip(omega, low, high)
+        least = np.hypot(omega**2 - at**2, rate * at)
+        push = (
+            np.abs(shapes @ force.direction) * abs(force.amplitude) * (high / force.harmonic) ** force.power
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            size += np.where(push > 0.0, push / least, 0.0)
+    return size
