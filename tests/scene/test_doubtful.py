@@ -297,6 +297,14 @@ def test_stiffnesses_a_thousand_times_too_soft(contact, units, words):
     assert len(said) == bool(words) and all(words in one for one in said)
 
 
+def test_soft_contacts_are_told_by_the_resonance_that_a_higher_harmonic_of_the_force_meets():
+    data = blade(contact={"k_u": 200.0, "k_v": 300.0})
+    force = data["force"][0] | {"harmonic": 4}
+    data |= {"force": [force], "response": {"frequency": [24.0, 26.0]}}
+    (said,) = asked(data)
+    assert "the resonance at 100 Hz is" in said
+
+
 def test_soft_contacts_that_together_are_not_soft():
     """A thousand contacts, each of a ten-thousandth of the structure's stiffness."""
     data = blade()

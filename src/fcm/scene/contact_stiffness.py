@@ -58,7 +58,9 @@ def _soft(scene: Scene) -> str:
     near = np.ones(opened.size, np.bool_)
     if scene.has_range:
         low, high = scene.frequency_range
-        near = (stuck >= low / MESSAGES.range_near) & (opened <= high * MESSAGES.range_near)
+        harmonics = [one.harmonic for one in scene.forces] or [1]
+        near = stuck >= min(harmonics) * low / MESSAGES.range_near
+        near &= opened <= max(harmonics) * high * MESSAGES.range_near
     if not near.any():
         return ""
     change = np.where(near, stuck / opened - 1.0, -np.inf)

@@ -58,9 +58,9 @@ class MessageOptions(Frozen):
     # distance from the ends of the range, relative to it in logarithms, that a mode has to have where a
     # slip of units would put it
     range_margin: float = 0.05
-    # ratio of the range's begin to the first resonance, above which it is asked about
     flat_face: float = 0.01  # distance from its plane, relative to its width, up to which a face is flat
     leaning_normal: float = 10.0  # [degree] angle to a flat face's own, beyond which a normal is asked about
+    # ratio of the range's begin to the first resonance, above which it is asked about
     far_below: float = 10.0
     # ratio of the range's ends to a mode's frequency, or its inverse, within which the mode is near the
     # range
