@@ -320,3 +320,50 @@ def test_a_structure_below_the_range_whose_contacts_reach_it_is_in_place(tmp_pat
     (tmp_path / "scene.toml").write_text(text)
     done = called("respond", tmp_path / "scene.toml")
     assert done.code == 0 and "each other's place" not in done.err and "structure: 2 modes" in done.err
+
+
+def test_the_stiffness_of_the_structure_at_a_contact_is_that_by_a_unit_load(listed, tmp_path):
+    """Two masses on springs of 200 and 300 N/m: a load on the second meets both in series, 120 N/m."""
+    matrices = """
+[structure]
+dofs = ["a", "b"]
+mass = [2.0, 1.0]
+stiffness = [[500.0, -300.0], [-300.0, 300.0]]
+damping = 0.01
+"""
+    scene = matrices + SCENE[SCENE.index("[[contact]]") :].replace('"u"', '"a"').replace('"w"', '"b"')
+    scene = scene.replace('"v"', '"a"').replace("k_u = 1", "k_u = 20").replace("k_v = 1", "k_v = 60")
+    found = json.loads(listed(scene, "--json").out)["stiffness"]
+    assert found["shroud"] == pytest.approx(
+        {"k_u": 20.0, "structure_tangential": 200.0, "k_v": 60.0, "structure_normal": 120.0}
+    )
+    rows = [line.split() for line in listed(scene).out.splitlines()]
+    assert ["shroud", "20", "200", "0.1", "60", "120", "0.5"] in rows
+    assert ["contact", "k_u", "along", "ratio", "k_v", "across", "ratio"] in rows
+
+
+def test_in_a_plane_the_softer_direction_counts(listed):
+    scene = SCENE.replace('tangential = "u"', 'tangential = ["u", "v"]')
+    shapes = "shapes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]"
+    scene = scene.replace(SCENE[SCENE.index("shapes") : SCENE.index("[[contact]]")], f"{shapes}\n")
+    (found,) = json.loads(listed(scene, "--json").out)["stiffness"].values()
+    assert found["structure_tangential"] == pytest.approx(2.0 * (2.0 * np.pi) ** 2)
+    assert found["structure_normal"] == pytest.approx(25.0 * (2.0 * np.pi) ** 2)
+
+
+def test_where_rigid_bodies_move_the_structure_has_no_stiffness(listed):
+    scene = SCENE.replace("frequency = [1.0, 4.0, 5.0]", "frequency = [0.0, 4.0, 5.0]")
+    scene = scene.replace("[0.0, 1.0, 0.0]]", "[0.0, 1.0, 1.0]]")  # only an elastic mode moves the normal
+    (found,) = json.loads(listed(scene, "--json").out)["stiffness"].values()
+    assert found["structure_tangential"] is None
+    assert found["structure_normal"] == pytest.approx((10.0 * np.pi) ** 2)
+    assert any(line.split()[:4] == ["shroud", "1", "-", "-"] for line in listed(scene).out.splitlines())
+
+
+def test_of_many_contacts_those_of_the_greatest_ratio_are_listed(listed):
+    contact = SCENE[SCENE.index("[[contact]]") : SCENE.index("[[force]]")]
+    more = "".join(contact.replace("shroud", f"c{i}").replace("k_u = 1", f"k_u = {i + 2}") for i in range(12))
+    out = listed(SCENE.replace("[[force]]", f"{more}[[force]]")).out
+    table = out[out.index("the stiffness of each contact") :]
+    assert [line.split()[0] for line in table.splitlines()[2:-1]] == [f"c{i}" for i in range(2, 12)]
+    assert table.rstrip().endswith("and 3 more contacts: --json has all")

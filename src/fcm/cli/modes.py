@@ -17,6 +17,9 @@ _FRICTION = (
     "the damping ratio that friction can add to each resonance, estimated for closed contacts; "
     "n_0 is that of a pair:"
 )
+_STIFFNESS = (
+    "the stiffness of each contact, beside that of the structure along and across its faces without contacts:"
+)
 
 
 @click.command()
@@ -35,6 +38,10 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     damping ratio that friction can add to each, estimated by one harmonic. Contacts stay closed, at
     their best preload, with the same share of slip. The contact with the greatest part is "most in". Its
     preload that gives this damping, in resonance with the scene's forces, is "n_0".
+
+    A third table has the stiffness of each contact, and that of the structure there, by a unit load without
+    contacts. A contact of a hundredth of it changes little. With a hundred times as much it is as good as
+    rigid.
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
     stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand
@@ -66,7 +73,38 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
 def as_table(found: dict[str, Any]) -> str:
     """Table with a line for each mode, with as many directions as fit; then a line for each resonance."""
-    return "\n\n".join(filter(None, [_lines(found, _shown(found)), _resonances(found)]))
+    parts = [_lines(found, _shown(found)), _resonances(found), _stiffness(found)]
+    return "\n\n".join(filter(None, parts))
+
+
+def _stiffness(found: dict[str, Any]) -> str:
+    """The stiffness of contacts beside that of the structure at them; empty without contacts.
+
+    Of many those of the greatest ratio.
+    """
+    every = found.get("stiffness", {})
+    if not every:
+        return ""
+
+    def ratio(k: float, structure: float | None) -> float | None:
+        return None if structure is None else k / structure
+
+    rows = []
+    for name, one in every.items():
+        pairs = [(one["k_u"], one["structure_tangential"]), (one["k_v"], one["structure_normal"])]
+        rows.append((name, [ratio(*pair) for pair in pairs], pairs))
+    kept = sorted(rows, key=lambda row: -max((value or 0.0) for value in row[1]))[: SENTENCES.rows]
+    heads = ["k_u", "along", "ratio", "k_v", "across", "ratio"]
+    lines = [["contact", *heads]]
+    for name, ratios, pairs in rows:
+        cells = [
+            "-" if value is None else f"{value:.4g}"
+            for pair, beside in zip(pairs, ratios, strict=True)
+            for value in (*pair, beside)
+        ]
+        lines += [[name, *cells]] if (name, ratios, pairs) in kept else []
+    more = f"\nand {len(rows) - len(kept)} more contacts: --json has all" if len(rows) > len(kept) else ""
+    return f"{_STIFFNESS}\n{aligned(lines, left=0)}{more}"
 
 
 def _resonances(found: dict[str, Any]) -> str:

@@ -108,11 +108,18 @@ def _unequal(scene: Scene) -> str:
 
 def _stiffness_beside_structure(scene: Scene) -> FloatArray:
     """Ratio (contact,): the greater of k_u and k_v times the flexibility along the displacement."""
+    springs = np.array([(one.k_u, one.k_v) for one in scene.contacts])
+    ratio: FloatArray = (springs * flexibility(scene)).max(axis=1)
+    return ratio
+
+
+def flexibility(scene: Scene) -> FloatArray:
+    """Displacement (contact, 2) per unit load, by elastic modes: where each contact slides, and its normal.
+
+    Of a contact in a plane the greater one of both directions.
+    """
     modal = scene.modal
     elastic = modal.frequency > 0.0
     shapes = modal.shapes[elastic] / (np.sqrt(modal.mass) * modal.frequency)[elastic][:, None]
-    ratio = np.zeros(len(scene.contacts))
-    for i, one in enumerate(scene.contacts):
-        springs = [*((one.k_u, along) for along in one.directions[:-1]), (one.k_v, one.normal)]
-        ratio[i] = max(k * float(np.sum((shapes @ along) ** 2)) for k, along in springs)
-    return ratio
+    each = [[float(np.sum((shapes @ along) ** 2)) for along in one.directions] for one in scene.contacts]
+    return np.array([(max(sliding), normal) for *sliding, normal in each]).reshape(-1, 2)

@@ -10,6 +10,7 @@ from fcm.model.question import Question
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.contact_springs import stuck_stiffness
+from fcm.scene.contact_stiffness import flexibility
 from fcm.scene.errors import counted
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
@@ -34,8 +35,8 @@ FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out
 def listing(scene: Scene) -> dict[str, Any]:
     """Modes with frequency, damping, mass and participation; how they are normalised; notes and warnings.
 
-    Beside them the resonances with open and with stuck contacts, and how much friction can damp them; of a
-    ring of sectors they are left to `fcm plot campbell`.
+    Beside them the resonances with open and with stuck contacts, how much friction can damp them, and the
+    stiffness of the structure at each contact; of a ring of sectors they are left to `fcm plot campbell`.
 
     The participation of a mode in a direction (of a contact or a force) is its share of the static
     flexibility along it, phi^2 / (m omega^2) by the sum over all modes; None where rigid-body modes make
@@ -67,11 +68,32 @@ def listing(scene: Scene) -> dict[str, Any]:
         "frequency_unit": scene.frequency_unit,
         "modes": modes,
         "resonances": friction_damping(scene),
+        "stiffness": _beside_structure(scene, shares),
         "normalisation": _normalisation(scene),
         "read": _read(scene, modal.frequency[:own]),
         "notes": list(scene.notes),
         "warnings": _warnings(scene, directions, motion),
     }
+
+
+def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[str, float | None]]:
+    """Of each contact k_u and k_v, and the force per unit displacement of the structure without contacts.
+
+    None where no load is held: rigid-body modes move along it. Nor where no mode does.
+    """
+    found: dict[str, dict[str, float | None]] = {}
+    for contact, (along, across) in zip(scene.contacts, flexibility(scene).tolist(), strict=True):
+        free = [
+            shares[name] is None for name in shares if name.startswith(f"contact.{contact.name}.tangential")
+        ]
+        held = shares[f"contact.{contact.name}.normal"] is not None
+        found[contact.name] = {
+            "k_u": contact.k_u,
+            "structure_tangential": 1.0 / along if along and not any(free) else None,
+            "k_v": contact.k_v,
+            "structure_normal": 1.0 / across if across and held else None,
+        }
+    return found
 
 
 _IN_HERTZ = 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"'
