@@ -10,6 +10,8 @@ import fcm
 from fcm.response.mode import ModeRequest, trace_modes
 from fcm.scene.friction_damping import friction_damping
 
+from ..program import called
+
 ONE = """
 [modal]
 dofs = ["u", "v"]
@@ -95,3 +97,21 @@ def test_shares_are_of_contacts_that_rub(tmp_path):
     soft = contact.replace("damper", "soft").replace("1.4", "0.35")
     one = friction_damping(scene(tmp_path, ONE.replace("[[force]]", f"{smooth}{soft}[[force]]")))[0]
     assert one["by_contact"] == pytest.approx({"damper": 0.8, "smooth": 0.0, "soft": 0.2})
+
+
+@pytest.mark.parametrize(("times", "opens"), [(0.8, []), (1.25, ["damper"])])
+def test_contacts_that_open_with_the_preload_are_named(tmp_path, times, opens):
+    """One mode that moves v by half of u: k_v X / 2 against n_0 = k_u X / (mu A), A the best multiple."""
+    k_v = 1.0
+    for _ in range(50):  # which makes the mode stiffer, so that A depends on it
+        multiple, *_ = best_of(1.4 / (2.0 + 0.25 * k_v))
+        k_v = 2.0 * 1.4 / (0.3 * multiple)
+    one_mode = ONE.replace("mass = [2.0, 1.0]", "mass = [2.0]").replace("[1.0, 2.0]", "[1.0]")
+    one_mode = one_mode.replace("[0.0, 0.01]", "[0.0]").replace("[[1.0, 0.0], [0.0, 1.0]]", "[[1.0, 0.5]]")
+    made = scene(tmp_path, one_mode.replace("k_v = 1", f"k_v = {times * k_v}"))
+    (found,) = friction_damping(made)
+    assert found["opens"] == opens
+    out = called("plot", "modes", tmp_path / "scene.toml").out
+    assert ("contacts would open with this preload" in out) == bool(opens)
+    (row,) = [line for line in out.splitlines() if "damper   100 %" in line]
+    assert row.endswith("*") == bool(opens)

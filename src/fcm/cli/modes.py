@@ -17,6 +17,11 @@ _FRICTION = (
     "the damping ratio that friction can add to each resonance, estimated for closed contacts; "
     "n_0 is that of a pair:"
 )
+_OPENS = "*"  # beside a preload with which contacts would open
+_OF_OPENING = (
+    f"{_OPENS} contacts would open with this preload, so that it does not hold, nor does the damping: "
+    "[optimum] finds the best"
+)
 _STIFFNESS = (
     "the stiffness of each contact, beside that of the structure along and across its faces without contacts:"
 )
@@ -37,7 +42,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     A second table has the resonances, with all contacts open and with all stuck. It has the greatest
     damping ratio that friction can add to each, estimated by one harmonic. Contacts stay closed, at
     their best preload, with the same share of slip. The contact with the greatest part is "most in". Its
-    preload that gives this damping, in resonance with the scene's forces, is "n_0".
+    preload that gives this damping, in resonance with the scene's forces, is "n_0". It is marked where
+    contacts would open with it.
 
     A third table has the stiffness of each contact, and that of the structure there, by a unit load without
     contacts. A contact of a hundredth of it changes little. With a hundred times as much it is as good as
@@ -117,6 +123,7 @@ def _resonances(found: dict[str, Any]) -> str:
     for number_of, one in enumerate(every, 1):
         name, share = max(one["by_contact"].items(), key=lambda item: item[1])
         preload = f"{one['preload'][name]:.2g}" if one["preload"][name] else "-"
+        preload += _OPENS if one["opens"] else ""
         most = [name, f"{100.0 * share:.0f} %", preload] if one["friction_damping"] else ["-", "", ""]
         rows.append(
             [
@@ -127,7 +134,8 @@ def _resonances(found: dict[str, Any]) -> str:
                 *most,
             ]
         )
-    return f"{_FRICTION}\n{aligned(rows, left=3)}"
+    opening = f"\n{_OF_OPENING}" if any(one["opens"] for one in every) else ""
+    return f"{_FRICTION}\n{aligned(rows, left=3)}{opening}"
 
 
 def _lines(found: dict[str, Any], directions: list[str]) -> str:

@@ -18,7 +18,9 @@ In resonance with the forces f, with that and its own ratio, the mode and the co
 
 .. math:: q = \frac{|\phi^T f|}{2 (\zeta + \zeta_0) \omega^2}, \qquad X_c = |\phi^T t_c|\, q,
 
-and the preload that gives theta at a contact is n_0 = k_u X_c (1 - cos(theta)) / (2 mu).
+and the preload that gives theta at a contact is n_0 = k_u X_c (1 - cos(theta)) / (2 mu). Along its normal n_c
+the contact moves by |phi^T n_c| q. Where that times k_v is more than the preload, it would open, and the
+estimate does not hold.
 """
 
 from __future__ import annotations
@@ -38,8 +40,8 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
 
     `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
     in it, `preload` that of each contact which gives it with the forces of the scene: 0 where these do not
-    move the mode. Empty without contacts. Modes are counted among those that are elastic while the contacts
-    stick.
+    move the mode. `opens` are the contacts that would open with it. Empty without contacts. Modes are
+    counted among those that are elastic while the contacts stick.
 
     Examples
     --------
@@ -59,7 +61,8 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
         sticking_stiffness(scene),
     )
     owner = np.repeat(np.arange(len(contacts)), [len(one.directions) - 1 for one in contacts])
-    mu, k_u = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u"))
+    mu, k_u, k_v = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u", "k_v"))
+    across = along_contacts(scene, normal=True)
     lossy = np.where(mu > 0.0, k_u, 0.0)[owner]
     per_force = np.divide(k_u, 2.0 * mu, out=np.zeros_like(mu), where=mu > 0.0)
     opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
@@ -70,7 +73,8 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     elastic = squares > TOLERANCES.undamped * float(np.abs(held + added).sum(axis=1).max(initial=0.0))
 
     best = np.zeros(last + 1)
-    ratio, preload = np.zeros((2, last + 1, len(contacts)))  # of each contact, at the best theta of each mode
+    # of each contact, at the best theta of each mode
+    ratio, preload, load = np.zeros((3, last + 1, len(contacts)))
     for theta in np.geomspace(FRICTION_DAMPING.least_angle, np.pi, FRICTION_DAMPING.angles, endpoint=False):
         k_r, k_i = (theta - np.sin(theta) * np.cos(theta)) / np.pi, np.sin(theta) ** 2 / np.pi
         squares, shapes = scipy.linalg.eigh(held + k_r * added, subset_by_index=[0, last])
@@ -87,6 +91,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
                 )
                 amplitude = size * np.sqrt(np.bincount(owner, moved, len(contacts)))
                 preload[mode] = per_force * amplitude * (1.0 - np.cos(theta))
+                load[mode] = k_v * np.abs(across.T @ shape) * size
     return [
         {
             "open": float(opened[mode] / UNIT[scene.frequency_unit]),
@@ -99,6 +104,11 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
             "preload": {
                 contact.name: float(one) for contact, one in zip(contacts, preload[mode], strict=True)
             },
+            "opens": [
+                contact.name
+                for contact, held, moved in zip(contacts, preload[mode], load[mode], strict=True)
+                if moved > held > 0.0
+            ],
         }
         for mode in np.flatnonzero(elastic).tolist()[: FRICTION_DAMPING.modes]
     ]
