@@ -18,7 +18,7 @@ import netCDF4
 
 import fcm
 from fcm.cli import main as program
-from fcm.scene.keys import LISTS, TABLES
+from fcm.scene.keys import LISTS, TABLES, unit_of
 from fcm.scene.load import path_of
 
 from ..layers import PACKAGES
@@ -44,14 +44,16 @@ def scene() -> str:
         "# Keys of a scene\n",
         f"{MADE}`fcm respond --keys` prints the same. A number of the scene is named by its path, as in\n"
         "`[sweep]`: `contact.NAME.n_0`, `force.DOF.amplitude`, `modal.damping.0` and the like.\n"
-        "Entries of lists count from 0 there, and modes in tables from 1: `modal.damping.0` is of mode 1.\n",
+        "Entries of lists count from 0 there, and modes in tables from 1: `modal.damping.0` is of mode 1.\n\n"
+        "Units are any consistent ones of length, force and the second: nothing is converted.\n",
     ]
     for name, keys in TABLES.items():
         written = f"`[[{name}]]`" if name in LISTS else f"`[{name}]`" if name else "Top level"
         rows = [
-            (f"`{key}`", cell(one.kind), cell(one.default), cell(one.meaning)) for key, one in keys.items()
+            (f"`{key}`", *map(cell, (one.kind, unit_of(name, key), one.default, one.meaning)))
+            for key, one in keys.items()
         ]
-        parts += [f"## {written}\n", table(("key", "what it may be", "without it", "meaning"), rows)]
+        parts += [f"## {written}\n", table(("key", "what it may be", "unit", "without it", "meaning"), rows)]
     return "\n".join(parts)
 
 

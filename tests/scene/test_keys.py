@@ -8,7 +8,7 @@ import tomllib
 import pytest
 
 from fcm.scene import SceneError, scene_from_dict
-from fcm.scene.keys import TABLES, as_lines, names
+from fcm.scene.keys import TABLES, UNITS, as_lines, names
 
 from ..program import called, python
 
@@ -33,6 +33,39 @@ def test_every_key_is_printed_with_its_rule():
     assert "one k_u, k_v or n_0 is a total" in areas and "a swept one is the total of the pairs" in areas
     assert step.endswith(" number greater than 0 and at most 1; without it: 0.05")
     assert force == "force: the harmonic forces [[force]]; needed without [base]"
+
+
+def test_every_number_has_a_unit_and_nothing_else_has():
+    numbers = {
+        ".".join(filter(None, (table, name)))
+        for table, keys in TABLES.items()
+        for name, key in keys.items()
+        if re.search(
+            r"\bnumbers?\b|^1 to 50|list of lists|list of rows|\[from, to\]|^ratio|^list, (or|range)",
+            key.kind,
+        )
+    }
+    assert numbers - set(UNITS) == set()
+    every = {".".join(filter(None, (table, name))) for table, keys in TABLES.items() for name in keys}
+    assert set(UNITS) - every == set()
+    assert set(UNITS) - numbers == {"force.phase", "base.phase"} - numbers
+
+
+def test_units_are_printed_with_what_a_key_may_be():
+    text = re.sub(r"\s+", " ", printed("--keys"))
+    (k_v,) = re.findall(r"contact\[\].k_v: .*? required", text)
+    assert k_v.endswith("a column of their file number at least 0 [force / length]; required")
+    assert "modal.damping: damping ratios: 0.01 is 1 % of critical damping number at least 0; one for" in text
+
+
+@pytest.mark.parametrize(
+    ("change", "contact"),
+    [({"n_0": 5.0}, 5.0), ({"n_0": -5.0}, -5.0), ({"gap": 3.0}, -6.0), ({"gap": -3.0}, 6.0)],
+)
+def test_a_gap_is_positive_where_faces_are_apart_and_a_preload_where_they_press(data, change, contact):
+    del data["contact"][0]["n_0"], data["sweep"]
+    data["contact"][0] |= change
+    assert scene_from_dict(data).contacts[0].n_0 == contact  # k_v is 2
 
 
 @pytest.mark.parametrize("table", [table for table in TABLES if table not in ("sweep",)])

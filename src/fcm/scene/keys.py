@@ -67,7 +67,8 @@ TABLES: dict[str, dict[str, Key]] = {
         "mass": Key("modal masses", _rule("mass", _EACH_MODE), "1: shapes are mass-normalised"),
         "frequency": Key("undamped natural frequencies; 0 for rigid-body modes",
                          _rule("frequency", "; a list, one for each mode"), _GIVEN),
-        "damping": Key("damping ratios", _rule("damping", _EACH_MODE), _GIVEN),
+        "damping": Key("damping ratios: 0.01 is 1 % of critical damping", _rule("damping", _EACH_MODE),
+                       _GIVEN),
         "shapes": Key("shapes[i][j]: mode i at dofs[j]", "list of lists", _GIVEN),
         "participation": Key("phi^T M d, d the direction of [base]", _rule("participation", _EACH_MODE),
                              "none"),
@@ -82,7 +83,8 @@ TABLES: dict[str, dict[str, Key]] = {
         "file": Key("of the names of the rows, one on each line", "text file", "dofs"),
         "mass": Key("mass matrix; a list of numbers is its diagonal", _MATRIX),
         "stiffness": Key(f"stiffness matrix{_FILES}", _MATRIX),
-        "damping": Key("of every mode, in proportion, or a matrix", "ratio, table, or matrix as above"),
+        "damping": Key("ratio of every mode, 0.01 is 1 % of critical damping; in proportion; or a matrix",
+                       "ratio, table, or matrix as above"),
         "modes": Key(
             "how many are kept", "whole number", "all up to 3 times the highest frequency, at least 10"
         ),
@@ -94,9 +96,11 @@ TABLES: dict[str, dict[str, Key]] = {
         "stiffness": Key("block of this sector's rows and the next one's columns", _MATRIX, "none"),
     },
     "structure.damping": {
-        "mass": Key("factor of the mass matrix", RULES["damping"], "0"),
-        "stiffness": Key("factor of the stiffness matrix", RULES["damping"], "0"),
-        "loss_factor": Key("hysteretic damping", RULES["damping"], "none"),
+        "mass": Key("factor of the mass matrix; a mode has the ratio mass / (2 omega), omega in rad/s",
+                    RULES["damping"], "0"),
+        "stiffness": Key("factor of the stiffness matrix; a mode has the ratio stiffness * omega / 2",
+                         RULES["damping"], "0"),
+        "loss_factor": Key("hysteretic damping, twice the ratio in resonance", RULES["damping"], "none"),
     },
     "cyclic": {
         "sectors": Key("how many there are", RULES["sectors"]),
@@ -129,8 +133,10 @@ TABLES: dict[str, dict[str, Key]] = {
         "mu": Key(f"friction coefficient{_OF_PAIRS}", RULES["mu"]),
         "k_u": Key(f"tangential contact stiffness{_OF_PAIRS}", RULES["k_u"]),
         "k_v": Key(f"normal contact stiffness{_OF_PAIRS}", RULES["k_v"]),
-        "n_0": Key(f"preload{_OF_PAIRS}", RULES["n_0"], "gap"),
-        "gap": Key(f"instead of a preload: n_0 = -k_v * gap{_OF_PAIRS}", RULES["gap"], "n_0"),
+        "n_0": Key(f"preload that presses the faces, negative a gap{_OF_PAIRS}",
+                   RULES["n_0"], "gap"),
+        "gap": Key("distance of the faces at rest, instead of a preload. Positive is apart: "
+                   f"n_0 = -k_v * gap{_OF_PAIRS}", RULES["gap"], "n_0"),
     },
     "contact.nodes": {
         "sets": Key("of two sides, or one that touches the ground: sets of the mesh, or files of nodes",
@@ -141,18 +147,19 @@ TABLES: dict[str, dict[str, Key]] = {
     },
     "force": {
         "dof": Key("where it acts", _DIRECTION),
-        "amplitude": Key("of amplitude * sin(omega t + phase)", RULES["amplitude"]),
-        "phase": Key("in rad, or in degrees", 'a number, or as "45deg"', "0"),
+        "amplitude": Key("of amplitude * sin(omega t + phase), positive along dof", RULES["amplitude"]),
+        "phase": Key("in rad, or in degrees; a positive one is ahead", 'a number, or as "45deg"', "0"),
         "harmonic": Key("of amplitude * sin(harmonic * omega t + phase)", "whole number from 1", "1"),
         "proportional_to": Key("amplitude times omega^2, omega in rad/s", '"omega^2"', "constant"),
     },
     "load": {
         "dof": Key("where it acts", _DIRECTION, "file"),
         "file": Key("of its distribution, a number for each row", ".npz, .mat or .mtx file", "dof"),
-        "force": Key("its amount; of a file, a factor", RULES["force"], "1 with a file"),
+        "force": Key("its amount, positive along dof; of a file, a factor", RULES["force"], "1 with a file"),
     },
     "base": {
-        "acceleration": Key("amplitude of its acceleration", RULES["acceleration"]),
+        "acceleration": Key("of acceleration * sin(omega t + phase), positive along direction",
+                            RULES["acceleration"]),
         "direction": Key("of its motion; modes have participation instead", "x, y, z or a table of weights"),
         "phase": Key("in rad, or in degrees", 'a number, or as "45deg"', "0"),
     },
@@ -199,7 +206,7 @@ TABLES: dict[str, dict[str, Key]] = {
     },
     "schedule": {
         "frequency": Key("of the forces in this phase", POSITIVE),
-        "cycles": Key("of the forces in this phase", POSITIVE),
+        "cycles": Key("periods of the forces in this phase", POSITIVE),
     },
     "start": {
         "displacement": Key("modal, one number for each mode", "list of numbers", "zeros"),
@@ -220,6 +227,65 @@ TABLES: dict[str, dict[str, Key]] = {
     },
 }  # fmt: skip
 
+OMEGA = "rad/s or Hz"  # by frequency_unit
+STIFFNESS = "force / length"
+MASS = "force s^2 / length"
+UNITS = {  # of numbers by their paths; "1" of those that have none
+    "modal.mass": MASS,
+    "modal.frequency": OMEGA,
+    "modal.damping": "1",
+    "modal.shapes": "1; with mass-normalised ones mass^(-1/2)",
+    "modal.participation": "mass times that of shapes",
+    "modal.nodal_diameter": "1",
+    "structure.mass": MASS,
+    "structure.stiffness": STIFFNESS,
+    "structure.damping": "1; of a matrix force s / length",
+    "structure.modes": "1",
+    "structure.coupling.mass": MASS,
+    "structure.coupling.stiffness": STIFFNESS,
+    "structure.damping.mass": "1/s",
+    "structure.damping.stiffness": "s",
+    "structure.damping.loss_factor": "1",
+    "cyclic.sectors": "1",
+    "cyclic.engine_order": "1",
+    "cyclic.mistuning.factors": "1",
+    "cyclic.mistuning.scale": "1",
+    "cyclic.mistuning.stiffness": STIFFNESS,
+    "contact.areas": "length^2",
+    "contact.mu": "1",
+    "contact.k_u": STIFFNESS,
+    "contact.k_v": STIFFNESS,
+    "contact.n_0": "force",
+    "contact.gap": "length",
+    "contact.nodes.tolerance": "length of the mesh",
+    "force.amplitude": "force; in proportion to omega^2 mass times length",
+    "force.phase": "rad or deg",
+    "force.harmonic": "1",
+    "load.force": "force",
+    "base.acceleration": "length / s^2",
+    "base.phase": "rad or deg",
+    "response.frequency": OMEGA,
+    "response.max_step": "1",
+    "response.harmonics": "1",
+    "response.accuracy": "1",
+    "optimum.bounds": "that of the number",
+    "fit.bounds": "that of the number",
+    "fit.starts": "1",
+    "fit.data.level": "1; of a column force",
+    "fit.data.mode": "1",
+    "fit.data.amplitude_error": "1",
+    "fit.data.frequency_error": "1",
+    "fit.data.damping_error": "1",
+    "schedule.frequency": OMEGA,
+    "schedule.cycles": "1",
+    "start.displacement": "of modal coordinates",
+    "start.velocity": "of modal coordinates, per s",
+    "start.friction": "force",
+    "start.angle": "rad",
+    'sweep."contact.NAME.n_0"': "that of the number; phases rad",
+    "sweep.correlation.matrix": "1",
+}
+
 LISTS = (
     "contact",
     "force",
@@ -239,6 +305,15 @@ def names(table: str) -> tuple[str, ...]:
     return tuple(TABLES[table])
 
 
+def unit_of(table: str, name: str) -> str:
+    """The unit of a number of a table; empty of what is none.
+
+    >>> unit_of("contact", "k_u"), unit_of("contact", "name")
+    ('force / length', '')
+    """
+    return UNITS.get(".".join(filter(None, (table, name))), "")
+
+
 def as_lines() -> list[tuple[str, str, str, str]]:
     """Every key with its table: path, what it may be, what it is when it is not given, what it means.
 
@@ -246,10 +321,19 @@ def as_lines() -> list[tuple[str, str, str, str]]:
     ('title', 'string', 'empty', 'of the scene, for pictures and files')
     """
     return [
-        (".".join(filter(None, (_written(table), name))), key.kind, key.default, key.meaning)
+        (
+            ".".join(filter(None, (_written(table), name))),
+            _with_unit(key.kind, unit_of(table, name)),
+            key.default,
+            key.meaning,
+        )
         for table, keys in TABLES.items()
         for name, key in keys.items()
     ]
+
+
+def _with_unit(kind: str, unit: str) -> str:
+    return kind if unit in ("", "1") else f"{kind} [{unit}]"
 
 
 def _written(table: str) -> str:
