@@ -305,6 +305,14 @@ def test_soft_contacts_are_told_by_the_resonance_that_a_higher_harmonic_of_the_f
     assert "the resonance at 100 Hz is" in said
 
 
+def test_contacts_that_change_a_resonance_below_the_range_are_not_soft():
+    data = blade(response={"frequency": [390.0, 410.0]})
+    data["modal"]["shapes"] = [[1.0, 0.3], [1e-3, 1e-2]]
+    assert asked(data) == []
+    data["modal"]["shapes"][0] = [1e-3, 1e-2]
+    assert len(asked(data)) == 1
+
+
 def test_soft_contacts_that_together_are_not_soft():
     """A thousand contacts, each of a ten-thousandth of the structure's stiffness."""
     data = blade()

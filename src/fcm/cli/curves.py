@@ -233,8 +233,8 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
         unknown = max(peak["error_unknown"] for peak in peaks)
         errors = [f"{_amount(max(known))} at most"] if max(known, default=0.0) else []
         errors += [f"unknown of {unknown} of {count}"] if unknown else []
-        counted = f" and errors of peaks, {', '.join(errors)}" if errors else ""
-        lines.append(f"from, to: bounds for all possible draws, with {sure} confidence{counted}")
+        counted = f". They count the errors of peaks, {', '.join(errors)}" if errors else ""
+        lines.append(f"from, to: bounds of all possible draws' percentile, with {sure} confidence{counted}")
     short_of = {percent: needed for percent, needed in found["curves_needed"].items() if count < needed}
     if short_of:
         *before, last = short_of

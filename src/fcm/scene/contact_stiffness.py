@@ -18,10 +18,10 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
     """Questions about contacts far stiffer than the structure at them, and about those that are far softer.
 
     The measure of stiff ones is k times the flexibility of the elastic modes along the contact's
-    displacement, sum phi^2 / (m omega^2). Contacts are soft if they change no resonance near the range while
-    all of them stick. Where units are given, k_u and k_v of very different size are asked about. Nothing is
-    said of rings, of stiffnesses that are swept, chosen or fitted, nor of soft contacts that hold rigid
-    bodies.
+    displacement, sum phi^2 / (m omega^2). Contacts are soft if they change no resonance up to the range's
+    end while all of them stick. Where units are given, k_u and k_v of very different size are asked about.
+    Nothing is said of rings, of stiffnesses that are swept, chosen or fitted, nor of soft contacts that hold
+    rigid bodies.
     """
     if scene.ring is not None or not scene.contacts or varies(scene, ".k_u", ".k_v"):
         return []
@@ -48,7 +48,7 @@ def varies(scene: Scene, *ends: str) -> bool:
 
 
 def _soft(scene: Scene) -> str:
-    """Question about contacts that change no resonance near the range while they stick; or ''."""
+    """Question about contacts that change no resonance up to the range's end while they stick; or ''."""
     modal = scene.modal
     if not modal.frequency.all():
         return ""
@@ -57,10 +57,8 @@ def _soft(scene: Scene) -> str:
     stuck = np.sqrt(np.maximum(squares, 0.0))
     near = np.ones(opened.size, np.bool_)
     if scene.has_range:
-        low, high = scene.frequency_range
-        harmonics = [one.harmonic for one in scene.forces] or [1]
-        near = stuck >= min(harmonics) * low / MESSAGES.range_near
-        near &= opened <= max(harmonics) * high * MESSAGES.range_near
+        highest = max((one.harmonic for one in scene.forces), default=1) * scene.frequency_range[1]
+        near = opened <= MESSAGES.range_near * highest
     if not near.any():
         return ""
     change = np.where(near, stuck / opened - 1.0, -np.inf)
