@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import Any
 
 from fcm.cli.columns import (
@@ -219,6 +218,8 @@ def _outwards(end: float | None, word: str) -> str:
     """
     if end is None:
         return "-"
+    from decimal import ROUND_CEILING, ROUND_FLOOR, Context  # for these numbers alone
+
     digits = Context(prec=3, rounding=ROUND_FLOOR if word == "from" else ROUND_CEILING)
     return f"{float(digits.create_decimal(repr(end))):#.3g}"
 
