@@ -309,8 +309,16 @@ def test_contacts_that_change_a_resonance_below_the_range_are_not_soft():
     data = blade(response={"frequency": [390.0, 410.0]})
     data["modal"]["shapes"] = [[1.0, 0.3], [1e-3, 1e-2]]
     assert asked(data) == []
-    data["modal"]["shapes"][0] = [1e-3, 1e-2]
+    data["modal"]["shapes"][0] = [1e-2, 1e-2]
     assert len(asked(data)) == 1
+
+
+def test_contacts_that_no_resonance_near_the_range_moves_are_not_soft():
+    """Of whatever stiffness."""
+    data = blade(contact={"k_u": 200.0, "k_v": 300.0})
+    data["modal"]["shapes"] = [[1e-3, 1e-3], [1.0, 1.0]]
+    data["force"][0]["dof"] = "x"
+    assert asked(data) == []
 
 
 def test_soft_contacts_that_together_are_not_soft():

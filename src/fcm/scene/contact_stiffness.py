@@ -36,7 +36,7 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
                 "Are k_u and k_v in its units? Beyond some hundred times little changes, and runs take long"
             )
         ]
-    soft = _soft(scene) if ratio.max() > 0.0 else ""
+    soft = _soft(scene, ratio.max()) if ratio.max() > 0.0 else ""
     return [Question(one) for one in (soft or _unequal(scene),) if one]
 
 
@@ -47,26 +47,34 @@ def varies(scene: Scene, *ends: str) -> bool:
     return any(key.endswith(ends) for key in keys)
 
 
-def _soft(scene: Scene) -> str:
-    """Question about contacts that change no resonance up to the range's end while they stick; or ''."""
+def _soft(scene: Scene, ratio: float) -> str:
+    """Question about contacts that change no resonance up to the range's end while they stick; or ''.
+
+    Nothing where they would not even if the stiffest were as stiff as the structure there, by the ratio: then
+    these resonances do not move them.
+    """
     modal = scene.modal
     if not modal.frequency.all():
         return ""
     opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
-    squares = np.linalg.eigvalsh(stuck_stiffness(scene))[: opened.size]
-    stuck = np.sqrt(np.maximum(squares, 0.0))
+    structure = np.diag(modal.frequency**2)
+    contacts = stuck_stiffness(scene) - structure
     near = np.ones(opened.size, np.bool_)
     if scene.has_range:
         highest = max((one.harmonic for one in scene.forces), default=1) * scene.frequency_range[1]
         near = opened <= MESSAGES.range_near * highest
     if not near.any():
         return ""
-    change = np.where(near, stuck / opened - 1.0, -np.inf)
-    most = int(np.argmax(change))
-    if change[most] >= MESSAGES.soft_contacts:
+
+    def change(times: float) -> FloatArray:
+        squares = np.linalg.eigvalsh(structure + times * contacts)[: opened.size]
+        return np.where(near, np.sqrt(np.maximum(squares, 0.0)) / opened - 1.0, 0.0)
+
+    most = int(np.argmax(found := change(1.0)))
+    if found[most] >= MESSAGES.soft_contacts or change(1.0 / ratio).max() < MESSAGES.soft_contacts:
         return ""
     unit = scene.frequency_unit
-    percent = f"{100.0 * max(change[most], 0.0):.2g} %"
+    percent = f"{100.0 * found[most]:.2g} %"
     return (
         "the contacts are soft beside the structure: while all stick, the resonance at "
         f"{opened[most] / UNIT[unit]:.5g} {unit} is {percent} higher, so that friction changes little. Are "
