@@ -245,7 +245,7 @@ class Breaks(Executor):
 
 
 def test_an_executor_that_breaks_leaves_what_is_finished(swept, alone):
-    fours = ResponseOptions(sweep=SweepOptions(batch=4))
+    fours = ResponseOptions(sweep=SweepOptions(batch=4, batch_seconds=np.inf))
     with pytest.warns(UserWarning, match="computes nothing any more .BrokenExecutor: for a test"):
         part = fcm.respond(swept, executor=Breaks(1), options=fours)
     assert part.complete.values.tolist() == [1] * 4 + [0] * 8
