@@ -24,7 +24,7 @@ SOLVER     := $(CONTACT) tables/default.nc \
 	$(wildcard $(foreach part,model scene table structure continuation harmonic_balance sensitivity nonlinear_modes mesh stability accuracy branches results reduction run response,src/fcm/$(part)/*.py)) \
 	$(foreach part,shooting tracking,src/fcm/$(part)/__init__.py src/fcm/$(part)/options.py)
 SIMULATION := $(SOLVER) $(wildcard src/fcm/time_domain/*.py src/fcm/shooting/*.py)
-DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/options.py src/fcm/plot/read.py src/fcm/plot/measured.py src/fcm/plot/unfinished.py src/fcm/plot/window.py src/fcm/plot/labels.py src/fcm/plot/dof.py src/fcm/plot/reader_process.py src/fcm/plot/layout.py src/fcm/cli/drawing.py
+DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/summary.py src/fcm/plot/options.py src/fcm/plot/read.py src/fcm/plot/measured.py src/fcm/plot/unfinished.py src/fcm/plot/window.py src/fcm/plot/labels.py src/fcm/plot/dof.py src/fcm/plot/reader_process.py src/fcm/plot/layout.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(DRAWING) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
 SURFACES   := $(CONTACT) $(DRAWING) $(addprefix src/fcm/plot/,plane.py surface.py) src/fcm/cli/coefficients.py
 NORMAL     := $(CONTACT) $(DRAWING) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
