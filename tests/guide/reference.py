@@ -154,6 +154,7 @@ OF_DRAWS = """## Percentiles of random draws with `--json`
 | `parameters` | those numbers |
 | `curves` | how many draws are complete, and count |
 | `confidence` | of the intervals, 0.9 |
+| `left_out` | the number of draws without a complete curve: the bounds count their peaks as unknown |
 | `curves_needed` | the least number of draws with which both ends of the interval of a percentile are known |
 | `peak.DOF.amplitude` | percentiles of the greatest amplitude, by their percentage |
 | `peak.DOF.interval` | ends of the interval of each; null where draws are too few, or an error is unknown |

@@ -232,6 +232,27 @@ def test_draws_of_unknown_errors_are_counted_and_of_few_it_is_said(scatter_of, r
         assert said in text and ("from, to" in text) == (count == 8)
 
 
+def test_draws_without_a_complete_curve_are_counted_by_the_bounds(response):
+    """By hand: of peaks 1 to 11 and two unknown ones, the half is between the second and the tenth."""
+    from fcm.cli.curves import as_table
+
+    curves = [curve_with([1] * 7) for _ in range(13)]
+    for height, curve in enumerate(curves, 1):
+        curve.peaks["u"] = curve.peaks["u"]._replace(amplitude=float(height), error=0.0)
+        curve.complete = height < 12
+    own = [replace(one, parameters={"contact.c.n_0": float(i)}) for i, one in enumerate(curves)]
+    (found,) = scatter(replace(response, curves=own, dofs=("u",)))
+    one = summary_of(found, ("u",), "rad/s")
+    assert (one["curves"], one["left_out"]) == (11, 2)
+    assert one["peak"]["u"]["interval"]["50"] == [2.0, 10.0]
+    printed = without_nan(
+        summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
+    )
+    assert "2 of 13 draws have no complete curve. The percentiles are without them" in as_table(
+        printed, "rad/s"
+    )
+
+
 def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     from fcm.cli.curves import as_table
     from fcm.results.curve_fields import scatter_fields

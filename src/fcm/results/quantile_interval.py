@@ -53,21 +53,33 @@ def draws_needed(percent: float, confidence: float = RESULTS.draws.confidence) -
 
 
 def intervals(
-    values: FloatArray, errors: FloatArray, percents: tuple[float, ...], confidence: float
+    values: FloatArray,
+    errors: FloatArray,
+    percents: tuple[float, ...],
+    confidence: float,
+    left_out: int = 0,
 ) -> FloatArray:
     """Intervals (percent, 2) of percentiles of values with relative errors, NaN where an end is unknown.
 
     Values that are NaN are left out; the error of a value may be NaN, unknown, and is none of a value of 0.
+    left_out: number of draws without a value, which may be any.
+
+    >>> intervals(np.arange(1.0, 12.0), np.zeros(11), (50.0,), 0.9).tolist()
+    [[3.0, 9.0]]
+    >>> intervals(np.arange(1.0, 12.0), np.zeros(11), (50.0,), 0.9, left_out=2).tolist()
+    [[2.0, 10.0]]
     """
     known = np.isfinite(values)
     value, error = values[known], np.where(values[known] == 0.0, 0.0, errors[known])
-    low = np.sort(np.where(np.isnan(error), -np.inf, np.maximum(value * (1.0 - error), 0.0)))
-    high = np.sort(np.where(np.isnan(error), np.inf, value * (1.0 + error)))
+    any_value = np.full(left_out, np.inf)
+    low = np.where(np.isnan(error), -np.inf, np.maximum(value * (1.0 - error), 0.0))
+    high = np.where(np.isnan(error), np.inf, value * (1.0 + error))
+    low, high = np.sort(np.append(low, -any_value)), np.sort(np.append(high, any_value))
     found = np.full((len(percents), 2), np.nan)
     for row, percent in zip(found, percents, strict=True):
-        lower, upper = ranks(value.size, percent, confidence)
+        lower, upper = ranks(low.size, percent, confidence)
         if lower > 0:
             row[0] = low[lower - 1]
-        if upper <= value.size:
+        if upper <= high.size:
             row[1] = high[upper - 1]
     return np.where(np.isfinite(found), found, np.nan)

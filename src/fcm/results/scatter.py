@@ -33,6 +33,7 @@ class Scatter(Frozen):
 
     parameters: dict[str, float]  # the swept values that are not drawn
     curves: int
+    left_out: int  # number of draws without a complete curve
     peak: FloatArray  # (percent, dof)
     interval: FloatArray  # (percent, dof, end) of the peak; NaN where an end is unknown
     greatest_error: FloatArray  # (dof,) of the peaks of the curves, relative; NaN where none is known
@@ -52,6 +53,7 @@ def scatter(response: Response) -> list[Scatter]:
         _of(
             parameters,
             [curves[i] for i in places if curves[i].complete and curves[i].points],
+            len(places),
             len(curves[0].peaks),
         )
         for parameters, places in groups(response)
@@ -70,17 +72,18 @@ def groups(response: Response) -> list[tuple[dict[str, float], list[int]]]:
     return [(dict(zip(names, key, strict=True)), places) for key, places in found.items()]
 
 
-def _of(parameters: dict[str, float], curves: Sequence[Curve], dofs: int) -> Scatter:
+def _of(parameters: dict[str, float], curves: Sequence[Curve], draws: int, dofs: int) -> Scatter:
     peaks = np.array([[peak[:3] for peak in curve.peaks.values()] for curve in curves])
     heights, frequencies, errors = (peaks[..., i] if curves else np.full((1, dofs), np.nan) for i in range(3))
     moving = np.isfinite(heights) & (heights != 0.0)
     confidence = RESULTS.draws.confidence
-    bounds = [intervals(*of, PERCENTS, confidence) for of in zip(heights.T, errors.T, strict=True)]
+    left_out = draws - len(curves)
+    bounds = [intervals(*of, PERCENTS, confidence, left_out) for of in zip(heights.T, errors.T, strict=True)]
     stable = np.array([[_stays(peak) for peak in curve.peaks.values()] for curve in curves] or [[1.0] * dofs])
     each = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves]
     jumps = np.array(each or [[NONE] * len(SWEEPS)])
     return Scatter(
-        parameters, len(curves), percentiles(heights),
+        parameters, len(curves), left_out, percentiles(heights),
         np.stack(bounds, axis=1), np.fmax.reduce(np.where(moving, errors, np.nan), axis=0),
         (moving & np.isnan(errors)).sum(axis=0), percentiles(frequencies),
         percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
@@ -132,6 +135,7 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
     return {
         "parameters": one.parameters,
         "curves": one.curves,
+        "left_out": one.left_out,
         "confidence": RESULTS.draws.confidence,
         "curves_needed": {f"{percent:g}": draws_needed(percent) for percent in PERCENTS},
         "peak": {
