@@ -127,7 +127,8 @@ def files() -> str:
         "# Variables of files\n",
         f"{MADE}`fcm respond -o FILE.nc` writes netCDF. Curves are filled up with NaN to the longest.\n\n"
         "Without a unit here a variable has that of the scene, frequencies its `frequency_unit`. Letters of\n"
-        "states are E stick, P and N positive and negative slip, S separation; in a plane P is any slip.\n\n"
+        "states are E stick, P and N positive and negative slip, S separation. In a scene in\n"
+        "the plane P is any slip, of contacts on a line, too.\n\n"
         "*The loop* of a contact is that of the fundamental alone, without dimensions: preload `n0_bar`,\n"
         "load variation `b_bar`, phase `phi` "
         "([three numbers](../theory/contact-on-a-line.md#three-numbers)).\n\n"

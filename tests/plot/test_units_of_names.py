@@ -97,6 +97,16 @@ def test_the_title_of_sensitivities_has_the_unit_of_what_was_swept(tmp_path):
     assert "contact.c.n_0 = 2 N" in title
 
 
+def test_sensitivities_are_of_the_degree_of_freedom_that_the_scene_asks_for(tmp_path):
+    scene = scene_from_dict(SCENE | UNITS)
+    asked = scene.modal.dofs[-1]
+    found = trace(replace(scene, output=(asked,)), harmonics=1)
+    add_sensitivities(found, scene)
+    write_netcdf(found, tmp_path / "rates.nc")
+    title = draw_sensitivity(read_sensitivity(tmp_path / "rates.nc")).get_suptitle()
+    assert len(scene.modal.dofs) > 1 and title.split()[0].rstrip(",:") == asked
+
+
 def test_a_higher_peak_that_was_not_followed_is_said_above_the_picture(tmp_path):
     aim = {"optimum": {"minimise": "peak.u", "vary": ["contact.c.n_0"], "bounds": [[2.0, 2.1]]}}
     found = optimise(scene_from_dict(SCENE | aim), harmonics=1)

@@ -132,7 +132,8 @@ def of_more_harmonics(summary: Mapping[str, Any]) -> str:
         return ""
     return (
         "the harmonics are given, and errors of peaks are large or unknown. Branches that only more "
-        f"harmonics have were not looked for: --accuracy {INPUT_LIMITS.accuracy:g} looks for them"
+        f"harmonics have were not looked for: --accuracy {INPUT_LIMITS.accuracy:g} looks for them, as far as "
+        "its time goes"
     )
 
 

@@ -173,7 +173,10 @@ def mode(messages: Messages, file: Path, output: Path | None) -> None:
 
 @click.command()
 @draws_file("-sensitivity.png")
-@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
+@click.option(
+    "--dof", metavar="NAME",
+    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
+)  # fmt: skip
 @click.option("--curve", type=click.IntRange(min=0), default=0, metavar="I", help="Of a sweep.  [default: 0]")
 @pass_messages
 def sensitivity(messages: Messages, file: Path, output: Path | None, dof: str | None, curve: int) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.frozen import Frozen
-from fcm.plot.dof import column_of
+from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import staying, with_mode
 from fcm.plot.options import READ
@@ -40,6 +40,8 @@ class DrawnSensitivity(Frozen):
     kind: tuple[tuple[str, ...], ...]  # of each curve and dof
     units: dict[str, str]  # of the swept values
     stable: FloatArray  # (curve, dof) whether the motion at the peak is, 1, 0 or NaN
+    peak: FloatArray  # (curve, dof) its height
+    asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for; empty where it does not
 
 
 @apart
@@ -61,8 +63,9 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
                 for slope, size in ((height, peak), (frequency, at))
             ]
         height, frequency = (np.where(np.abs(one) <= READ.max_number, one, np.nan) for one in known)
+        dofs = tuple(map(str, np.atleast_1d(variables["dof"][:])))
         return DrawnSensitivity(
-            tuple(map(str, np.atleast_1d(variables["dof"][:]))),
+            dofs,
             tuple(map(str, np.atleast_1d(variables["number"][:]))),
             tuple({key: float(x[i]) for key, x in swept.items()} for i in range(len(height))),
             height,
@@ -70,12 +73,14 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
             tuple(tuple(map(str, row)) for row in kind),
             swept_units(variables, swept),
             floats(variables["peak_stable"]),
+            peak,
+            asked_for(getattr(data, "output", ""), dofs),
         )
 
 
 def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int = 0) -> Figure:
-    """The figure of one peak: bars of its height, and of its frequency."""
-    column = column_of(drawn.dofs, dof)
+    """The figure of one peak (by default see `leading_column`): bars of its height, and of its frequency."""
+    column = leading_column(drawn.dofs, dof, drawn.peak, drawn.asked)
     if curve >= len(drawn.parameters):
         raise PlotError(f"there is no curve {curve}; the file has {curves_there(len(drawn.parameters))}")
     height, frequency = drawn.height[curve, column], drawn.frequency[curve, column]

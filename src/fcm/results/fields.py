@@ -191,7 +191,7 @@ def _add_motion(found: _Points) -> None:
 def _add_contacts(found: _Points) -> None:
     """Adds the variables of the contacts: states, loops and loads."""
     states = (
-        "states over a cycle: E stick, P and N positive and negative slip (P any slip in a plane), "
+        "states over a cycle: E stick, P and N positive and negative slip (P any slip in planar scenes), "
         "S separation"
     )
     found.add("regime", lambda c: c.regime, ("contact",), long_name=states)
