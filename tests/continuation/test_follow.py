@@ -1,5 +1,7 @@
 """Following curves that are known exactly, whatever the longest step."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -604,6 +606,29 @@ def test_a_start_inside_the_range_is_followed_both_ways():
     assert found.status is Status.COMPLETE
     assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
     assert path.where(Mark.FOLD).size == 2
+
+
+@pytest.mark.parametrize(("share", "joined"), [(0.7, True), (0.4, False)])
+def test_two_paths_that_both_end_too_early_are_one_branch_where_they_overlap(share, joined):
+    """Of a curve with two folds, each followed from its end over a share of its points."""
+
+    def short(*args, **more):
+        path = follow(*args, **more)
+        return replace(path.part(np.arange(int(share * len(path.z)))), status=Status.STALLED)
+
+    ends = [
+        start(sign * float(np.real(np.roots([1.0, 0.0, -1.0, -1.0])[0])), 2.0 + sign) for sign in (-1.0, 1.0)
+    ]
+    found = all_branches(cubic, ends, (1.0, 3.0), Following(FollowOptions(0.1), short))
+    if not joined:
+        assert [path.status for path in found.paths] == [Status.STALLED] * 2
+        return
+    (path,) = found.paths
+    assert found.status is Status.COMPLETE
+    assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
+    assert np.all(np.diff(path.z[:, 0]) > 0.0) and path.where(Mark.FOLD).size == 2
+    assert path.z[:, 0] ** 3 - path.z[:, 0] + 2.0 == pytest.approx(path.parameter, abs=CLOSE)
+    assert np.all(path.parity == np.sign(3.0 * path.z[:, 0] ** 2 - 1.0))
 
 
 class Labelled(Planar):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
 from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
 from fcm.frozen import Frozen
+
+WHOLE = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)  # how a whole branch ends
 
 Follow = Callable[..., Path]  # as `follow`
 
@@ -41,8 +44,7 @@ class Branches(Frozen):
     @property
     def status(self) -> Status:
         """COMPLETE if every branch ended as a whole branch does, else how the first that did not ended."""
-        whole = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
-        broken = [path.status for path in self.paths if path.status not in whole]
+        broken = [path.status for path in self.paths if path.status not in WHOLE]
         return broken[0] if broken else Status.STALLED if self.lost else Status.COMPLETE
 
 
@@ -105,7 +107,29 @@ def all_branches(
     except KeyboardInterrupt as stopped:
         last = (stopped.path,) if isinstance(stopped, PathInterrupted) else ()
         raise BranchesInterrupted(Branches((*paths, *last))) from None
-    return Branches(tuple(paths), tuple(lost))
+    return Branches((*known, *_joined(paths[len(known) :], new_problem)), tuple(lost))
+
+
+def _joined(paths: Sequence[Path], new_problem: Callable[[], Problem]) -> list[Path]:
+    """The paths, of which two that overlap where both ended too early are one branch."""
+    broken = [path for path in paths if path.status not in WHOLE and len(path.z) > 1]
+    for number, one in enumerate(broken):
+        for other in broken[number + 1 :]:
+            problem = new_problem()
+            if contains(other, one.z[-1], problem) and contains(one, other.z[-1], problem):
+                rest = [path for path in paths if path is not one and path is not other]
+                return [_overlapping(one, other, problem), *_joined(rest, new_problem)]
+    return list(paths)
+
+
+def _overlapping(one: Path, other: Path, problem: Problem) -> Path:
+    """The branch of two paths that come to each other, each by what the other passes."""
+    problem.measure(one.z[-1])
+    _, _, off = distances_from_chords((other.z - one.z[-1]) / np.array(problem.scale))
+    before = other.part(np.arange(int(off.argmin()) + 2))  # `then` takes the point beyond the end for it
+    same_end = one.parameter[0] == other.parameter[0]
+    whole = replace(one.then(before.backwards()), status=Status.RETURNED if same_end else Status.COMPLETE)
+    return whole.backwards() if whole.parameter[0] > whole.parameter[-1] else whole
 
 
 def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
