@@ -274,7 +274,10 @@ def test_one_pair_alone_is_swept_by_its_name():
         ({"mu": "30%"}, 'mu: "30%" has "%" behind the number: write 0.3, without quotes'),
         ({"k_u": "gone.txt"}, 'k_u: "gone.txt" is not there'),
         ({"nodes": [[40, 41], [50, 51], [41, 40]]}, "nodes[2]: is the same as nodes[0]; each is there once"),
-        ({"nodes": [[40, 99]]}, 'nodes: node 99 has no degree of freedom along "x", "y", "z"'),
+        (
+            {"nodes": [[40, 99]]},
+            'nodes: node 99 has no degree of freedom along "x", "y", "z"; one that is held has no row',
+        ),
         ({"nodes": [[40, 2.5]]}, "nodes[0]: must be two nodes"),
         ({"tangential": "40x"}, "tangential: must be one of x, y, z, rx, ry, rz, or a table"),
         ({"tangential": {"x": "1"}}, "tangential.x: must be a number"),
@@ -296,7 +299,10 @@ def test_a_sweep_over_all_contacts_is_no_mistake_beside_contacts_that_have_some(
 def test_all_nodes_that_are_not_there_are_named():
     said = refused([PAIRS | NUMBERS | {"nodes": [[40, 99], [98, 51]], "tangential": {"x": 0.6, "rz": 0.8}}])
     for node, along in ((40, '"rz"'), (99, '"x", "rz", "z"'), (98, '"x", "rz", "z"'), (51, '"rz"')):
-        assert f"node {node} has no degree of freedom along {along}\n" in f"{said}\n"
+        assert (
+            f"node {node} has no degree of freedom along {along}; one that is held has no row\n"
+            in f"{said}\n"
+        )
 
 
 def test_a_node_that_is_not_there_is_named_once():

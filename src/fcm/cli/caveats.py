@@ -53,11 +53,12 @@ def linear(summary: Mapping[str, Any]) -> str:
     if not curves or not all(any(curve.get(key) for key in _LINEAR) for curve in curves):
         return ""
     which = "on any curve" if len(curves) > 1 else "within the range"
-    what, helps = _LINEAR[found.pop() if len(found) == 1 else "all_stick_or_open"]
+    what, helps = _LINEAR[next(iter(found)) if len(found) == 1 else "all_stick_or_open"]
     held = next((curve["shakedown_at"] for curve in curves if "shakedown_at" in curve), None)
     if held is not None:
         return f"{what.format(which)}: the response is linear. {_shaken_down(summary, held)}"
-    return f"{what.format(which)}: the response is linear. With {helps} it is not"
+    asked = ". Are gap and n_0 in the units of the structure?" if found == {"all_open"} else ""
+    return f"{what.format(which)}: the response is linear. With {helps} it is not{asked}"
 
 
 def never_closed(summary: Mapping[str, Any]) -> str:

@@ -149,7 +149,8 @@ def check_nodes(
     for node in dict.fromkeys(node for pair in pairs for node in pair):
         lacking = [quoted(one) for one in needed if not _at(dofs, node, one)]
         if lacking:
-            section.wrong("nodes", f"node {node} has no degree of freedom along {', '.join(lacking)}")
+            what = f"node {node} has no degree of freedom along {', '.join(lacking)}"
+            section.wrong("nodes", f"{what}; one that is held has no row")
 
 
 def along(weights: Mapping[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
