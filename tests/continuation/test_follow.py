@@ -608,18 +608,24 @@ def test_a_start_inside_the_range_is_followed_both_ways():
     assert path.where(Mark.FOLD).size == 2
 
 
-@pytest.mark.parametrize(("share", "joined"), [(0.7, True), (0.4, False)])
-def test_two_paths_that_both_end_too_early_are_one_branch_where_they_overlap(share, joined):
-    """Of a curve with two folds, each followed from its end over a share of its points."""
+def cut_short(share):
+    """`follow`, but for the last points of a path: a share is left, or those up to its second fold."""
 
     def short(*args, **more):
         path = follow(*args, **more)
-        return replace(path.part(np.arange(int(share * len(path.z)))), status=Status.STALLED)
+        left = int(share * len(path.z)) if share else path.where(Mark.FOLD)[1] + 1
+        return replace(path.part(np.arange(left)), status=Status.STALLED)
 
+    return short
+
+
+@pytest.mark.parametrize(("share", "joined"), [(0.7, True), (None, True), (0.4, False)])
+def test_two_paths_that_both_end_too_early_are_one_branch_where_they_overlap(share, joined):
+    """Of a curve with two folds, each followed from its end."""
     ends = [
         start(sign * float(np.real(np.roots([1.0, 0.0, -1.0, -1.0])[0])), 2.0 + sign) for sign in (-1.0, 1.0)
     ]
-    found = all_branches(cubic, ends, (1.0, 3.0), Following(FollowOptions(0.1), short))
+    found = all_branches(cubic, ends, (1.0, 3.0), Following(FollowOptions(0.1), cut_short(share)))
     if not joined:
         assert [path.status for path in found.paths] == [Status.STALLED] * 2
         return
@@ -628,7 +634,24 @@ def test_two_paths_that_both_end_too_early_are_one_branch_where_they_overlap(sha
     assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
     assert np.all(np.diff(path.z[:, 0]) > 0.0) and path.where(Mark.FOLD).size == 2
     assert path.z[:, 0] ** 3 - path.z[:, 0] + 2.0 == pytest.approx(path.parameter, abs=CLOSE)
-    assert np.all(path.parity == np.sign(3.0 * path.z[:, 0] ** 2 - 1.0))
+    beside_folds = (path.mark & Mark.FOLD) == 0
+    assert np.all((path.parity == np.sign(3.0 * path.z[:, 0] ** 2 - 1.0))[beside_folds])
+
+
+def test_a_path_that_ends_too_early_both_ways_is_part_of_no_complete_branch():
+    """From a point inside the range it leads to neither end, though it comes to the path from one of them."""
+    span = (1.0, 3.0)
+
+    def short(problem, first, *args, **more):
+        path = follow(problem, first, *args, **more)
+        if first[-1] in span:
+            return replace(path.part(np.arange(int(0.7 * len(path.z)))), status=Status.STALLED)
+        left = path.part(np.flatnonzero(np.abs(path.z[:, 0]) < 1.0))
+        return replace(left, status=Status.STALLED)
+
+    inside, end = start(0.0, 2.0), start(float(np.real(np.roots([1.0, 0.0, -1.0, -1.0])[0])), 3.0)
+    found = all_branches(cubic, [inside, end], span, Following(FollowOptions(0.1), short))
+    assert found.status is Status.STALLED
 
 
 class Labelled(Planar):

@@ -416,8 +416,7 @@ class FoldSteps:
         if not surface.recentre(way.along, way.across):
             return [], Ending.STALLED
         points = [(np.array(surface.centre), np.array(way.across))]
-        first, retreats = np.array(surface.centre), options.max_retreats
-        trail = [(first, way)]  # the places, and the ways to them
+        ways, retreats = [way], options.max_retreats  # to each of the points
         step: cython.double = options.initial_step
         bend: cython.double = 0.0
         for count in range(options.max_steps):
@@ -438,12 +437,12 @@ class FoldSteps:
                     if found is not None or not self.cross_strip(aside):
                         break
                 found = self.next_departure(step, bend, way.left) or self.around_corner(step, way.left)
-            if found is None and retreats and len(trail) > 1:  # the last step led to another part
+            if found is None and retreats and len(points) > 1:  # the last step led to another part
                 retreats, step, bend = retreats - 1, 0.3 * way.radius, 0.0
                 points.pop()
-                trail.pop()
-                last, way = trail[len(trail) - 1]
-                back: cython.double[::1] = last
+                ways.pop()
+                way = ways[len(ways) - 1]
+                back: cython.double[::1] = points[len(points) - 1][0]
                 surface.z[:] = back
                 surface.recentre(way.along, way.across)
                 continue
@@ -452,8 +451,8 @@ class FoldSteps:
             before, way = np.array(surface.centre), found
             if not surface.recentre(way.along, way.across):
                 return points, Ending.STALLED
-            trail.append((np.array(surface.centre), way))
             z = np.array(surface.z)
+            ways.append(way)
             points.append((z, self.singular(way.across)))
             if count % options.report_interval == 0:
                 self.charge_work()
@@ -461,7 +460,7 @@ class FoldSteps:
                 return points, Ending.RANGE
             if not options.covers(surface.z[self.n - 1]):
                 return points, Ending.LEVEL
-            if count > 2 and self.passes(first, before, z):
+            if count > 2 and self.passes(points[0][0], before, z):
                 return [*points, points[0]], Ending.CLOSED
             longer: cython.double = min(max(self.target_turn / max(fabs(way.angle), 1e-3), 0.4), 2.0) * step
             longer = min(longer, options.max_step)

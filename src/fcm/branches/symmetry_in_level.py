@@ -89,8 +89,7 @@ def _past_branch_points(
             if even:
                 there, symmetric = (np.append(each[:-1], omega) for each in (z, point.z))
                 found.append(UnsymmetricSolution(few, there, symmetric, even))
-    ended = (Status.COMPLETE, Status.CLOSED, Status.RETURNED)
-    return found, all(one.status in ended for one in (path, *known))
+    return found, all(one.status.is_whole for one in (path, *known))
 
 
 def _branch_through(

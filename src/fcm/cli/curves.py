@@ -236,18 +236,17 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
         errors += [f"unknown of {unknown} of {count}"] if unknown else []
         counted = f". They count the errors of peaks, {', '.join(errors)}" if errors else ""
         lines.append(f"from, to: bounds of all possible draws' percentile, with {sure} confidence{counted}")
-    if left_out := found["left_out"]:
+    draws = count + found["left_out"]
+    if draws > count:
         lines.append(
-            f"{left_out} of {count + left_out} draws have no complete curve. The percentiles are without "
+            f"{draws - count} of {draws} draws have no complete curve. The percentiles are without "
             "them, and may be too low where their peaks are high; the bounds count them as unknown"
         )
-    short_of = {
-        percent: needed for percent, needed in found["curves_needed"].items() if count + left_out < needed
-    }
+    short_of = {percent: needed for percent, needed in found["curves_needed"].items() if draws < needed}
     if short_of:
         *before, last = short_of
         named = f"{', '.join(before)} and {last}" if before else last
-        few = f"{count + left_out} draw is" if count + left_out == 1 else f"{count + left_out} draws are"
+        few = f"{draws} draw is" if draws == 1 else f"{draws} draws are"
         needed = max(short_of.values())
         lines.append(f"{few} too few for both bounds of {named} %: {needed} are needed")
     return lines

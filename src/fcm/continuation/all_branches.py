@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -14,8 +15,6 @@ from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
 from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
 from fcm.frozen import Frozen
-
-WHOLE = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)  # how a whole branch ends
 
 Follow = Callable[..., Path]  # as `follow`
 
@@ -44,7 +43,7 @@ class Branches(Frozen):
     @property
     def status(self) -> Status:
         """COMPLETE if every branch ended as a whole branch does, else how the first that did not ended."""
-        broken = [path.status for path in self.paths if path.status not in WHOLE]
+        broken = [path.status for path in self.paths if not path.status.is_whole]
         return broken[0] if broken else Status.STALLED if self.lost else Status.COMPLETE
 
 
@@ -107,26 +106,27 @@ def all_branches(
     except KeyboardInterrupt as stopped:
         last = (stopped.path,) if isinstance(stopped, PathInterrupted) else ()
         raise BranchesInterrupted(Branches((*paths, *last))) from None
-    return Branches((*known, *_joined(paths[len(known) :], new_problem)), tuple(lost))
+    return Branches((*known, *_joined(paths[len(known) :], span, new_problem)), tuple(lost))
 
 
-def _joined(paths: Sequence[Path], new_problem: Callable[[], Problem]) -> list[Path]:
-    """The paths, of which two that overlap where both ended too early are one branch."""
-    broken = [path for path in paths if path.status not in WHOLE and len(path.z) > 1]
-    for number, one in enumerate(broken):
-        for other in broken[number + 1 :]:
-            problem = new_problem()
-            if contains(other, one.z[-1], problem) and contains(one, other.z[-1], problem):
-                rest = [path for path in paths if path is not one and path is not other]
-                return [_overlapping(one, other, problem), *_joined(rest, new_problem)]
+def _joined(
+    paths: Sequence[Path], span: tuple[float, float], new_problem: Callable[[], Problem]
+) -> list[Path]:
+    """The paths, of which two from ends of the span that ended too early and overlap are one branch."""
+    broken = [path for path in paths if not path.status.is_whole and path.z.shape[0] > 1]
+    broken = [path for path in broken if path.parameter[0] in span]
+    for one, other in combinations(broken, 2):
+        problem = new_problem()
+        passed = point_before(other, one.z[-1], problem)
+        if passed is not None and contains(one, other.z[-1], problem):
+            rest = [path for path in paths if path is not one and path is not other]
+            return [_overlapping(one, other, passed), *_joined(rest, span, new_problem)]
     return list(paths)
 
 
-def _overlapping(one: Path, other: Path, problem: Problem) -> Path:
-    """The branch of two paths that come to each other, each by what the other passes."""
-    problem.measure(one.z[-1])
-    _, _, off = distances_from_chords((other.z - one.z[-1]) / np.array(problem.scale))
-    before = other.part(np.arange(int(off.argmin()) + 2))  # `then` takes the point beyond the end for it
+def _overlapping(one: Path, other: Path, passed: int) -> Path:
+    """The branch of two paths of which the other comes by the end of the one behind a point, as `passed`."""
+    before = other.part(np.arange(passed + 2))  # `then` takes the point beyond the end for it
     same_end = one.parameter[0] == other.parameter[0]
     whole = replace(one.then(before.backwards()), status=Status.RETURNED if same_end else Status.COMPLETE)
     return whole.backwards() if whole.parameter[0] > whole.parameter[-1] else whole
@@ -144,7 +144,12 @@ def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
 
 
 def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> bool:
-    """Whether a solution z (n + 1,) lies on a path.
+    """Whether a solution z (n + 1,) lies on a path; see `point_before`."""
+    return point_before(path, z, problem, options) is not None
+
+
+def point_before(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> int | None:
+    """The point of a path before a solution z (n + 1,) on it, -1 if that is the first; None if it is not.
 
     It does where it is a point of that. Between the points no distance tells, as branches come close to each
     other. There Newton's method starts from the nearest chord of the path, in the plane through the solution
@@ -153,8 +158,9 @@ def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions =
     problem.measure(z)
     scale = np.array(problem.scale)
     points = (path.z - z) / scale
-    if float((points * points).sum(axis=1).min()) < options.solution_tolerance**2:
-        return True
+    square = (points * points).sum(axis=1)
+    if float(square.min()) < options.solution_tolerance**2:
+        return int(square.argmin()) - 1
     newton = Newton(problem)
     for i, part in _nearest_chords(points, options):
         row = points[i + 1] - points[i]
@@ -164,8 +170,8 @@ def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions =
             newton.correct(1.0)
             and np.linalg.norm((np.asarray(newton.z) - z) / scale) < options.solution_tolerance
         ):
-            return True
-    return False
+            return i
+    return None
 
 
 def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]:

@@ -27,6 +27,11 @@ class Status(Enum):
     EVENT = "the curve came to an event at which it was to end"
     INTERRUPTED = "interrupted"
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether a curve ends so where nothing of it is left to be followed."""
+        return self in (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+
 
 class PathInterrupted(KeyboardInterrupt):
     """Following was interrupted; path: as far as it had come."""

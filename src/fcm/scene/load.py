@@ -27,7 +27,6 @@ from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, sugges
 from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
 from fcm.scene.files import Files
 from fcm.scene.fit import notes_of_data, read_fit
-from fcm.scene.gap_reach import questions_of_gaps
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     check_matrices,
@@ -64,6 +63,7 @@ from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
 from fcm.scene.size_notices import SizeNotices
 from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.toml import read_toml
+from fcm.scene.unclosed_gaps import questions_of_gaps
 from fcm.units import UNIT
 
 NOT_IN_PLANE = (

@@ -25,7 +25,6 @@ from fcm.time_domain.system import System
 from fcm.units import UNIT
 
 Progress = Callable[[float, str], None]
-COMPLETE_STATUS = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
 
 
 @dataclass
@@ -229,7 +228,7 @@ class _BranchSearch:
 
     def too_many_broken(self, paths: Sequence[Path]) -> bool:
         """Whether so many paths have come to no end that no more are looked for."""
-        count = sum(path.status not in COMPLETE_STATUS for path in paths)
+        count = sum(not path.status.is_whole for path in paths)
         return count >= self.problem.options.search.max_broken
 
 
@@ -252,7 +251,7 @@ def branch_of(problem: OrbitProblem, path: Path) -> Branch:
 
 def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
     """Reasons why the curve of some paths is not complete, else ''."""
-    broken = [path for path in paths if path.status not in COMPLETE_STATUS]
+    broken = [path for path in paths if not path.status.is_whole]
     reasons = dict.fromkeys(
         f"stopped at {with_unit(scene, path.parameter[-1])}: {path.status.value}" for path in broken
     )

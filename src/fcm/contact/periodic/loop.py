@@ -15,8 +15,8 @@ from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import LoadedPieces, friction, waves_at, within_turn
 from fcm.frozen import Frozen
 
-LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
-STICK = 0
+STICK = 0  # of the kernel's states
+LETTERS = {-1: "N", STICK: "E", 1: "P", 2: "S"}
 
 
 class PeriodicLoop(Frozen, LoadedPieces):
