@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fcm.accuracy import reference_curve
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.peaks import heights
 from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to
@@ -53,24 +52,14 @@ def test_another_branch_nearly_as_high_is_a_rival_from_the_fraction_that_is_give
     assert few < many
 
 
-def test_no_more_places_are_compared_with_a_curve_at_a_time_than_is_given(monkeypatch):
-    outline, at_a_time, passes = (
-        unchecked_response(System(random_scene(1), (1, 2))),
-        [],
-        reference_curve._passes,
-    )
-
-    def counted(parameter, omega):
-        at_a_time.append(len(omega))
-        return passes(parameter, omega)
-
-    monkeypatch.setattr(reference_curve, "_passes", counted)
-    every = with_errors(outline, 1e-2)
-    assert max(at_a_time) > 2
-    at_a_time.clear()
-    again = with_errors(outline, 1e-2, options=replace(PAIR, batch=2))
-    assert max(at_a_time) == 2
-    np.testing.assert_array_equal(again.peak, every.peak)
+def test_places_compared_with_a_curve_a_few_at_a_time_give_the_same():
+    """However many there are: that decides about memory alone."""
+    outline = unchecked_response(System(random_scene(1), (1, 2)))
+    found = [with_errors(outline, 1e-2, options=replace(PAIR, batch=batch)) for batch in (1, 3, PAIR.batch)]
+    for one in found[:2]:
+        np.testing.assert_array_equal(one.peak, found[2].peak)
+        for own, other in zip(one.errors, found[2].errors, strict=True):
+            np.testing.assert_array_equal(own.truncation, other.truncation)
 
 
 def test_a_prolongation_is_kept_for_the_same_tolerance_alone():
