@@ -638,6 +638,21 @@ def test_two_paths_that_both_end_too_early_are_one_branch_where_they_overlap(sha
     assert np.all((path.parity == np.sign(3.0 * path.z[:, 0] ** 2 - 1.0))[beside_folds])
 
 
+def test_a_path_that_ends_too_early_is_part_of_the_branch_that_comes_by_from_the_other_end():
+    """Of a curve with two folds: from one end it stops on the way, from the other it is followed to the end."""
+    short = cut_short(0.7)
+
+    def from_above(problem, first, *args, **more):
+        return (follow if first[-1] == 3.0 else short)(problem, first, *args, **more)
+
+    ends = [
+        start(sign * float(np.real(np.roots([1.0, 0.0, -1.0, -1.0])[0])), 2.0 + sign) for sign in (-1.0, 1.0)
+    ]
+    found = all_branches(cubic, ends, (1.0, 3.0), Following(FollowOptions(0.1), from_above))
+    (path,) = found.paths
+    assert found.status is Status.COMPLETE and (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
+
+
 def test_a_path_that_ends_too_early_both_ways_is_part_of_no_complete_branch():
     """From a point inside the range it leads to neither end, though it comes to the path from one of them."""
     span = (1.0, 3.0)

@@ -112,9 +112,16 @@ def all_branches(
 def _joined(
     paths: Sequence[Path], span: tuple[float, float], new_problem: Callable[[], Problem]
 ) -> list[Path]:
-    """The paths, of which two from ends of the span that ended too early and overlap are one branch."""
+    """The paths, of which those from ends of the span that ended too early are joined with others.
+
+    One whose ends lie on a whole branch is part of that, and two that overlap are one branch.
+    """
     broken = [path for path in paths if not path.status.is_whole and path.z.shape[0] > 1]
     broken = [path for path in broken if path.parameter[0] in span]
+    whole = [path for path in paths if path.status.is_whole]
+    for one in broken:
+        if _has_ends_on(whole, one, new_problem()):
+            return _joined([path for path in paths if path is not one], span, new_problem)
     for one, other in combinations(broken, 2):
         problem = new_problem()
         passed = point_before(other, one.z[-1], problem)
@@ -138,9 +145,12 @@ def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
     So it does where a preload is so large that displacements are not known as well as
     `PathOptions.solution_tolerance`.
     """
-    return path.status is Status.COMPLETE and any(
-        contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths
-    )
+    return path.status is Status.COMPLETE and _has_ends_on(paths, path, problem)
+
+
+def _has_ends_on(paths: Sequence[Path], path: Path, problem: Problem) -> bool:
+    """Whether the first and the last solution of a path lie on one of the paths."""
+    return any(contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths)
 
 
 def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> bool:
