@@ -28,6 +28,9 @@ class _Stops:
         self.told, self.often = [], often
 
     def __call__(self, text):
+        if "; now " not in text:  # there is no curve yet
+            assert text.startswith("now the level of the forces, ")
+            return
         self.told.append(text)
         if len(self.told) == self.often:
             raise KeyboardInterrupt
@@ -54,9 +57,7 @@ def test_the_last_of_several_is_kept_and_each_is_told():
         traced_curve(one, FINE, tell=stops)
     (curve,) = stopped.value.results
     assert len(curve.harmonics) > 3
-    assert stops.told[0] == "1 harmonic, error not estimated yet; now its errors"
-    assert stops.told[1].startswith("1 harmonic, error 6")
-    assert all("; now " in text for text in stops.told)
+    assert stops.told[0].startswith("1 harmonic, error 6")
 
 
 def test_given_harmonics_leave_the_curve_of_fewer():
@@ -189,7 +190,7 @@ def test_a_group_hands_over_the_curve_that_is_not_finished_and_saves_it_not():
 
     def show(_, text):
         told.append(text)
-        if text not in ("", "being traced"):
+        if "; now " in text:
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as stopped:
@@ -245,7 +246,7 @@ def whole():
         calls += 1
 
     traced_curve(_joint(), Request(None, 1e-2), poll, lambda text: told.append((calls, text)))
-    return calls, told
+    return calls, [(at, text) for at, text in told if "; now " in text]
 
 
 @pytest.mark.slow

@@ -221,6 +221,7 @@ def with_errors(
 
     Without an accuracy, which is infinite then, its harmonics are given.
     """
+    outline.system.work.tell("its errors")
     options = options or (OF_GIVEN if np.isinf(accuracy) else PAIR)
     system, response, quantities = outline.system, outline.traced, outline.quantities
     paths = response.branches.paths

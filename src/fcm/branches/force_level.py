@@ -129,7 +129,9 @@ def solutions_in_turn(
     """Solutions at some frequencies, as `solutions_at`, each computed when it is asked for."""
     precompute(system, frequencies)
     reach = {one.omega: one.max_level for one in fewer if np.isfinite(one.max_level)}
-    yield from (solutions(system, omega, reach.get(omega)) for omega in frequencies)
+    for k, omega in enumerate(frequencies, start=1):
+        system.work.tell(f"the level of the forces, {k} of {len(frequencies)}")
+        yield solutions(system, omega, reach.get(omega))
 
 
 def _followed(system: System, omega: float, linear: float, top: float, most: float) -> LevelSolutions:
@@ -205,14 +207,15 @@ def _coarse_curve(
 ) -> Path:
     """The curve of the level by long steps, or by shorter ones where those fail.
 
-    They fail where they do not come to the end of the curve, and to its user points.
+    They fail where they do not come to the end of the curve, and to its user points. Of a curve that goes
+    back on itself, or is too long, shorter steps tell no more.
     """
     options = system.option(LEVEL_CURVE)
     for step, over_corners in ((options.max_step_user_points, True), (options.max_step, False)):
         path = level_curve(
             system, omega, LevelRange((0.0, top), step, user_values, linear, True, over_corners)
         )
-        if path.status is Status.REVERSED:
+        if path.status in (Status.REVERSED, Status.TOO_LONG):
             return path
         if path.status in (Status.COMPLETE, Status.EVENT) and not _skips_user_point(path, user_values):
             return path

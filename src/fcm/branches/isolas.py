@@ -102,6 +102,7 @@ class _Curves:
 
     def __iter__(self) -> Iterator[tuple[System, Folds]]:
         while self.left:
+            self.system.work.tell("folds of the level of the forces")
             turn, own = self.left[0]
             for harmonics in dict.fromkeys((self.few, own)):
                 curves = self._with(harmonics)

@@ -150,7 +150,9 @@ def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
 
 def _has_ends_on(paths: Sequence[Path], path: Path, problem: Problem) -> bool:
     """Whether the first and the last solution of a path lie on one of the paths."""
-    return any(contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths)
+    return any(
+        contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths
+    )
 
 
 def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> bool:

@@ -15,12 +15,13 @@ class WorkLimitError(Exception):
 class WorkCount:
     """Work of a system, and of all that are made from it with other harmonics.
 
-    poll is called now and then.
+    poll is called now and then, and tell with what is at work.
     """
 
     def __init__(self) -> None:
         self.seconds, self.limit = 0.0, np.inf
         self.poll: Callable[[], object] = int
+        self.tell: Callable[[str], object] = str
 
     def add(self, seconds: float) -> None:
         """Add seconds of work; raises `WorkLimitError` if that exceeds the limit."""

@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Callable
 
-from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation.follow import Progress
 from fcm.model.scene import FloatArray
@@ -38,8 +37,14 @@ class BestSoFar:
         self.found, self.error, self.next, self.stable = found, error, len(more), []
         self.left *= 0.5
         self.covered(0.0)
+        if more:
+            self.tell_work(counted(len(more), "harmonic"))
+
+    def tell_work(self, at_work: str) -> None:
+        """Tell what there is, and what is at work."""
         if self.tell is not None:
-            self.tell(f"{self._harmonics_reached()}; now {self._missing()}")
+            there = f"{self._harmonics_reached()}; " if self.found is not None else ""
+            self.tell(f"{there}now {at_work}")
 
     def covered(self, share: float) -> None:
         """Show that the response being traced has come to a share of the range of frequencies."""
@@ -67,12 +72,6 @@ class BestSoFar:
         """Take a response that was interrupted, if there is no other."""
         if self.found is None:
             self.found, self.cut = found, True
-
-    def _missing(self) -> str:
-        """What the best response so far still lacks, in words."""
-        if self.next:
-            return counted(self.next, "harmonic")
-        return "its stability" if isinstance(self.found, RefinedResponse) else "its errors"
 
     def _harmonics_reached(self) -> str:
         assert self.found is not None

@@ -167,6 +167,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     every = found.traced.branches.paths
     if known == len(every):
         return now
+    found.system.work.tell("its stability")
     paths, quantities, errors = (
         list(every[:known]),
         list(found.quantities[:known]),

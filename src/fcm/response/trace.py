@@ -97,7 +97,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
     """The best curve until now, with its errors as far as they are told quickly."""
     assert so_far.found is not None
     whole = so_far.found
-    whole.system.work.poll = int  # which interrupts no more
+    whole.system.work.poll, whole.system.work.tell = int, str  # which interrupt no more
     most = options.max_points(len(scene.contacts))
     few = whole.thinned(most)
     if isinstance(few, RefinedResponse):
@@ -136,7 +136,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
         options=wanted.options.balance,
         other_options=wanted.options.others,
     )
-    system.work.poll = so_far.poll if poll is None else poll
+    system.work.poll, system.work.tell = so_far.poll if poll is None else poll, so_far.tell_work
     by_need = wanted.harmonics is None
     try:
         check_contacts_can_close(system)
