@@ -639,7 +639,7 @@ def test_two_paths_that_both_end_too_early_are_one_branch_where_they_overlap(sha
 
 
 def test_a_path_that_ends_too_early_is_part_of_the_branch_that_comes_by_from_the_other_end():
-    """Of a curve with two folds: from one end it stops on the way, from the other it is followed to the end."""
+    """Of a curve with two folds: from one end it stops on the way, from the other it is followed whole."""
     short = cut_short(0.7)
 
     def from_above(problem, first, *args, **more):
