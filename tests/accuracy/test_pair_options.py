@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.peaks import heights
+from fcm.accuracy.peaks import tops_of_reference
 from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to
 from fcm.accuracy.refinement import with_errors
 from fcm.accuracy.unchecked_response import unchecked_response
@@ -40,11 +40,12 @@ def test_as_many_neighbours_of_the_highest_point_are_looked_at_as_is_asked(neigh
 
     reference.find = find
     none = np.zeros(0, dtype=np.intp)
-    assert heights(reference, change, [], np.array([6]), none).tolist() == [found]
+    ((*_, top),) = tops_of_reference(reference, change, change, [], none)
+    assert top.height == found
 
 
 def test_another_branch_nearly_as_high_is_a_rival_from_the_fraction_that_is_given():
-    outline = unchecked_response(System(random_scene(2), (1,)))
+    outline = unchecked_response(System(random_scene(16), (1, 2, 3)))
     few, many = (
         np.isnan(with_errors(outline, 1e-2, options=replace(PAIR, rival_fraction=part)).peak).sum()
         for part in (PAIR.rival_fraction, 0.01)

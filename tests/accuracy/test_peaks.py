@@ -8,6 +8,7 @@ import pytest
 
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.peak_errors import peak_errors
+from fcm.accuracy.unchecked_response import unchecked_response
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
@@ -234,3 +235,30 @@ def test_peaks_that_are_displaced_are_tops_of_parabolas_between_minima():
     assert found.frequency == pytest.approx([1.1 * 2.2 / 2.0 - 1.0])
     assert found.frequency_at(np.array([4])) == pytest.approx(found.frequency)
     assert np.isnan(found.frequency_at(np.array([8]))).all()
+
+
+def test_a_peak_that_more_harmonics_have_elsewhere_is_the_error_of_one_at_an_end():
+    """With one harmonic all amplitudes are greatest at the end of the range.
+
+    The third harmonic meets modes of hardly any damping within it: there others are higher, one by 59 %.
+    """
+    one = random_scene(9)
+    found = with_estimated_errors(System(one, (1,)), np.inf)
+    now = found.quantities[0].amplitude
+    assert set(now.argmax(axis=0)) == {len(now) - 1}
+    many = unchecked_response(System(one, tuple(range(1, 13)))).quantities
+    true = np.max([each.amplitude.max(axis=0) for each in many], axis=0) / now.max(axis=0) - 1.0
+    assert true.max() > 0.5
+    assert np.all(found.peak < 1.1 * true) and (found.peak > true / 1.1).sum() == 7  # of eight
+
+
+def test_a_peak_whose_reference_is_confirmed_by_no_more_harmonics_has_no_error():
+    """Curves of one harmonic and of five are as high, but that of ten is lower by a fifth."""
+    one = random_scene(12)
+    found = with_estimated_errors(System(one, (1,)), np.inf)
+    few, five, ten = (
+        np.max([each.amplitude[:, 2].max() for each in unchecked_response(System(one, some)).quantities])
+        for some in ((1,), tuple(range(1, 6)), tuple(range(1, 11)))
+    )
+    assert few == pytest.approx(five, rel=5e-3) and abs(ten / few - 1.0) > 0.1
+    assert np.isnan(found.peak[2])

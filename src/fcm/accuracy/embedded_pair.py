@@ -20,7 +20,7 @@ from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.peak_errors import PeakErrors, peak_errors
-from fcm.accuracy.peaks import heights, rise_between_points
+from fcm.accuracy.peaks import rise_between_points, tops_of_reference
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
 from fcm.accuracy.reference_errors import with_reference_errors
@@ -339,34 +339,28 @@ def _set_errors_of_peaks(
 ) -> tuple[FloatArray, Mask]:
     """Greatest amplitudes (dof,) of the reference, and whether the errors at them are known.
 
-    error (point, dof), in units of the reference's curve, is then filled at the greatest amplitudes. Of a
-    peak it is the difference in height, at an end of the path that at the same frequency. The difference of a
-    reference with still more harmonics counts, too.
+    error (point, dof), in units of the reference's curve, is then filled at the greatest amplitudes, with the
+    difference in height. That of a reference with still more harmonics counts, too; where that is not found
+    and may matter the error is unknown.
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
-    tops, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
-    inside = (tops > 0) & (tops < len(path.z) - 1)
-    at_ends = amplitude[tops, d] + unit[tops, d] * shift[tops, d]
-    for end in {0, len(path.z) - 1}.intersection(
-        tops.tolist()
-    ):  # which the reference is known beyond, or not
-        there = reference.amplitude_at_frequency(end)
-        at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
-    height = np.where(inside, heights(reference, change[:, 1:], followed, tops, met), at_ends)
-    rise = rise_between_points(reference, np.zeros_like(unit), tops)  # no error
-    now = amplitude[tops, d] + np.where(inside, rise, 0.0)
-    settles = inside | ~reference.linear[tops]
-    determined = settles & np.isfinite(height)
-    every = np.unique(tops[determined])
-    further, beyond = reference.errors_at_peaks(
-        every, np.array([inside[tops == top][0] for top in every], dtype=bool)
-    )
-    which = np.searchsorted(every, tops[determined])
-    height[determined] += further[which, d[determined]]
-    at_tops = (np.abs(height - now) / unit[tops, d])[determined]
-    left = np.abs(beyond[which, d[determined]]) / unit[tops[determined], d[determined]]
-    error[tops[determined], d[determined]] = np.maximum(at_tops, left)
-    return height, determined | ~settles
+    own, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
+    tops = tops_of_reference(reference, change[:, 1:], shift, followed, met)
+    height, settles = np.array([every[-1].height for every in tops]), ~reference.linear[own]
+    inside = (own > 0) & (own < len(path.z) - 1)
+    now = amplitude[own, d] + np.where(inside, rise_between_points(reference, np.zeros_like(unit), own), 0.0)
+    for k in np.flatnonzero(np.isfinite(height)).tolist():
+        settles[k] |= inside[k] or tops[k][-1].piece is not None or tops[k][-1].point != own[k]
+        if not settles[k]:
+            continue
+        difference = abs(height[k] - now[k]) / unit[own[k], k]
+        there = np.array([(top.height, *reference.error_at_top(top, k, difference)) for top in tops[k]])
+        highest = there[:, 0] + there[:, 1]
+        most = int(np.nanargmax(highest)) if np.isfinite(highest[-1]) else -1
+        off = np.maximum(np.abs(highest[most] - now[k]), np.abs(there[most, 2]))
+        error[own[k], k] = off / unit[own[k], k]
+        height[k] = height[k] if np.isnan(off) else highest[most]
+    return height, np.isfinite(height) | ~settles
 
 
 def _of_folds(

@@ -5,46 +5,84 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.accuracy.curve_distance import rises
-from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve, ReferenceTop
 from fcm.continuation import Mark
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray
 
 
-def heights(
+def tops_of_reference(
     reference: ReferenceCurve,
     change: FloatArray,
+    shift: FloatArray,
     followed: list[FollowedStretch],
-    tops: Indices,
     resonant: Indices,
-) -> FloatArray:
-    """Greatest amplitudes (dof,) of the reference of a curve whose own highest points are tops (dof,).
+) -> list[list[ReferenceTop]]:
+    """The reference of a curve where that is highest, and where itself is, for each degree of freedom.
 
-    change (point, dof): of the amplitudes along the curve, in their unit. resonant: points where a harmonic
-    that only the reference has meets a mode: between these it may have a peak, and is followed where they are
-    nearly as high. Unknown along a stretch that is as high, and that the reference could not be followed
-    along.
+    Of two that lie so close together that they are one there is the latter. A height is NaN where the
+    greatest is unknown.
+
+    change, shift (point, dof): of the amplitudes along the curve, and at equal frequency, in their unit.
+    resonant: points where a harmonic that only the reference has meets a mode: between these it may have a
+    peak, and is followed. Unknown where a stretch is nearly as high as the curve, and the reference could not
+    be followed along it.
     """
     amplitude, options = reference.amplitude, reference.options
-    d = np.arange(len(tops))
-    now = amplitude[tops, d]
-    change, highest = _highest(reference, change)
-    greatest: FloatArray = amplitude[highest, d] + reference.unit[highest, d] * change[highest, d]
-    greatest += rise_between_points(reference, reference.unit * change, highest)
+    now = amplitude.max(axis=0)
     near = np.zeros(len(amplitude), dtype=np.bool_)
     near[resonant] = True
-    high = [run for run in runs(near) if (amplitude[slice(*run)] > options.rival_fraction * now).any()]
     between = [
         FollowedStretch(*run, reference.stretches.between(run[0] - 1, run[1], reference.reference_unknowns))
-        for run in high
+        for run in runs(near)
     ]
-    for one in (*followed, *between):
-        for piece in one.pieces:
-            greatest = np.fmax(greatest, piece.quantities.amplitude.max(axis=0))
+    tops = _displaced_tops(reference, change, shift)
+    for piece in (piece for one in (*followed, *between) for piece in one.pieces):
+        rows = piece.quantities.amplitude.argmax(axis=0)
+        heights = piece.quantities.amplitude.max(axis=0)
+        for own, row, height in zip(tops, rows.tolist(), heights.tolist(), strict=True):
+            if not height <= own[-1].height:
+                own[1:] = [ReferenceTop(height, row, piece)]
     for one in followed:
         if not any(piece.whole for piece in one.pieces):
-            greatest[amplitude[one.first : one.end].max(axis=0) > options.rival_fraction * now] = np.nan
-    return greatest
+            rivals = amplitude[one.first : one.end].max(axis=0) > options.rival_fraction * now
+            for d in np.flatnonzero(rivals).tolist():
+                tops[d] = [tops[d][-1]._replace(height=np.nan)]
+    return tops
+
+
+def _displaced_tops(
+    reference: ReferenceCurve, change: FloatArray, shift: FloatArray
+) -> list[list[ReferenceTop]]:
+    """What the highest point of a curve is displaced to, and the highest to which one is, if it is another.
+
+    Where the curve is highest at an end the amplitudes at its frequencies count.
+    """
+    amplitude, unit, last = reference.amplitude, reference.unit, len(reference.amplitude) - 1
+    own = amplitude.argmax(axis=0)
+    change, highest = _highest(reference, change)
+    normal, at_frequency = amplitude + unit * change, amplitude + unit * shift
+    rise = rise_between_points(reference, unit * change, highest)
+    for end in {0, last}.intersection(own.tolist()):
+        there = reference.amplitude_at_frequency(end)
+        if there is not None:
+            at_frequency[end] = there
+    tops = []
+    for d, (point, most) in enumerate(zip(own.tolist(), highest.tolist(), strict=True)):
+        if 0 < point < last:
+            every = [ReferenceTop(float(normal[point, d]), point)]
+            top = ReferenceTop(float(normal[most, d] + rise[d]), most)
+        else:
+            every = [ReferenceTop(float(at_frequency[point, d]), point)]
+            known = np.where(np.isnan(at_frequency[:, d]), 0.0, at_frequency[:, d])
+            top = (
+                every[0]
+                if np.isnan(every[0].height)
+                else ReferenceTop(float(known.max()), int(known.argmax()))
+            )
+        is_one = np.isnan(every[0].height) or every[0].point == top.point
+        tops.append([top] if is_one else [*every, top])
+    return tops
 
 
 def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: Indices) -> FloatArray:

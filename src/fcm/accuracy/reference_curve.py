@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -42,6 +43,18 @@ from fcm.stability.known_motions import KnownMotions
 
 Indices = npt.NDArray[np.intp]
 Mask = npt.NDArray[np.bool_]
+
+
+class ReferenceTop(NamedTuple):
+    """Where the reference is highest: a point of a followed piece, or one displaced from the curve."""
+
+    height: float
+    point: int
+    piece: ReferencePiece | None = None
+
+    def place(self, reference: ReferenceCurve) -> float:
+        """Arc length along the piece, or along the curve."""
+        return float((reference if self.piece is None else self.piece).place[self.point])
 
 
 class FollowedStretch(Frozen):
@@ -127,6 +140,7 @@ class ReferenceCurve:
         self.each = seconds_of(finer, 1, len(more))  # evaluation
         self.second: SecondReference | None = None  # its own reference, if that is not too expensive
         self.is_costly = False
+        self.errors_at_tops = list[tuple[ReferenceTop, tuple[FloatArray, float]]]()
         self.failed, self.before = budget.seconds / self.each, prolongation.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
@@ -256,54 +270,74 @@ class ReferenceCurve:
         off: FloatArray = np.abs(second.amplitude - amplitude) / self.unit[i]
         return off
 
-    def errors_at_peaks(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
-        """Errors (top, dof) of the reference itself at tops, and what the harmonics beyond both would still
-        change.
+    def error_at_top(self, top: ReferenceTop, d: int, difference: float) -> FloatArray:
+        """Error (2,) of the reference itself at a top of a degree of freedom, and what the harmonics beyond
+        both would still change.
 
-        The first are differences from the amplitudes of a reference with still more harmonics; 0 where there
-        is none. The second are by how much the harmonics that this lacks, too, would change them. Where a top
-        is inside the curve, the points compared lie normal to it, at the nearest point that has both; else at
-        the frequency of the end. Tops closely together have the errors of the first.
+        The first is the difference from the amplitude of a reference with still more harmonics; 0 where there
+        is none. Where that is not found it is NaN if it may exceed the relative difference of the curve from
+        the reference. The second is by how much the harmonics that this lacks, too, would change the
+        amplitude. The points compared lie normal to the reference, at the nearest point that has both; at an
+        end of the curve at its frequency. Tops closely together have the errors of the first.
         """
-        each = np.zeros((2, len(tops), self.amplitude.shape[1]))
-        alone = distinct(self.place[tops], self._near)
-        for k in alone.tolist():
-            each[:, k] = self._error_at_peak(int(tops[k]), bool(inside[k]))
-        which = alone[np.searchsorted(alone, np.arange(len(tops)), "right") - 1]
-        return each[0, which], each[1, which]
+        place = top.place(self)
+        beside = (
+            found
+            for one, found in self.errors_at_tops
+            if one.piece is top.piece and abs(one.place(self) - place) <= self._near
+        )
+        found = next(beside, None)
+        if found is None:
+            found = self._errors_at_top(top)
+            self.errors_at_tops.append((top, found))
+        errors, left_out = found
+        return errors[:, d] if left_out <= difference else np.full(2, np.nan)
 
-    def _error_at_peak(self, top: int, inside: bool) -> FloatArray:
-        """Error of the reference at one top, and what is left out even then (2, dof)."""
-        nothing, known = np.zeros(self.amplitude.shape[1]), None
-        if self.linear[top]:
-            return np.stack((nothing, nothing))
-        for i in self._points_around_peak(top) if inside else (top,):
-            if not self._has_point(i, inside):
-                continue
-            prolongation = self.finding.prolongation
-            z, amplitude = np.array(prolongation.newton.z), np.array(prolongation.found[1:])
-            direction = np.array(prolongation.newton.tangent) * np.array(prolongation.newton.scale)
-            known = z if known is None else known
+    def _errors_at_top(self, top: ReferenceTop) -> tuple[FloatArray, float]:
+        """Error of the reference at one top, and what is left out even then (2, dof); and about the relative
+        error, by the harmonics left out, where a reference with still more is not found."""
+        none = np.zeros((2, self.amplitude.shape[1]))
+        if top.piece is None and self.linear[top.point]:
+            return none, 0.0
+        left_out = np.inf
+        for z, amplitude, direction in self._motions_around(top):
             second = self._second(z, amplitude)
-            if second is not None and second.found(z, direction if inside else None):
+            if second is None:
+                none[1] = self._left_out(self.stretches.finer, self.finding.prolongation, z)
+                return none, 0.0
+            if second.found(z, direction):
                 there = np.array(second.prolongation.newton.z)
                 left = self._left_out(second.system, second.prolongation, there)
-                return np.stack((second.amplitude - amplitude, left))
-            if second is None:
-                break
-        finer, prolongation = self.stretches.finer, self.finding.prolongation
-        left = nothing if known is None else self._left_out(finer, prolongation, known)
-        return np.stack((nothing, left))
+                return np.stack((second.amplitude - amplitude, left)), 0.0
+            if left_out == np.inf:
+                left_out = float(self._further.shares(z[None], amplitude[None]).sum())
+        return none, self.options.feedback_factor * left_out
+
+    def _motions_around(
+        self, top: ReferenceTop
+    ) -> Iterator[tuple[FloatArray, FloatArray, FloatArray | None]]:
+        """Motions of the reference at a top and on either side of it, as far as contacts slip or separate.
+
+        Each with its amplitudes, and the direction of the curve; None at an end, where the frequency counts.
+        """
+        count = len(self.linear) if top.piece is None else len(top.piece.path.z)
+        inside = top.piece is not None or 0 < top.point < count - 1
+        neighbours = (0, *(way * step for step in self.options.peak_offsets for way in (-1, 1)))
+        places = [i for i in (top.point + step for step in neighbours) if 0 <= i < count]
+        for i in places if inside else (top.point,):
+            if top.piece is not None:
+                path, amplitude = top.piece.path, top.piece.quantities.amplitude
+                yield path.z[i], amplitude[i], path.direction[i]
+            elif not self.linear[i] and self._has_point(i, inside):
+                prolongation = self.finding.prolongation
+                newton = prolongation.newton
+                direction = np.array(newton.tangent) * np.array(newton.scale)
+                z, amplitude = np.array(newton.z), np.array(prolongation.found[1:])
+                yield z, amplitude, direction if inside else None
 
     def _left_out(self, system: System, prolongation: Prolongation, z: FloatArray) -> FloatArray:
         """Changes (dof,) of the amplitudes of a motion by the harmonics that its system leaves out."""
         return changes_left_out(system, prolongation.balance, z, self.options)
-
-    def _points_around_peak(self, top: int) -> list[int]:
-        """A top and points on either side of it, as far as contacts slip or separate there."""
-        neighbours = (0, *(way * step for step in self.options.peak_offsets for way in (-1, 1)))
-        places = [top + step for step in neighbours if 0 <= top + step < len(self.linear)]
-        return [i for i in places if not self.linear[i]]
 
     def _has_point(self, i: int, normal: bool) -> bool:
         """Whether Newton's method finds the reference normal to a point of the curve, or at its frequency."""
