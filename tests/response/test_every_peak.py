@@ -90,6 +90,8 @@ def test_a_maximum_is_of_one_branch_and_no_end():
     two = np.array([1.0, 3.0, 2.0, nan, 2.5, 1.0, 2.0, 1.5, nan, 9.0, 1.0])
     assert lower_peaks(two[:, None]).tolist() == [[0, 1], [0, 6]]
     assert lower_peaks(np.array([[1.0], [2.0]])).tolist() == []
+    around = np.array([0.0, 5.0, 5.0 - 1e-15, 5.0, 1.0, 3.0, 0.0])  # one peak, but for rounding
+    assert lower_peaks(around[:, None]).tolist() == [[0, 5]]
 
 
 def test_where_the_error_of_a_peak_is_unknown_that_of_its_point_is_there():

@@ -79,13 +79,15 @@ def _rise(x: list[float], y: list[float]) -> float:
 def _prominence(heights: FloatArray, k: int) -> float:
     """Prominence of a point: its height above the higher of the two lowest points on either side.
 
-    A side reaches to a higher point, or to the end of the branch.
+    A side reaches to a higher point, or to the end of the branch; that before the point to one as high, too,
+    so that the first of several is the peak.
     """
-    sides = (heights[k::-1], heights[k:])
-    return float(heights[k] - max(_lowest(side) for side in sides))
+    before, behind = heights[k::-1], heights[k:]
+    off = max(_lowest(before, before[1:] < before[0]), _lowest(behind, behind[1:] <= behind[0]))
+    return float(heights[k] - off)
 
 
-def _lowest(side: FloatArray) -> float:
-    """The lowest of a way that begins at a peak, as far as nothing is higher and the branch does not end."""
-    ends = np.flatnonzero(~(side <= side[0]))
-    return float(side[: ends[0] if ends.size else side.size].min())
+def _lowest(side: FloatArray, counts: npt.NDArray[np.bool_]) -> float:
+    """The lowest of a way that begins at a peak, as far as the points behind that count."""
+    ends = np.flatnonzero(~counts)
+    return float(side[: 1 + (ends[0] if ends.size else counts.size)].min())
