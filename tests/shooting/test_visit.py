@@ -13,7 +13,10 @@ from fcm import load_scene
 from fcm.response.exact import trace_exact
 from fcm.response.options import ExactOptions, ResponseOptions
 from fcm.run import Execution
-from fcm.time_domain import simulate
+from fcm.time_domain import State, simulate
+from fcm.time_domain.cycle_measures import measure
+from fcm.time_domain.simulation import cycles_from
+from fcm.time_domain.system import System
 
 from ..time_domain.cases import one_mode, two_contacts, yang
 from .curves import within
@@ -54,6 +57,27 @@ def test_the_same_as_long_simulations(scene):
         for point in (k, -1 - k):
             assert curve.amplitude[point] == pytest.approx(last.amplitude, rel=1e-7)
             assert curve.fundamental[point] == pytest.approx(last.fundamental, rel=1e-7)
+
+
+def test_a_sweep_stays_on_a_motion_of_two_periods_beside_a_stable_one_of_one():
+    """As the march does that goes on from frequency to frequency, each for 300 cycles.
+
+    Where the period has just doubled it settles slowly; the other motion is 2 % lower, and more.
+    """
+    scene, at, state = (
+        load_scene(SCENES / "two_beside_one.toml"),
+        [287.5, 288.0, 288.5, 289.0, 294.0, 302.0],
+        None,
+    )
+    _, first = visited(scene, at)
+    for omega in at:
+        system = System(scene, omega)
+        ends = list(cycles_from(system, 300, State.rest(scene) if state is None else state))
+        state = ends[-1][1]
+        two = [measure(cycle) for cycle, _ in ends[-2:]]
+        span = max(one.greatest[0] for one in two) - min(one.least[0] for one in two)
+        assert first["up", omega] == pytest.approx(0.5 * span, rel=1e-3)
+    assert first["up", 289.0] > 1.02 * first["down", 289.0]
 
 
 def test_a_contact_a_hundred_thousand_times_as_stiff_as_the_structure_that_sticks():

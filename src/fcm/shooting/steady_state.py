@@ -1,7 +1,7 @@
 """The steady motion that a simulation comes to: after how many periods it repeats, or how far it ranges.
 
 A motion repeats if Newton's method on the closure of so many periods finds a stable motion beside the
-simulated one. One that does not, and whose amplitudes neither grow nor decay any more, is quasi-periodic or
+simulated one; of several the nearest, as one of a period may be stable beside one of two. One that does not, and whose amplitudes neither grow nor decay any more, is quasi-periodic or
 irregular. That is judged over windows of many cycles: what grows or decays does so from each window to the
 next, where an intermittent motion has bursts in some.
 """
@@ -68,13 +68,19 @@ def steady(
             cycles.append(cycle)
         state = ends[-1]
         near = np.inf if _linear(cycles) else options.steady.max_distance
-        for periods in _candidates(ends, options):
-            found = _repeating(system, state, periods, near, options)
-            if found is not None:
-                return found
+        every = [_repeating(system, state, k, near, options) for k in _candidates(ends, options)]
+        found = [one for one in every if one is not None]
+        if found:
+            return min(found, key=lambda one: _distance(one.state, state))
         if count >= options.steady.ranging_cycles:
             windows.append(cycles)
     return (_ranging(windows, options) if windows else None) or state
+
+
+def _distance(one: State, other: State) -> float:
+    """Greatest difference of two states, relative to the displacements and to the velocities."""
+    pairs = ((one.q, other.q), (one.velocity, other.velocity))
+    return max(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-300)) for a, b in pairs)
 
 
 def _candidates(ends: Sequence[State], options: ShootingOptions = SHOOTING) -> list[int]:
