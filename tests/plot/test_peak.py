@@ -209,7 +209,13 @@ def test_the_resonances_of_nonlinear_modes_are_the_peaks_of_a_sweep(tmp_path):
         "excitation.level",
     ]
     there = np.isfinite(found.amplitude[:, 0])
-    told = np.array([[float(x) for x in row.split()] for row in rows[1:]])
+    told = np.array(
+        [
+            [float(x) for x in row.split()]
+            for row in rows[1 : 1 + int(np.isfinite(found.amplitude[:, 0]).sum())]
+        ]
+    )
+    assert rows[1 + len(told)].startswith("these are estimates, as if the mode alone answered")
     mine = [*found.parameters.values(), found.frequency[:, 0], found.damping, found.amplitude[:, 0]]
     assert told[:, [0, 1, 2, 3, 5]] == pytest.approx(np.transpose(mine)[there], rel=1e-3)
     upper, middle, lowest = draw_peak(found).axes

@@ -367,7 +367,7 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     if share == "0" and any("shakedown_at" in one for one in curves):
         return ""
     if share == "0":
-        return f"{_KEEPS}: {where}it changes no peak"
+        return f"{_KEEPS}: {where}it changes no peak. Errors of other points leave it out"
     how = _how(summary)
     tells = f". {how} computes how far the motions range" if how else ""
     return (

@@ -136,7 +136,12 @@ def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> st
         return ""
     each = [f"{dof} [{own}]" if (own := unit_of(dof, length)) else dof for dof in dofs]
     header = [*names, "level", f"at {unit}", "damping", "modal amplitude", *each]
-    return "in resonance with the scene's forces, times the level:\n" + aligned([header, *rows], left=0)
+    return (
+        "in resonance with the scene's forces, times the level:\n"
+        + aligned([header, *rows], left=0)
+        + "\nthese are estimates, as if the mode alone answered; their error is not among those told. The more it "
+        "is damped the worse they are: at 0.1 they may be double. fcm respond without --mode has the response"
+    )
 
 
 def _shown(summary: Mapping[str, Any]) -> list[str]:
