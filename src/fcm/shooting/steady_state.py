@@ -1,9 +1,10 @@
 """The steady motion that a simulation comes to: after how many periods it repeats, or how far it ranges.
 
 A motion repeats if Newton's method on the closure of so many periods finds a stable motion beside the
-simulated one; of several the nearest, as one of a period may be stable beside one of two. One that does not, and whose amplitudes neither grow nor decay any more, is quasi-periodic or
-irregular. That is judged over windows of many cycles: what grows or decays does so from each window to the
-next, where an intermittent motion has bursts in some.
+simulated one; of several the nearest, as one of a period may be stable beside one of two. One that does not,
+and whose amplitudes neither grow nor decay any more, is quasi-periodic or irregular. That is judged over
+windows of many cycles: what grows or decays does so from each window to the next, where an intermittent
+motion has bursts in some.
 """
 
 from __future__ import annotations
