@@ -139,8 +139,9 @@ def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> st
     return (
         "in resonance with the scene's forces, times the level:\n"
         + aligned([header, *rows], left=0)
-        + "\nthese are estimates, as if the mode alone answered; their error is not among those told. The more "
-        "it is damped the worse they are: at 0.1 they may be double. fcm respond without --mode has the response"
+        + "\nthese are estimates, as if the mode alone answered; their error is not among those told. The "
+        "more it is damped the worse they are: at 0.1 they may be double. fcm respond without --mode has "
+        "the response"
     )
 
 
