@@ -67,9 +67,50 @@ def test_without_jumps_there_is_one_table(fcm, scene):
 
 
 def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):
-    cost, error = fcm("respond", scene).err.splitlines()[-2:]
+    cost, error, _ = fcm("respond", scene).err.splitlines()[-3:]
     assert cost.startswith("1 curve, ") and " points in " in cost and cost.endswith(" s")
     assert error.startswith("largest relative error: ") and "by the table alone" in error
+
+
+@pytest.mark.parametrize(("frequency", "count"), [("[0.8, 1.6]", 0), ("[0.8, 1.35]", 2)])
+def test_the_last_line_is_the_result_in_short(fcm, scene, frequency, count):
+    """By what --json has of the peaks, here one of each degree of freedom."""
+    scene.write_text(scene.read_text().replace("[0.8, 1.6]", frequency))
+    done = fcm("respond", scene, "--json", "--accuracy", "1e-3")
+    (curve,) = json.loads(done.out)["curves"]
+    peaks = curve["peak"].values()
+    assert curve["complete"] and all(one["stable"] for one in peaks) and "peaks" not in curve
+    assert sum(one["at_edge"] for one in peaks) == count
+    ends = f", {count} at an end of the range" if count else ""
+    error = max(one["error"] for one in peaks)
+    assert done.err.splitlines()[-1] == (
+        f"result: complete; every peak shown is stable{ends}; errors of peaks are at most {error:.1e}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"stable": 0.0}, "of {} peaks shown, {} unstable; errors"),
+        ({"stable": np.nan}, "of {} peaks shown, {} of unknown stability; errors"),
+        ({"error": np.nan}, "every peak shown is stable; errors of peaks are unknown"),
+        ({"error": 1.5}, "errors of peaks are up to more than 100 %"),
+    ],
+)
+def test_the_result_in_short_hides_no_doubt(fcm, scene, change, words):
+    def computed(compute, *given):
+        return [
+            dataclasses.replace(one, peaks={dof: peak._replace(**change) for dof, peak in one.peaks.items()})
+            for one in compute(*given)
+        ]
+
+    done = fcm("respond", scene, "--harmonics", "1", place=by(computed))
+    result = next(line for line in done.err.splitlines() if line.startswith("result: "))
+    assert words.format(2, 2) in result
+    said = [
+        line for line in done.err.splitlines() if line.startswith(("the harmonics are given", "no stable"))
+    ]
+    assert (f"; {len(said)} remark" in result and result.endswith(" on it above")) == bool(said)
 
 
 @pytest.mark.parametrize("asked", [(), ("--method", "table")])
@@ -222,7 +263,8 @@ def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path):
     done = fcm("respond", scene, "-o", "a.nc", place=short)
     assert done.code == 3
     assert "NOT COMPLETE: stopped at 1.2 rad/s" in done.out
-    assert "the curve stopped early" in done.err
+    result, error = done.err.splitlines()[-2:]
+    assert result.startswith("result: the curve stopped early; ") and "the curve stopped early" in error
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
@@ -239,6 +281,7 @@ def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene):
 
     done = fcm("respond", scene, place=fails_below(1e9))
     assert done.code == 1 and "a defect of fcm, ZeroDivisionError: of zero" in done.out
+    assert "\nresult: the curve stopped early\n" in done.err
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.n_0" = [5, 1]\n')
     assert fcm("respond", scene, place=fails_below(1e9)).code == 1
     done = fcm("respond", scene, place=fails_below(3.0))
