@@ -12,6 +12,7 @@ import pytest
 from fcm.results.peak import Peak
 
 from ..computed import by, nowhere
+from ..oscillator import oscillator
 
 
 def files(folder):
@@ -111,6 +112,31 @@ def test_the_result_in_short_hides_no_doubt(fcm, scene, change, words):
         line for line in done.err.splitlines() if line.startswith(("the harmonics are given", "no stable"))
     ]
     assert (f"; {len(said)} remark" in result and result.endswith(" on it above")) == bool(said)
+
+
+def test_a_row_of_a_peak_has_the_error_of_its_height_and_that_at_its_frequency(fcm, scene, tmp_path):
+    """Beside 15 harmonics. The error of the height alone stood there, among errors at equal frequency."""
+    scene.write_text(oscillator("[response]\nfrequency = [0.8, 1.6]\n", damping=0.02, n_0=1.0))
+    rows = {}
+    for name, harmonics in (("one", 1), ("more", 15)):
+        given = ("--harmonics", harmonics, "--max-step", 0.01, "--csv", f"{name}.csv", "-o", f"{name}.nc")
+        assert fcm("respond", scene, *map(str, given)).code == 0
+        with (tmp_path / f"{name}.csv").open() as file:
+            rows[name] = list(csv.DictReader(file))
+    names = ("frequency [rad/s]", "amplitude u", "error u", "error_at_frequency u")
+    omega, height, error, at_frequency = (
+        np.array([float(row[name]) for row in rows["one"]]) for name in names
+    )
+    other, exact = (np.array([float(row[name]) for row in rows["more"]]) for name in names[:2])
+    top = int(height.argmax())
+    assert np.flatnonzero(error != at_frequency).tolist() == [top]
+    assert error[top] == pytest.approx(abs(exact.max() / height[top] - 1.0), rel=0.02)
+    assert at_frequency[top] == pytest.approx(
+        abs(np.interp(omega[top], other, exact) / height[top] - 1.0), rel=0.02
+    )
+    assert at_frequency[top] > 1.1 * error[top]
+    with netCDF4.Dataset(tmp_path / "one.nc") as data:
+        assert data["error_at_frequency"][0, :, 0].tolist() == at_frequency.tolist()
 
 
 @pytest.mark.parametrize("asked", [(), ("--method", "table")])
