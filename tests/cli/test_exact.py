@@ -22,7 +22,10 @@ def test_a_traced_curve_is_printed_and_written(fcm, scene, tmp_path):
     (curve,) = json.loads(done.out)["curves"]
     assert done.code == 0 and curve["complete"] and curve["truncation_error"] == curve["table_error"] == 0.0
     assert 0.0 < curve["closure_error"] < 1e-9
-    assert "by which a period does not close" in done.err.splitlines()[-1]
+    error, result = done.err.splitlines()[-2:]
+    assert "by which a period does not close" in error
+    closes = f"periods close to {curve['closure_error']:.1e}"
+    assert result == f"result: complete; every peak shown is stable; {closes}"
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         amplitude, fundamental = data["amplitude"][0, :, 0], data["fundamental"][0, :, 0]
         assert "peak-to-peak" in data["amplitude"].long_name and "Floquet" in data["stable"].long_name

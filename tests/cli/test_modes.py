@@ -256,11 +256,96 @@ def test_damping_of_a_mode_in_which_a_contact_holds_a_rigid_body(listed):
     said = listed(text).err
     # together 4 kg on a stiffness of 4: 1 rad/s; the damper of 2 * 0.01 * 2 gives it 0.04 / (2 * 4)
     assert (
-        "with all contacts open: 0 (1 rigid-body mode), 2 rad/s; with all stuck: 1, 1154.7 rad/s. Their"
-        in said
+        "with all contacts open: 0 (1 rigid-body mode), 2 rad/s; with all stuck: 1, 1154.7 rad/s, by shape "
+        "those at 0, 2 rad/s open. Their" in said
     )
     assert "damping ratios while stuck: 0.005," in said
     assert "rigid-body modes have none" in said and "structure: its mass along x is 4, without" in said
+
+
+FLOATING = """
+[structure]
+dofs = ["u", "v", "d", "e"]
+stiffness = [[1e4, 0, 0, 0], [0, 9e4, 0, 0], [0, 0, 0, 0], [0, 0, 0, 4e4]]
+mass = [1.0, 1.0, 0.01, 2.0]
+damping = 0.01
+[[contact]]
+name = "damper"
+tangential = { u = 1.0, d = -1.0 }
+normal = { v = 1.0, d = -1.0 }
+mu = 0.5
+k_u = 1e4
+k_v = 2e4
+n_0 = 10.0
+[[force]]
+dof = "u"
+amplitude = 1.0
+"""  # a blade that moves u and v, a damper d that only the contact holds, and another body
+
+
+def test_resonances_stand_beside_the_open_mode_of_their_shape(listed):
+    """By number all were shifted by the damper's rigid-body mode."""
+    K, M = np.diag([1e4, 9e4, 0.0, 4e4]), np.diag([1.0, 1.0, 0.01, 2.0])
+    for k, along in ((1e4, np.array([1.0, 0.0, -1.0, 0.0])), (2e4, np.array([0.0, 1.0, -1.0, 0.0]))):
+        K = K + k * np.outer(along, along)
+    squares, shapes = np.linalg.eig(np.linalg.solve(M, K))
+    order = np.argsort(squares)
+    stuck, shapes = np.sqrt(squares[order]), shapes[:, order]
+    assert list(np.abs(shapes).argmax(axis=0)) == [0, 3, 1, 2]  # u, e, v, d
+    found = json.loads(listed(FLOATING, "--json").out)["resonances"]
+    assert [one["stuck"] for one in found] == pytest.approx(stuck)
+    assert [one["open"] for one in found] == pytest.approx([100.0, np.sqrt(2e4), 300.0, 0.0])
+    assert [one["open_mode"] for one in found] == [2, 3, 4, 1]
+    mass = np.diag(M)
+    share = mass * shapes.T**2 / (shapes.T**2 @ mass)[:, None]
+    assert [one["mac"] for one in found] == pytest.approx(
+        [share[0, 0], share[1, 3], share[2, 1], share[3, 2]]
+    )
+    done = listed(FLOATING)
+    said = "open: the mode without contacts of the most alike shape, MAC: how alike, 1 the same"
+    assert said in done.out and "MAC" in done.out
+    row = next(line.split() for line in done.out.splitlines() if f"  {stuck[0]:.6g}" in line)
+    assert row[1:4] == [f"{stuck[0]:.6g}", "100.000", f"{share[0, 0]:.3f}"]
+    assert (
+        f"{stuck[0]:.5g}, 141.42, {stuck[2]:.5g} rad/s, by shape those at 100, 141.42, 300 rad/s" in done.err
+    )
+    assert found[1]["friction_damping"] == 0.0  # the other body, but for rounding
+
+
+def test_the_stiffness_beside_a_floating_body_is_that_of_the_elastic_modes(listed):
+    """The blade's: the table had dashes alone."""
+    (found,) = json.loads(listed(FLOATING, "--json").out)["stiffness"].values()
+    assert found["structure_tangential"] is None and found["structure_normal"] is None
+    assert found["elastic_tangential"] == pytest.approx(1e4) and found["elastic_normal"] == pytest.approx(9e4)
+    out = listed(FLOATING).out
+    assert ["damper", "1e+04", "1e+04'", "1'", "2e+04", "9e+04'", "0.2222'"] in map(
+        str.split, out.splitlines()
+    )
+    assert "' of elastic modes alone" in out
+    ground = FLOATING.replace("{ u = 1.0, d = -1.0 }", '"d"').replace("{ v = 1.0, d = -1.0 }", '"v"')
+    out = listed(ground).out  # no elastic mode moves along it
+    assert ["damper", "1e+04", "-", "-", "2e+04", "9e+04", "0.2222"] in map(str.split, out.splitlines())
+    assert "of elastic modes alone" not in out
+
+
+@pytest.mark.parametrize(
+    ("frequency", "beside"),
+    [
+        ([1.0, 1.0, 9.0], ["1.00000 1.000", "9.00000 1.000", "1.00000 1.000"]),
+        ([1.0, 1.01, 1.02], ["- 0.333"]),  # in the last one all three move alike
+    ],
+)
+def test_modes_of_one_frequency_count_together_and_shapes_of_none_have_none(listed, frequency, beside):
+    scene = SCENE.replace("[1.0, 4.0, 5.0]", str(frequency)).replace("mass = [2.0, 3.0, 1.0]\n", "")
+    scene = scene.replace(
+        "[[1.0, 0.5, 0.0], [0.2, 1.0, 0.0], [0.0, 1.0, 0.0]]", "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"
+    )
+    along = "{ u = 1.0, v = 1.0 }" if frequency[-1] > 2.0 else "{ u = 1.0, v = 1.0, w = 1.0 }"
+    out = listed(
+        scene.replace('tangential = "u"', f"tangential = {along}").replace("k_u = 1\n", "k_u = 1e4\n")
+    ).out
+    table = out[out.index("resonance  stuck") :].partition("\n\n")[0].splitlines()[1:4]
+    assert [" ".join(row.split()[2:4]) for row in table][-len(beside) :] == beside
 
 
 def test_proportional_damping_that_leaves_no_resonance_is_asked_about(listed):
@@ -335,7 +420,14 @@ damping = 0.01
     scene = scene.replace('"v"', '"a"').replace("k_u = 1", "k_u = 20").replace("k_v = 1", "k_v = 60")
     found = json.loads(listed(scene, "--json").out)["stiffness"]
     assert found["shroud"] == pytest.approx(
-        {"k_u": 20.0, "structure_tangential": 200.0, "k_v": 60.0, "structure_normal": 120.0}
+        {
+            "k_u": 20.0,
+            "structure_tangential": 200.0,
+            "elastic_tangential": 200.0,
+            "k_v": 60.0,
+            "structure_normal": 120.0,
+            "elastic_normal": 120.0,
+        }
     )
     rows = [line.split() for line in listed(scene).out.splitlines()]
     assert ["shroud", "20", "200", "0.1", "60", "120", "0.5"] in rows
@@ -357,7 +449,7 @@ def test_where_rigid_bodies_move_the_structure_has_no_stiffness(listed):
     (found,) = json.loads(listed(scene, "--json").out)["stiffness"].values()
     assert found["structure_tangential"] is None
     assert found["structure_normal"] == pytest.approx((10.0 * np.pi) ** 2)
-    assert any(line.split()[:4] == ["shroud", "1", "-", "-"] for line in listed(scene).out.splitlines())
+    assert found["elastic_tangential"] == pytest.approx(3.0 * (2.0 * np.pi * 4.0) ** 2 / 0.2**2)
 
 
 def test_of_many_contacts_those_of_the_greatest_ratio_are_listed(listed):

@@ -12,6 +12,7 @@ import pytest
 from fcm.results.peak import Peak
 
 from ..computed import by, nowhere
+from ..oscillator import oscillator
 
 
 def files(folder):
@@ -67,9 +68,75 @@ def test_without_jumps_there_is_one_table(fcm, scene):
 
 
 def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):
-    cost, error = fcm("respond", scene).err.splitlines()[-2:]
+    cost, error, _ = fcm("respond", scene).err.splitlines()[-3:]
     assert cost.startswith("1 curve, ") and " points in " in cost and cost.endswith(" s")
     assert error.startswith("largest relative error: ") and "by the table alone" in error
+
+
+@pytest.mark.parametrize(("frequency", "count"), [("[0.8, 1.6]", 0), ("[0.8, 1.35]", 2)])
+def test_the_last_line_is_the_result_in_short(fcm, scene, frequency, count):
+    """By what --json has of the peaks, here one of each degree of freedom."""
+    scene.write_text(scene.read_text().replace("[0.8, 1.6]", frequency))
+    done = fcm("respond", scene, "--json", "--accuracy", "1e-3")
+    (curve,) = json.loads(done.out)["curves"]
+    peaks = curve["peak"].values()
+    assert curve["complete"] and all(one["stable"] for one in peaks) and "peaks" not in curve
+    assert sum(one["at_edge"] for one in peaks) == count
+    ends = f", {count} at an end of the range" if count else ""
+    error = max(one["error"] for one in peaks)
+    assert done.err.splitlines()[-1] == (
+        f"result: complete; every peak shown is stable{ends}; errors of peaks are at most {error:.1e}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"stable": 0.0}, "of {} peaks shown, {} unstable; errors"),
+        ({"stable": np.nan}, "of {} peaks shown, {} of unknown stability; errors"),
+        ({"error": np.nan}, "every peak shown is stable; errors of peaks are unknown"),
+        ({"error": 1.5}, "errors of peaks are up to more than 100 %"),
+    ],
+)
+def test_the_result_in_short_hides_no_doubt(fcm, scene, change, words):
+    def computed(compute, *given):
+        return [
+            dataclasses.replace(one, peaks={dof: peak._replace(**change) for dof, peak in one.peaks.items()})
+            for one in compute(*given)
+        ]
+
+    done = fcm("respond", scene, "--harmonics", "1", place=by(computed))
+    result = next(line for line in done.err.splitlines() if line.startswith("result: "))
+    assert words.format(2, 2) in result
+    said = [
+        line for line in done.err.splitlines() if line.startswith(("the harmonics are given", "no stable"))
+    ]
+    assert (f"; {len(said)} remark" in result and result.endswith(" on it above")) == bool(said)
+
+
+def test_a_row_of_a_peak_has_the_error_of_its_height_and_that_at_its_frequency(fcm, scene, tmp_path):
+    """Beside 15 harmonics. The error of the height alone stood there, among errors at equal frequency."""
+    scene.write_text(oscillator("[response]\nfrequency = [0.8, 1.6]\n", damping=0.02, n_0=1.0))
+    rows = {}
+    for name, harmonics in (("one", 1), ("more", 15)):
+        given = ("--harmonics", harmonics, "--max-step", 0.01, "--csv", f"{name}.csv", "-o", f"{name}.nc")
+        assert fcm("respond", scene, *map(str, given)).code == 0
+        with (tmp_path / f"{name}.csv").open() as file:
+            rows[name] = list(csv.DictReader(file))
+    names = ("frequency [rad/s]", "amplitude u", "error u", "error_at_frequency u")
+    omega, height, error, at_frequency = (
+        np.array([float(row[name]) for row in rows["one"]]) for name in names
+    )
+    other, exact = (np.array([float(row[name]) for row in rows["more"]]) for name in names[:2])
+    top = int(height.argmax())
+    assert np.flatnonzero(error != at_frequency).tolist() == [top]
+    assert error[top] == pytest.approx(abs(exact.max() / height[top] - 1.0), rel=0.02)
+    assert at_frequency[top] == pytest.approx(
+        abs(np.interp(omega[top], other, exact) / height[top] - 1.0), rel=0.02
+    )
+    assert at_frequency[top] > 1.1 * error[top]
+    with netCDF4.Dataset(tmp_path / "one.nc") as data:
+        assert data["error_at_frequency"][0, :, 0].tolist() == at_frequency.tolist()
 
 
 @pytest.mark.parametrize("asked", [(), ("--method", "table")])
@@ -222,7 +289,8 @@ def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path):
     done = fcm("respond", scene, "-o", "a.nc", place=short)
     assert done.code == 3
     assert "NOT COMPLETE: stopped at 1.2 rad/s" in done.out
-    assert "the curve stopped early" in done.err
+    result, error = done.err.splitlines()[-2:]
+    assert result.startswith("result: the curve stopped early; ") and "the curve stopped early" in error
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
@@ -239,6 +307,7 @@ def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene):
 
     done = fcm("respond", scene, place=fails_below(1e9))
     assert done.code == 1 and "a defect of fcm, ZeroDivisionError: of zero" in done.out
+    assert "\nresult: the curve stopped early\n" in done.err
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.n_0" = [5, 1]\n')
     assert fcm("respond", scene, place=fails_below(1e9)).code == 1
     done = fcm("respond", scene, place=fails_below(3.0))

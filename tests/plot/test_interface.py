@@ -128,6 +128,22 @@ def test_columns_of_unlike_size_are_told_by_a_logarithm_and_bars_are_in_line(fil
     assert (linear.norm.vmin, linear.norm.vmax) == (0.0, 11.0)
 
 
+def test_bars_of_unlike_columns_have_a_logarithmic_axis(file):
+    """Those of a small amplitude lay on the foot of the axis beside those of a great one."""
+    read = read_interface(file[0])
+    (one,) = points_of(read, (1.2,))
+    loads = np.tile(np.arange(12.0), (3, 1))
+    for factor, kind in ((0.01, "log"), (0.5, "linear"), (0.0, "linear")):
+        small = replace(one, contact_loads=np.diag([factor, factor, 1.0]) @ loads)
+        figure = draw_interface(read, [replace(one, contact_loads=loads), small])
+        assert [axes.get_yscale() for axes in figure.axes[2:]] == [kind] * 4 + ["linear"] * 2
+        low, high = figure.axes[3].get_ylim()
+        assert low < max(factor, 0.5) and high > 11.0  # each that is not 0 has a bar
+    far = replace(one, contact_loads=1e-9 * loads)
+    figure = draw_interface(read, [replace(one, contact_loads=loads), far])
+    assert figure.axes[2].get_ylim()[0] > 1e-2  # what is far below the greatest has none
+
+
 def test_places_that_do_not_fit_are_all_said_at_once(tmp_path):
     file = tmp_path / "places.txt"
     file.write_text("a 0 0\nb, 1.5, 2e-3  # a remark\n\n")
@@ -168,6 +184,11 @@ def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
     assert sum(counts) == int(states[1]) == point.state.size
     assert (f"sticks: {np.count_nonzero(point.state == 0)}" in states[2]) == bool((point.state == 0).any())
     assert path.with_suffix(".svg").stat().st_size > 5000
+    drawn = f"at 1.2: drawn is the nearest point of the file, at {point.frequency:.6g} rad/s. A smaller"
+    assert drawn in done.err
+    exact = fcm("plot", "contacts", path, "--at", repr(point.frequency), "-o", path.with_suffix(".svg"))
+    assert exact.code == 0 and "nearest point" not in exact.err
+    assert "nearest point" not in fcm("plot", "contacts", path, "-o", path.with_suffix(".svg")).err
     many = [word for _ in range(7) for word in ("--at", "1.2")]
     assert fcm("plot", "contacts", path, *many).code == 2
 
@@ -331,6 +352,10 @@ def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
         points_of(read, (20.0,))
     said = called("plot", "contacts", path, "--amplitude", 3, "--amplitude", 20, "-o", tmp_path / "a.png")
     assert said.code == 0 and said.err.count("modal amplitude ") == 2
+    assert (
+        f"at 3: drawn is the nearest point of the file, at {point_at(read, 3.0).modal_amplitude:.6g}. A"
+        in said.err
+    )
     said = called("plot", "loop", path, "--amplitude", 20, "--json", "-o", tmp_path / "l.png")
     (loop,) = json.loads(said.out)["loops"]
     assert loop["frequency"] == point_at(read, 20.0).frequency

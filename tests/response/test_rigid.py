@@ -207,6 +207,25 @@ def test_a_body_that_stops_at_a_resonance_that_nothing_damps_is_told_what_does()
     assert whole.complete
 
 
+def test_a_curve_that_stops_is_told_what_helps_by_its_cause():
+    """A floating body beside a mode that nothing damps: it was told to take more preload or a smaller step.
+
+    With the damping that is advised the curve is whole.
+    """
+    body = BODY | {"frequency": [0.0, 0.5], "shapes": [[0.75, 0.66], [-0.66, 0.75]]}
+    contact, forces = {"n_0": 2.0, "mu": 0.3, "k_v": 10.0, "k_u": 5.0}, (("x", 1.0), ("y", 1.0))
+    response = {"frequency": [0.3, 1.7], "max_step": 0.2, "harmonics": 2}
+    _, found = curve(body, contact, forces, response=response)
+    said = re.fullmatch(
+        r"stopped at \S+ rad/s: no further point could be found\. Nothing damps the structure, so that the "
+        r"curve may turn back on the spot: try a damping ratio of (\S+)",
+        found.reason,
+    )
+    assert said and not found.complete
+    _, whole = curve(body | {"damping": float(said[1])}, contact, forces, response=response)
+    assert whole.complete
+
+
 def test_a_free_structure_without_contacts():
     _, found = curve(JENKINS, None)
     assert found.complete

@@ -342,6 +342,56 @@ def test_stiffnesses_that_vary_are_not_asked_about(table, tmp_path):
     assert not any("soft" in one for one in made.notes)
 
 
+def floating(k_u, mass=0.015, frequency=(0.0, 0.0), pushed=()):
+    """The blade, and a damper of its own mass that only the contact holds."""
+    data = blade(contact={"k_u": k_u, "k_v": 1.5 * k_u})
+    shapes = [[1.0, 0.3, 0.0, 0.0], [-0.3, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+    data["modal"] |= {"dofs": ["x", "z", "dx", "dz"], "shapes": shapes, "mass": [1.0, 1.0, mass, mass],
+                      "frequency": [100.0, 400.0, *frequency]}  # fmt: skip
+    data["contact"][0] |= {"tangential": {"x": 1.0, "dx": -1.0}, "normal": {"z": 1.0, "dz": -1.0}}
+    data["force"] += [{"dof": dof, "amplitude": 1.0} for dof in pushed]
+    return data
+
+
+def mass_on(stiffness, hertz):
+    return stiffness / (2.0 * pi * hertz) ** 2
+
+
+@pytest.mark.parametrize(
+    ("scene", "count"),
+    [
+        (floating(2e5), 0),
+        (floating(200.0), 1),
+        (floating(200.0, frequency=(90.0, 0.0)), 1),  # the damper's own spring is soft, too
+        (floating(200.0, mass=mass_on(200.0, 100.0)), 1),
+        (floating(200.0, mass=mass_on(200.0, 100.0), pushed=["dx"]), 0),  # on mounts, in resonance there
+        (floating(200.0, mass=mass_on(200.0, 20.0), pushed=["dx"]), 1),  # below the range
+        (floating(200.0, mass=mass_on(200.0, 400.0), pushed=["dx"]), 1),  # above it
+    ],
+)
+def test_soft_contacts_that_hold_a_floating_body(scene, count):
+    """Nothing was asked beside a rigid body: a damper's stiffness in N/mm was read in N/m."""
+    said = asked(scene)
+    assert len(said) == count
+    assert all("the resonance at 100 Hz is" in one and "if they are in N/mm" in one for one in said)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"gap": 0.1}, "is a gap of 0.1 m (-n_0 / k_v) right?"),
+        ({"n_0": 10.0, "k_u": 200.0, "k_v": 3e5}, "k_u = 200 and k_v = 300000 N/m both right?"),
+        ({"n_0": 10.0, "k_u": 1e12}, "times as stiff as the structure there"),
+    ],
+)
+def test_other_questions_beside_a_floating_body(change, words):
+    data = floating(2e5)
+    del data["contact"][0]["n_0"]
+    data["contact"][0] |= change
+    (said,) = asked(data)
+    assert words in said
+
+
 @pytest.mark.parametrize(
     ("damping", "units", "count"),
     [(0.1, ("m", "N"), 1), (0.09, ("m", "N"), 0), (0.1, (), 0), ([0.002, 0.1], ("m", "N"), 0)],

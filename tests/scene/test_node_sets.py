@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fcm.model.question import Question
 from fcm.scene import SceneError, scene_from_dict
 
 NORMAL, ACROSS = np.array([0.6, 0.8, 0.0]), np.array([0.8, -0.6, 0.0])
@@ -185,12 +186,11 @@ def test_a_file_of_pairs_does_not_tell_its_sides(tmp_path):
     assert scene.interfaces[0].first.tolist()[2] == [0.0, 1.0, 0.0]
 
 
-def of_file(folder, partners, contact=(), nodes=(), rows=""):
+def of_file(folder, partners, contact=(), nodes=(), rows="", text=""):
     """The scene of pairs 1.. with partners, by a file, or its text, and the mesh of both sides."""
     rows = rows or "node,other\n" + "".join(f"{1 + k},{node}\n" for k, node in enumerate(partners))
     (folder / "pairs.csv").write_text(rows)
-    first, second = places(0.05)
-    (folder / "two.inp").write_text(deck(first, second))
+    (folder / "two.inp").write_text(text or deck(*places(0.05)))
     given = {"pairs": "pairs.csv", "mesh": "two.inp"} | dict(nodes)
     modal = {"dofs": [f"{n}{d}" for b in (1, 101) for n in range(b, b + 12) for d in "xyz"]}
     shapes = np.random.default_rng(1).normal(size=(3, len(modal["dofs"])))
@@ -232,6 +232,35 @@ def test_what_is_amiss_with_a_file_and_a_mesh_is_said(tmp_path, partners, nodes,
     with pytest.raises(SceneError) as caught:
         of_file(tmp_path, partners, nodes=nodes)
     assert words in str(caught.value)
+
+
+def sides_of(scene):
+    return [note for note in scene.notes if isinstance(note, Question) and "its normal points" in note]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_normal_of_the_wrong_sign_is_asked_about_where_a_mesh_shows_the_sides(tmp_path, sign):
+    """Of a file of pairs, and of nodes that touch the ground: it was asked of two sets alone."""
+    given = {"normal": {"x": 0.6 * sign, "y": 0.8 * sign}, "tangential": "z"}
+    said = sides_of(of_file(tmp_path, RIGHT, given))
+    assert len(said) == (sign < 0.0)
+    assert all(
+        "from the others to its first nodes, so that it presses where they part" in one for one in said
+    )
+    first, second = places(0.05)
+    tip = first[0] - NORMAL
+    cells = f"*NODE\n200, {tip[0]}, {tip[1]}, {tip[2]}\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 5, 200\n"
+    ground = given | {"nodes": {"sets": ["LEFT"], "mesh": "two.inp"}, "areas": "equal"}
+    said = sides_of(read(tmp_path, ground, text=deck(first, second, cells)))
+    assert len(said) == (sign < 0.0)
+    assert all("into the elements at its nodes, so that it presses where these leave" in one for one in said)
+    assert sides_of(read(tmp_path, ground)) == []  # without elements nothing shows it
+
+
+def test_nodes_in_one_place_show_no_side(tmp_path):
+    first, _ = places(0.0)
+    turned = {"normal": {"x": -0.6, "y": -0.8}, "tangential": "z"}
+    assert sides_of(of_file(tmp_path, RIGHT, turned, text=deck(first, first[::-1]))) == []
 
 
 WRONG = [

@@ -481,9 +481,24 @@ def test_what_rigid_bodies_lose_of_their_damping_is_told(dragged, tmp_path):
             worst = max(worst, np.abs(answer(scene.modal, omega) - whole)[np.ix_(seen, seen)].max() / rigid)
         assert 0.3 * said < worst < said
         (note,) = (note for note in notes if "left out" in note)
-        assert "would change by up to about" in note and note.endswith(
-            "all of it and more with all of them stuck"
-        )
+        why = ": a resonance that is damped mostly by what is left out is far too high"
+        assert "would change by up to about" in note
+        assert note.endswith(f"more than itself with all of them stuck{why}")
+
+
+@pytest.mark.parametrize(("by_mass", "node", "told"), [(2.0, 0, False), (2.0, 2, True), (1e-5, 2, False)])
+def test_damping_that_is_left_out_and_changes_nothing_is_not_told(by_mass, node, told):
+    """A body that nothing pushes, or drag that is far too small: it was said to change 0 %, or 3e-14 %."""
+    contact = {"name": "a", "tangential": "0x", "normal": "1x", "mu": 0.3, "k_u": 0.5, "k_v": 0.1, "n_0": 1.0}
+    top = {
+        "response": {"frequency": [0.5, 2.5]},
+        "force": [{"dof": f"{node}x", "amplitude": 1.0}],
+        "contact": [contact],
+    }
+    free = {"stiffness": [[3.0, -1.0, 0.0], [-1.0, 2.0, 0.0], [0.0, 0.0, 0.0]], "mass": [1.0, 1.0, 1.0]}
+    damping = {"mass": by_mass, "stiffness": 0.01}
+    notes = read(top=top, dofs=["0x", "1x", "2x"], **free, damping=damping).notes
+    assert any("left out" in note for note in notes) == told
 
 
 @pytest.mark.parametrize(
@@ -503,7 +518,7 @@ def test_rigid_bodies_of_two_bodies_that_contacts_hold_together():
     """Six of each, whose frequencies are rounding: as far from each other as from the others, or not."""
     lowest = [2e-8, 3e-8, 1e-7, 4e-5, *np.linspace(1e-4, 2e-3, 8)]
     modal = {"dofs": ["u"], "frequency": [*lowest, 52.0], "damping": 0.01, "shapes": [[1.0]] * 13}
-    contact = {"name": "a", "tangential": "u", "normal": "u", "mu": 0.3, "k_u": 1.0, "k_v": 0.0, "n_0": 1.0}
+    contact = {"name": "a", "tangential": "u", "normal": "u", "mu": 0.3, "k_u": 1e4, "k_v": 0.0, "n_0": 1.0}
     one = {"modal": modal, "frequency_unit": "Hz", "response": {"frequency": [10, 100]}, "contact": [contact]}
     scene = scene_from_dict(one | {"force": [{"dof": "u", "amplitude": 1.0}]})
     assert (scene.modal.frequency == 0.0).tolist() == [True] * 12 + [False]

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.accuracy.peak_errors import PeakErrors, peak_errors
+from fcm.accuracy.peak_errors import peak_errors
 from fcm.accuracy.peaks import rise_between_points, tops_of_reference
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
@@ -42,7 +42,8 @@ Mask = npt.NDArray[np.bool_]
 class Errors(Frozen):
     """Relative errors of a path, estimated by the embedded pair; NaN where the pair gives no error.
 
-    amplitude (point, dof): by how much the reference differs at the same frequency.
+    amplitude (point, dof): by how much the reference differs: at a peak in height, elsewhere at the same
+    frequency. at_frequency (point, dof): at the same frequency at peaks, too.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
     is_same_curve (point,): whether the reference's own branch comes to that frequency. Where it does not, as
     beside a fold that it has elsewhere, errors are the distance to the nearest motion of the reference there.
@@ -65,6 +66,7 @@ class Errors(Frozen):
     """
 
     amplitude: FloatArray
+    at_frequency: FloatArray
     truncation: FloatArray
     is_same_curve: Mask
     ends_before: Mask
@@ -82,7 +84,7 @@ class Errors(Frozen):
 
     def part(self, rows: npt.NDArray[np.intp]) -> Errors:
         """The errors restricted to some points of the path."""
-        names = ("amplitude", "truncation", "is_same_curve", "ends_before", "contact_loads")
+        names = ("amplitude", "at_frequency", "truncation", "is_same_curve", "ends_before", "contact_loads")
         arrays: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
         return replace(self, **arrays, contacts=self.contacts.part(rows))
 
@@ -133,19 +135,26 @@ def errors_along(
     contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
     shift = shift[:, : len(size)]
     of_peaks = peak_errors(reference, change, followed)
-    error = with_reference_errors(reference, _of_points(reference, shift, change, of_peaks))
-    error[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
+    plain = _at_frequency(reference, shift, change)
+    error = plain.copy()
+    error[of_peaks.point, of_peaks.dof] = of_peaks.height / reference.unit[of_peaks.point, of_peaks.dof]
+    raised = with_reference_errors(reference, error)
+    at_frequency = np.where(raised > error, np.maximum(raised, plain), plain)
+    error = raised
+    error[folds] = at_frequency[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
+    comes: Mask = ~np.any(np.isnan(error), axis=1)
     height, told = _set_errors_of_peaks(reference, error, shift, change, followed, met)
     unit, amplitude = reference.unit, quantities.amplitude
     at_rest = amplitude <= np.finfo(float).eps * unit  # but for rounding
-    error *= unit / np.where(at_rest, unit, amplitude)
-    comes: Mask = ~np.any(np.isnan(error), axis=1)
+    for one in (error, at_frequency):
+        one *= unit / np.where(at_rest, unit, amplitude)
     system.work.add(reference.seconds())
     of_folds = _of_folds(reference, folds, change, followed)
     reference.release()
     return Errors(
         amplitude=error,
-        truncation=_truncation(error, amplitude),
+        at_frequency=at_frequency,
+        truncation=_truncation(np.where(np.isnan(error), at_frequency, error), amplitude),
         is_same_curve=comes,
         ends_before=reference.ends_before,
         peak=np.where(told, error[tops, np.arange(len(size))], np.nan),
@@ -171,6 +180,7 @@ def _same_error(
     contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), error)
     return Errors(
         amplitude=every,
+        at_frequency=every,
         truncation=every[:, 0],
         is_same_curve=np.full(len(every), exact),
         ends_before=np.zeros(len(every), dtype=np.bool_),
@@ -195,8 +205,8 @@ def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -
     dofs, folds = np.full(none.shape[1], nan), np.full(len(path.where(Mark.FOLD)), nan)
     share = np.zeros(max(system.harmonics))
     return Errors(
-        none, none[:, 0], unseen, unseen, dofs, dofs, dofs, folds, share, system.harmonics, contact_loads,
-        np.full(contact_loads.shape[1:], nan), contacts,
+        none, none, none[:, 0], unseen, unseen, dofs, dofs, dofs, folds, share, system.harmonics,
+        contact_loads, np.full(contact_loads.shape[1:], nan), contacts,
     )  # fmt: skip
 
 
@@ -237,13 +247,21 @@ def with_nearest(
         there = nearest(pieces, path.parameter[rows], even, now)
         off = np.abs(there[:, :dofs] - now)
         error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
+        at_frequency = every[k].at_frequency.copy()
+        at_frequency[rows] = error[rows]
         bear = _flat(every[k].contacts.contact_loads)
         change = there[:, dofs:] - bear[rows]
         contact_loads[rows] = relative(change, bear[rows], bear.max(axis=0), options).reshape(
             len(rows), -1, 4
         )
         truncation = _truncation(error, amplitude)
-        every[k] = replace(every[k], amplitude=error, truncation=truncation, contact_loads=contact_loads)
+        every[k] = replace(
+            every[k],
+            amplitude=error,
+            at_frequency=at_frequency,
+            truncation=truncation,
+            contact_loads=contact_loads,
+        )
         if np.isnan(every[k].height).any() and np.isfinite(there).all():
             every[k] = _with_greatest(every[k], amplitude, pieces)
     return tuple(every)
@@ -315,17 +333,13 @@ def _spectrum(
     return share[: LIMITS.harmonics], met
 
 
-def _of_points(
-    reference: ReferenceCurve, shift: FloatArray, change: FloatArray, of_peaks: PeakErrors
-) -> FloatArray:
-    """Errors (point, dof) at equal frequency, at peaks of the height, in the reference curve's unit."""
+def _at_frequency(reference: ReferenceCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
+    """Errors (point, dof) at equal frequency, in the reference curve's unit."""
     error = np.where(reference.linear[:, None], 0.0, np.abs(shift))
     # displacements may cancel at a frequency, but not what the reference itself is off by
     moved = reference.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
     moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
     every: FloatArray = np.maximum(error, reference.options.reference_error * moved)
-    at = of_peaks.point, of_peaks.dof
-    every[at] = of_peaks.height / reference.unit[at]
     return every
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.files import check_not_read, check_output, output_option
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.files import replacing
 
@@ -110,3 +111,13 @@ def drawing() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         yield
+
+
+def not_at(wanted: float, there: Sequence[float], unit: str) -> str:
+    """Message on points of a file drawn in place of one that is asked for between them; empty without any."""
+    off = [f"{at:.6g}" for at in there if abs(at - wanted) > SENTENCES.resolution * 1e-3 * abs(wanted)]
+    if not off:
+        return ""
+    told = f" {unit}" if unit not in ("", "level") else ""
+    closer = "A smaller --max-step of fcm respond has nearer ones"
+    return f"at {wanted:.6g}: drawn is the nearest point of the file, at {', '.join(off)}{told}. {closer}"

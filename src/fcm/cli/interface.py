@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from fcm.cli.columns import aligned
-from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.drawing import drawing, draws_file, is_page, not_at, picture_of, save_picture_of
 from fcm.cli.files import wrote
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
@@ -83,8 +83,8 @@ def contacts(
     head = [f"{key} [{units[key]}]" if units.get(key) else key for key in HEAD]
     if read.places is not None:
         head.append(f"at {', '.join(read.axes)}" + (f" [{read.units[1]}]" if read.units[1] else ""))
-    each = [curve for curve in curves for _ in at or amplitude or (0.0,)]
-    for point, curve in zip(points, each, strict=True):
+    each = [(curve, wanted) for curve in curves for wanted in at or amplitude or (None,)]
+    for point, (curve, wanted) in zip(points, each, strict=True):
         takers = greatest_takers(read, point, SENTENCES.rows)
         if takers:
             messages.info(aligned([head, *takers], left=0))
@@ -93,6 +93,11 @@ def contacts(
         nothing = "" if takers else ": none takes energy"
         states = f"{counted(len(read.contacts), 'contact')} ({counted_states(point)})"
         messages.info(f"at {place_of(read, point)}{of}; {states}{nothing}")
+        there = point.frequency if at else point.modal_amplitude
+        if wanted is None or there is None:
+            continue
+        if said := not_at(wanted, [there], read.unit if at else ""):
+            messages.info(said)
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 

@@ -28,6 +28,8 @@ class RemarkOptions(Frozen):
     of_each_curve: int = 3  # least lines of such a table for each curve
     rows: int = 10  # most contacts in the table of an interface, those with the greatest loads
     flexible: int = 5  # most modes that stand for flexibility in a list of modes
+    # modal assurance criterion of a stuck and an open mode, below which the open one does not stand beside it
+    least_alike: float = 0.5
     directions: int = 6  # most directions whose participation stands beside each other on a line
     forces: int = 2  # of these, columns kept for forces where contacts need the others
     contacts: int = 3  # most contacts that stand beside the degrees of freedom on a line

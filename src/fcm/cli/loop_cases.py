@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.columns import ranges
-from fcm.cli.drawing import shorten
+from fcm.cli.drawing import not_at, shorten
 from fcm.cli.limits import SENTENCES
 from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
 from fcm.frozen import Frozen
@@ -195,7 +195,7 @@ def of_file(
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         points = points if solution is None else points[solution - 1 : solution]
-        if place is not None and (said := _beside(place, points, file)):
+        if place is not None and (said := not_at(place.value, [place.of(one) for one in points], file.unit)):
             tell(said)
         for point in points:
             with read(path, "its loops cannot be drawn"):
@@ -204,19 +204,6 @@ def of_file(
                 else:
                     cases.append(_on_a_line(point, point.motion, file))
     return planar or cases
-
-
-def _beside(place: PlaceOnCurve, points: Iterable[LoopPoint], file: LoopFile) -> str:
-    """Message on points of the file drawn in place of one between them; empty if there are none."""
-    wanted, there = place.value, map(place.of, points)
-    off = [f"{at:.6g}" for at in there if abs(at - wanted) > SENTENCES.resolution * 1e-3 * abs(wanted)]
-    unit = "" if file.unit == "level" else f" {file.unit}"
-    closer = "A smaller --max-step of fcm respond has nearer ones"
-    return (
-        f"at {wanted:.6g}: drawn is the nearest point of the file, at {', '.join(off)}{unit}. {closer}"
-        if off
-        else ""
-    )
 
 
 def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict[str, Any]]:

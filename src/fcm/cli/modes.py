@@ -15,13 +15,17 @@ from fcm.cli.options import scene_argument
 
 _FRICTION = (
     "the damping ratio that friction can add to each resonance, estimated for closed contacts; "
-    "n_0 is that of a pair:"
+    "n_0 is that of a pair.\nopen: the mode without contacts of the most alike shape, MAC: how alike, "
+    "1 the same; - below {:g}:"
 )
 _OPENS = "*"  # beside a preload with which contacts would open
 _OF_OPENING = (
     f"{_OPENS} contacts would open with this preload, so that it does not hold, nor does the damping: "
     "[optimum] finds the best"
 )
+_FLOATS = "'"  # beside a stiffness where rigid-body modes move
+_OF_FLOATING = f"{_FLOATS} of elastic modes alone: rigid-body modes move along it; - where no other does"
+_SPRINGS = (("k_u", "tangential"), ("k_v", "normal"))
 _STIFFNESS = (
     "the stiffness of each contact, beside that of the structure along and across its faces without contacts:"
 )
@@ -39,15 +43,19 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
 
-    A second table has the resonances, with all contacts open and with all stuck. It has the greatest
-    damping ratio that friction can add to each, estimated by one harmonic. Contacts stay closed, at
-    their best preload, with the same share of slip. The contact with the greatest part is "most in". Its
-    preload that gives this damping, in resonance with the scene's forces, is "n_0". It is marked where
-    contacts would open with it.
+    A second table has the resonances while all contacts stick. Beside each stands the mode without contacts
+    of the most alike shape, by the modal assurance criterion with the mass. Modes of one frequency count
+    together. By number they would not belong together where only contacts hold a body.
+
+    It has the greatest damping ratio that friction can add to each, estimated by one harmonic. Contacts stay
+    closed, at their best preload, with the same share of slip. The contact with the greatest part is "most
+    in". Its preload that gives this damping, in resonance with the scene's forces, is "n_0". It is marked
+    where contacts would open with it.
 
     A third table has the stiffness of each contact, and that of the structure there, by a unit load without
     contacts. A contact of a hundredth of it changes little. With a hundred times as much it is as good as
-    rigid.
+    rigid. Where a rigid-body mode moves along it, the load moves it without limit. Then it is that of the
+    elastic modes alone, and marked.
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list
     stands what was read: matrices, their rows, entries and symmetry, and rigid bodies. Frequencies stand
@@ -92,25 +100,25 @@ def _stiffness(found: dict[str, Any]) -> str:
     if not every:
         return ""
 
-    def ratio(k: float, structure: float | None) -> float | None:
-        return None if structure is None else k / structure
-
     rows = []
     for name, one in every.items():
-        pairs = [(one["k_u"], one["structure_tangential"]), (one["k_v"], one["structure_normal"])]
-        rows.append((name, [ratio(*pair) for pair in pairs], pairs))
+        pairs = [(one[k], one[f"elastic_{way}"], one[f"structure_{way}"]) for k, way in _SPRINGS]
+        rows.append((name, [None if own is None else k / own for k, own, _ in pairs], pairs))
     kept = sorted(rows, key=lambda row: -max((value or 0.0) for value in row[1]))[: SENTENCES.rows]
     heads = ["k_u", "along", "ratio", "k_v", "across", "ratio"]
     lines = [["contact", *heads]]
     for name, ratios, pairs in rows:
-        cells = [
-            "-" if value is None else f"{value:.4g}"
-            for pair, beside in zip(pairs, ratios, strict=True)
-            for value in (*pair, beside)
-        ]
+        cells = []
+        for (k, own, held), beside in zip(pairs, ratios, strict=True):
+            mark = _FLOATS if own is not None and held is None else ""
+            cells += [
+                f"{k:.4g}",
+                *("-" if value is None else f"{value:.4g}{mark}" for value in (own, beside)),
+            ]
         lines += [[name, *cells]] if (name, ratios, pairs) in kept else []
+    floats = f"\n{_OF_FLOATING}" if any(_FLOATS in cell for line in lines[1:] for cell in line[1:]) else ""
     more = f"\nand {len(rows) - len(kept)} more contacts: --json has all" if len(rows) > len(kept) else ""
-    return f"{_STIFFNESS}\n{aligned(lines, left=0)}{more}"
+    return f"{_STIFFNESS}\n{aligned(lines, left=0)}{floats}{more}"
 
 
 def _resonances(found: dict[str, Any]) -> str:
@@ -119,7 +127,8 @@ def _resonances(found: dict[str, Any]) -> str:
     if not any(one["friction_damping"] for one in every):
         return ""
     unit = found["frequency_unit"]
-    rows = [["resonance", f"open at {unit}", f"stuck at {unit}", "friction adds up to", "most in", "", "n_0"]]
+    heads = ["friction adds", "most in", "", "n_0"]
+    rows = [["resonance", f"stuck at {unit}", f"open at {unit}", "MAC", *heads]]
     for number_of, one in enumerate(every, 1):
         name, share = max(one["by_contact"].items(), key=lambda item: item[1])
         preload = f"{one['preload'][name]:.2g}" if one["preload"][name] else "-"
@@ -128,14 +137,16 @@ def _resonances(found: dict[str, Any]) -> str:
         rows.append(
             [
                 str(number_of),
-                number(one["open"]),
                 number(one["stuck"]),
+                number(one["open"]) if one["mac"] >= SENTENCES.least_alike else "-",
+                f"{one['mac']:.3f}",
                 f"{one['friction_damping']:.2g}",
                 *most,
             ]
         )
     opening = f"\n{_OF_OPENING}" if any(one["opens"] for one in every) else ""
-    return f"{_FRICTION}\n{aligned(rows, left=3)}{opening}"
+    said = _FRICTION.format(SENTENCES.least_alike)
+    return f"{said}\n{aligned(rows, left=3)}{opening}"
 
 
 def _lines(found: dict[str, Any], directions: list[str]) -> str:

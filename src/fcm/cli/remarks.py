@@ -28,6 +28,7 @@ from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
+from fcm.cli.verdict import verdict
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
@@ -110,36 +111,39 @@ def close(
         messages.info(track.cost(result))
     if levels := searched_levels(result):
         messages.detail(levels)
-    if announced.resonant and (stuck := linear(result)):
-        messages.info(stuck)
-    if apart := never_closed(result):
-        messages.info(apart)
-    if images := mirrored(result):
-        messages.info(images)
-    if kept := kept_friction(result):
-        messages.info(kept)
-    if nothing := nothing_stable(result):
-        messages.info(nothing)
-    if few := not_confirmed(result):
-        messages.info(few)
-    if beyond := peaks_not_followed(result):
-        messages.info(beyond)
-    if announced.harmonics_given and (more := of_more_harmonics(result)):
-        messages.info(more)
-    if lost := folds_uncertain(result):
-        messages.info(lost)
-    if away := nonlinear_mode.outside_range(result):
-        messages.warning(away)
-    if short := short_of_accuracy(result):
-        messages.warning(short)
-    uncertain_at = (branches_uncertain, symmetry_lost, tracked_uncertain)
-    for caveat in filter(None, (one(result) for one in uncertain_at)):
-        messages.warning(caveat)
-    for caveat in fit.caveats(result):
-        messages.warning(caveat)
+    remarks = [
+        linear(result) if announced.resonant else "",
+        *(
+            one(result)
+            for one in (
+                never_closed,
+                mirrored,
+                kept_friction,
+                nothing_stable,
+                not_confirmed,
+                peaks_not_followed,
+            )
+        ),
+        of_more_harmonics(result) if announced.harmonics_given else "",
+        folds_uncertain(result),
+    ]
+    of_doubt = (
+        nonlinear_mode.outside_range,
+        short_of_accuracy,
+        branches_uncertain,
+        symmetry_lost,
+        tracked_uncertain,
+    )
+    warnings = [*(one(result) for one in of_doubt), *fit.caveats(result)]
+    for text in filter(None, remarks):
+        messages.info(text)
+    for text in filter(None, warnings):
+        messages.warning(text)
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))
+    if line := verdict(result, sum(map(bool, [*remarks, *warnings]))):
+        messages.info(line)
     if stopped := " and ".join(
         filter(
             None,

@@ -19,7 +19,7 @@ class Status(Enum):
     COMPLETE = "the curve reached the other end of its range"
     RETURNED = "the curve came back to the end of the range where it began"
     CLOSED = "the curve came back to the point where it began"
-    STALLED = "no further point could be found. Try a smaller --max-step or another range"
+    STALLED = "no further point could be found"
     UNBOUNDED = "the amplitude grows without limit, at a resonance that hardly anything damps; add damping"
     TOO_LONG = "the curve did not leave the range within the number of steps allowed; try a larger --max-step"
     AROUND = "a step left the curve for a closed one, and went around that; try a smaller --max-step"

@@ -187,6 +187,14 @@ def side(mesh: Mesh, pairs: Sequence[tuple[int, int]], direction: FloatArray) ->
     return float((end - begin) @ direction)
 
 
+def beyond(mesh: Mesh, nodes: Sequence[int], direction: FloatArray) -> float:
+    """How far along a direction (3,) nodes lie beyond the middle of the elements at them [length]; 0 without
+    elements."""
+    places = np.array([mesh.place[node] for node in nodes])
+    inner = _middle(mesh, places)
+    return 0.0 if inner is None else float((mesh.xyz[places].mean(axis=0) - inner) @ direction)
+
+
 def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int], options: PairingOptions = PAIRING) -> Plane:
     """The plane with the normal out of the elements at some nodes.
 
@@ -195,9 +203,7 @@ def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int], options: PairingOpti
     MeshError
         If the mesh has no elements there, or they lie in the plane.
     """
-    places = np.array([mesh.place[node] for node in nodes])
-    inner = _middle(mesh, places)
-    out = 0.0 if inner is None else float((mesh.xyz[places].mean(axis=0) - inner) @ plane.normal)
+    out = beyond(mesh, nodes, plane.normal)
     return _with_side(plane, out, "the elements of the mesh do not show it", "out of the structure", options)
 
 

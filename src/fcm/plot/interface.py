@@ -332,10 +332,11 @@ def _in_row(file: InterfaceFile, points: Sequence[InterfacePoint], at: FloatArra
         grid[0, column].set_title(_head(file, point), fontsize=8)
     for row, ((_, title), unit) in enumerate(zip(CONTACT_LOADS, file.units, strict=True)):
         values = np.array([point.contact_loads[row] for point in points])
-        top = float(np.nanmax(values, initial=0.0)) or 1.0
+        low_value, high_value, kind = _heights(values)
         for column in range(count):
             grid[1 + row, column].bar(at, values[column], width=thick, color="#404040")
-            grid[1 + row, column].set_ylim(0.0, 1.05 * top)
+            grid[1 + row, column].set_yscale(kind)
+            grid[1 + row, column].set_ylim(low_value, high_value)
         grid[1 + row, 0].set_ylabel("\n".join((title, f"({unit})" * bool(unit))), parse_math=False)
     grid[0, 0].set_yticks(range(len(STATES_OF_CONTACTS)), [word for word, *_ in STATES_OF_CONTACTS])
     grid[0, 0].set_ylim(-0.6, len(STATES_OF_CONTACTS) - 0.4)
@@ -343,6 +344,17 @@ def _in_row(file: InterfaceFile, points: Sequence[InterfacePoint], at: FloatArra
     room = 72.0 * (width - _BAR) / count * step / (high - low)  # [point] from one contact to the next
     _name_contacts(grid, file.contacts, at, room, label)
     return figure
+
+
+def _heights(values: FloatArray) -> tuple[float, float, str]:
+    """Ends and kind of the axis of bars, which is logarithmic where `_scale` is."""
+    from matplotlib.colors import LogNorm
+
+    scale = _scale(values)
+    low, high = float(scale.vmin or 0.0), float(scale.vmax or 1.0)
+    if isinstance(scale, LogNorm):  # room below, so that the least has a bar
+        return low / LAYOUT.decade**0.5, high * 1.05 * (high / low) ** 0.05, "log"
+    return 0.0, 1.05 * high, "linear"
 
 
 def _name_contacts(grid: Any, names: Sequence[str], at: FloatArray, room: float, label: str) -> None:
@@ -440,12 +452,14 @@ def _legend(figure: Figure, points: Sequence[InterfacePoint], none: bool) -> Non
 def _scale(values: FloatArray) -> Normalize:
     """Colours of the values of all columns: by their logarithm where a column would be dark beside another.
 
-    Of a logarithmic scale what is 0 or far below the greatest value has no place.
+    A column without a value is dark on either. Of a logarithmic scale what is 0 or far below the greatest
+    value has no place.
     """
     from matplotlib.colors import LogNorm, Normalize
 
-    top = float(np.nanmax(values, initial=0.0))
-    if np.nanmax(values, axis=1, initial=0.0).min() >= LAYOUT.dark * top:  # also where all are 0
+    tops = np.nanmax(values, axis=1, initial=0.0)
+    top = float(tops.max())
+    if tops[tops > 0.0].min(initial=np.inf) >= LAYOUT.dark * top:  # also where all are 0
         return Normalize(0.0, top or 1.0)
     least = float(np.nanmin(values, where=values > LAYOUT.least_colour * top, initial=top))
     return LogNorm(min(least, 0.1 * top), top)

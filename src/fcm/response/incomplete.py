@@ -111,9 +111,9 @@ def _resonant(system: System, omega: float) -> str:
 
 
 def remedy(system: System, status: Status) -> str:
-    """Sentence on what would help where a curve has stalled, if that is known."""
+    """Sentence on what would help where a curve has stalled, if known; other ends say it themselves."""
     if status is not Status.STALLED:
         return ""
-    if not system.linear.natural.all():
-        return FLOATING
-    return too_stiff(system) or ("" if system.linear.damping.any() else UNDAMPED)
+    linear = system.linear
+    undamped = linear.natural.any() and not (linear.natural * linear.damping).any()
+    return too_stiff(system) or (UNDAMPED if undamped else "")

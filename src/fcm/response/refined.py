@@ -196,6 +196,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
             replace(
                 error,
                 amplitude=_between(error.amplitude, after),
+                at_frequency=_between(error.at_frequency, after),
                 truncation=_between(error.truncation, after),
                 is_same_curve=np.insert(error.is_same_curve, after + 1, error.is_same_curve[after]),
                 ends_before=np.insert(error.ends_before, after + 1, error.ends_before[after]),

@@ -213,7 +213,10 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     peak = np.array((found.peak, found.peak_frequency))
     if response.exceeded:
         peak[:] = np.nan
-    error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
+    error, at_frequency = (
+        np.maximum(np.concatenate(each), rounding)
+        for each in zip(*((one.amplitude, one.at_frequency) for one in found.errors), strict=True)
+    )
     open_to_past = undetermined(scene, words)
     residual = residual_changes(system, points.z, points.amplitude, words, open_to_past, quick)
     curve = Curve(
@@ -230,6 +233,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         stable=pick(stable, rows),
         table_error=pick(table_errors(system, points), rows),
         error=pick(error, rows),
+        error_at_frequency=pick(at_frequency, rows),
         truncation_error=pick(np.concatenate(truncations), rows),
         complete=not reason,
         reason=reason,

@@ -51,7 +51,8 @@ def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
     orbits = None if curve.orbits is None else _at(curve.orbits, ORBITS, shown)
     if orbits is not None and orbits.swept is not None:
         orbits = replace(orbits, swept=orbits.swept.at(shown))
-    found: Curve = _at(curve, POINTS, shown)
+    names = (*POINTS, *(["error_at_frequency"] if curve.error_at_frequency is not None else []))
+    found: Curve = _at(curve, names, shown)
     harmonic = None if curve.harmonic is None else curve.harmonic[..., shown]
     if (by := curve.sensitivity) is not None:
         kinds = tuple(kind for kind, one in zip(by.kind, shown, strict=True) if one)

@@ -30,6 +30,8 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
     changed: dict[str, Any] = {
         name: _still(getattr(curve, name), rest) for name in ("amplitude", "fundamental", "error")
     }
+    if curve.error_at_frequency is not None:
+        changed["error_at_frequency"] = _still(curve.error_at_frequency, rest)
     changed["peaks"] = {
         dof: Peak(0.0, np.nan, np.nan, peak.stable, 0.0) if still and np.isfinite(peak.amplitude) else peak
         for (dof, peak), still in zip(curve.peaks.items(), rest.tolist(), strict=True)

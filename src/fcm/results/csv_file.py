@@ -18,6 +18,7 @@ from fcm.rotational_dofs import unit_of
 from fcm.units import headed, in_unit
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
+ERRORS = ("error", "error_at_frequency")  # at a peak of its height; at the same frequency everywhere
 ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
 
 
@@ -44,7 +45,7 @@ def _shown(response: Response) -> list[int]:
 def _columns(response: Response, dofs: Sequence[str]) -> list[str]:
     """Names of what `_rows` gives of each point."""
     exact, unit = response.method == "exact", response.frequency_unit
-    kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
+    kinds = ("amplitude", "phase", "mean", "fundamental", *ERRORS, *(ORBIT_KINDS if exact else ()))
     swept = response.parameters[0] if response.parameters else ()
     heads = [headed(key, *response.units, unit) for key in swept]
     columns = ["curve", "branch", *heads, f"frequency [{unit}]"]
@@ -53,7 +54,7 @@ def _columns(response: Response, dofs: Sequence[str]) -> list[str]:
         columns += ["modal_amplitude", "damping_ratio"]
     for dof in dofs:
         own = unit_of(dof, response.units[0])
-        units = {kind: f" [{own}]" if own and kind not in ("phase", "error") else "" for kind in kinds}
+        units = {kind: f" [{own}]" if own and kind not in ("phase", *ERRORS) else "" for kind in kinds}
         columns += [f"{kind} {dof}{units[kind]}" for kind in kinds]
     columns += [f"regime {name}" for name in response.contacts]
     work = " ".join(reversed(response.units)) if all(response.units) else ""
@@ -69,7 +70,7 @@ def _rows(c: Curve, unit: str, planar: Sequence[int], shown: Sequence[int]) -> I
     """The points of a curve, without its number."""
     orbits, frequency = c.orbits, in_unit(c.frequency, unit)
     own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
-    parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
+    parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, c.same_frequency_error, *own)
     stacked = np.stack(parts, axis=2)[:, shown]
     values = stacked.reshape(c.frequency.size, stacked.shape[1] * stacked.shape[2])  # of no points, too
     contact_loads = np.stack((c.cycle, c.cycle_error), axis=-1).reshape(

@@ -56,7 +56,7 @@ class Curve:
     cycle_error: FloatArray  # (point, contact, 4) of these, estimated, each relative to itself
     stable: FloatArray  # (point,) 1 where small disturbances die out, 0 where not, NaN where it is not known
     table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
-    error: FloatArray  # (point, dof) of amplitude, estimated, relative
+    error: FloatArray  # (point, dof) of amplitude, estimated, relative; at a peak that of its height
     truncation_error: (
         FloatArray  # (point,) the greatest of these that matters, see `fcm.accuracy.embedded_pair`
     )
@@ -91,10 +91,16 @@ class Curve:
     sensitivity: Sensitivities | None = None  # of the peaks
     across: ContactMotions | None = None  # motions of the contacts, in a plane or in several harmonics
     cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
+    error_at_frequency: FloatArray | None = None  # (point, dof) at peaks, too; None: as error
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restores a curve from another process or a file, sharing values equal in all curves."""
         vars(self).update({name: _shared(value) for name, value in state.items()})
+
+    @property
+    def same_frequency_error(self) -> FloatArray:
+        """Error (point, dof) of the amplitude at the same frequency, at peaks, too."""
+        return self.error if self.error_at_frequency is None else self.error_at_frequency
 
     @property
     def points(self) -> int:

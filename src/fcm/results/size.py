@@ -16,8 +16,8 @@ class SizeOptions(Frozen):
 
     of_curve: int = 3000  # bytes of a curve without its points: names, peaks and arrays
     of_point: int = 4  # numbers of a point itself: frequency, stability, two errors
-    # numbers of each degree of freedom at a point: amplitude, fundamental, phase, mean, error
-    of_dof: int = 5
+    # numbers of each degree of freedom at a point: amplitude, fundamental, phase, mean, two errors
+    of_dof: int = 6
     # numbers of each contact at a point: five of its loop, four of its cycle, its states
     of_contact: int = 12
     kept_of_peaks: int = 6  # about the points kept of a curve of which only peaks are kept
@@ -56,7 +56,7 @@ def bytes_of_results(
     >>> from fcm import load_scene
     >>> scene = load_scene("yang1998")
     >>> bytes_of_results(scene, (1,), peaks_only=False)
-    71600.0
+    74800.0
     """
     options = options or SizeOptions()
     dofs, contacts = len(scene.modal.dofs), len(scene.contacts)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fcm.model.question import Question
 from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.scene.contact_springs import stuck_stiffness
 from fcm.scene.errors import several
-from fcm.scene.options import MESSAGES
+from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.units import UNIT
 
 SHORTER = {"m": "mm", "mm": "um"}  # by a thousand: a stiffness per shorter unit is a thousand times as much
@@ -20,8 +21,7 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
     The measure of stiff ones is k times the flexibility of the elastic modes along the contact's
     displacement, sum phi^2 / (m omega^2). Contacts are soft if they change no resonance up to the range's
     end while all of them stick. Where units are given, k_u and k_v of very different size are asked about.
-    Nothing is said of rings, of stiffnesses that are swept, chosen or fitted, nor of soft contacts that hold
-    rigid bodies.
+    Nothing is said of rings, nor of stiffnesses that are swept, chosen or fitted.
     """
     if scene.ring is not None or not scene.contacts or varies(scene, ".k_u", ".k_v"):
         return []
@@ -51,23 +51,33 @@ def _soft(scene: Scene, ratio: float) -> str:
     """Question about contacts that change no resonance up to the range's end while they stick; or ''.
 
     Nothing where they would not even if the stiffest were as stiff as the structure there, by the ratio: then
-    these resonances do not move them.
+    these resonances do not move them. Where rigid bodies float, motions that no force pushes are taken as
+    held, as a damper's beside a blade: can friction change a resonance of the forces? Nothing where they push
+    a rigid body that the contacts hold in resonance within the range, as on soft mounts.
     """
     modal = scene.modal
-    if not modal.frequency.all():
-        return ""
-    opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
-    structure = np.diag(modal.frequency**2)
-    contacts = stuck_stiffness(scene) - structure
+    floating = modal.frequency == 0.0
+    contacts = stuck_stiffness(scene) - np.diag(modal.frequency**2)
+    kept = ~floating & (_pushed(scene, np.eye(floating.size)) | ~floating.any())
+    opened = np.sort(modal.frequency[kept & (np.arange(floating.size) < floating.size - modal.added)])
+    structure, held = np.diag(modal.frequency[kept] ** 2), contacts[np.ix_(kept, kept)]
     near = np.ones(opened.size, np.bool_)
     if scene.has_range:
-        highest = max((one.harmonic for one in scene.forces), default=1) * scene.frequency_range[1]
+        low, high = scene.frequency_range
+        highest = max((one.harmonic for one in scene.forces), default=1) * high
         near = opened <= MESSAGES.range_near * highest
+        squares, turn = np.linalg.eigh(contacts[np.ix_(floating, floating)])
+        if (
+            _pushed(scene, turn.T @ np.eye(floating.size)[floating])
+            & (squares > low**2)
+            & (squares < highest**2)
+        ).any():
+            return ""
     if not near.any():
         return ""
 
     def change(times: float) -> FloatArray:
-        squares = np.linalg.eigvalsh(structure + times * contacts)[: opened.size]
+        squares = np.linalg.eigvalsh(structure + times * held)[: opened.size]
         return np.where(near, np.sqrt(np.maximum(squares, 0.0)) / opened - 1.0, 0.0)
 
     most = int(np.argmax(found := change(1.0)))
@@ -80,6 +90,17 @@ def _soft(scene: Scene, ratio: float) -> str:
         f"{opened[most] / UNIT[unit]:.5g} {unit} is {percent} higher, so that friction changes little. Are "
         f"k_u and k_v in its units?{_per_shorter(*scene.units)}"
     )
+
+
+def _pushed(scene: Scene, turn: FloatArray) -> NDArray[np.bool_]:
+    """Mask of combinations (one, mode) of modes of mass 1 that forces push, beyond rounding."""
+    mass_one = scene.modal.shapes / np.sqrt(scene.modal.mass)[:, None]
+    directions = np.array([one.direction for one in scene.forces]).reshape(-1, mass_one.shape[1]).T
+    size = np.abs(mass_one).max(axis=0) @ np.abs(directions)
+    found: NDArray[np.bool_] = (np.abs(turn @ mass_one @ directions) > TOLERANCES.displacement * size).any(
+        axis=1
+    )
+    return found
 
 
 def _per_shorter(length: str, force: str) -> str:
@@ -122,10 +143,16 @@ def _stiffness_beside_structure(scene: Scene) -> FloatArray:
 def flexibility(scene: Scene) -> FloatArray:
     """Displacement (contact, 2) per unit load, by elastic modes: where each contact slides, and its normal.
 
-    Of a contact in a plane the greater one of both directions.
+    Of a contact in a plane the greater one of both directions. Zero where it is rounding beside the greatest
+    displacement of a mode of mass 1.
     """
     modal = scene.modal
     elastic = modal.frequency > 0.0
-    shapes = modal.shapes[elastic] / (np.sqrt(modal.mass) * modal.frequency)[elastic][:, None]
-    each = [[float(np.sum((shapes @ along) ** 2)) for along in one.directions] for one in scene.contacts]
+
+    def along(direction: FloatArray) -> float:
+        moved = modal.shapes @ direction / np.sqrt(modal.mass)
+        real = elastic & (np.abs(moved) > TOLERANCES.displacement * np.abs(moved).max(initial=0.0))
+        return float(np.sum((moved[real] / modal.frequency[real]) ** 2))
+
+    each = [[along(direction) for direction in one.directions] for one in scene.contacts]
     return np.array([(max(sliding), normal) for *sliding, normal in each]).reshape(-1, 2)

@@ -31,12 +31,16 @@ import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.contact_springs import along_contacts, closed_stiffness, sticking_stiffness
+from fcm.scene.open_modes import stuck_modes
 from fcm.scene.options import FRICTION_DAMPING, TOLERANCES
 from fcm.units import UNIT
 
 
 def friction_damping(scene: Scene) -> list[dict[str, Any]]:
-    """Frequencies of the first elastic modes with contacts open and stuck, and damping by friction.
+    """Frequencies of the first elastic modes with contacts stuck, of those alike when open, and the damping.
+
+    `open_mode` counts the mode without contacts of the most alike shape from 1, `open` is its frequency and
+    `mac` its modal assurance criterion. Each is followed by its shape as the contacts slip.
 
     `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
     in it, `preload` that of each contact which gives it with the forces of the scene: 0 where these do not
@@ -53,6 +57,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     if not scene.contacts:
         return []
     import scipy.linalg  # which most runs do without
+    from scipy.optimize import linear_sum_assignment
 
     modal, contacts = scene.modal, scene.contacts
     along, held, added = (
@@ -65,44 +70,51 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     across = along_contacts(scene, normal=True)
     lossy = np.where(mu > 0.0, k_u, 0.0)[owner]
     per_force = np.divide(k_u, 2.0 * mu, out=np.zeros_like(mu), where=mu > 0.0)
-    opened = np.sort(modal.frequency[: modal.frequency.size - modal.added])
-    floating = int((modal.frequency == 0.0).sum())
-    last = min(opened.size, floating + FRICTION_DAMPING.modes) - 1
-    squares = scipy.linalg.eigh(held + added, subset_by_index=[0, last], eigvals_only=True)
-    stuck = np.sqrt(np.maximum(squares, 0.0))
-    elastic = squares > TOLERANCES.undamped * float(np.abs(held + added).sum(axis=1).max(initial=0.0))
+    modes = stuck_modes(scene)
+    followed = np.array([one.shape for one in modes]).T  # at the last theta
+    most = min(2 * modes[-1].number + 2, modal.frequency.size) if modes else 0
 
-    best = np.zeros(last + 1)
+    best = np.zeros(len(modes))
     # of each contact, at the best theta of each mode
-    ratio, preload, load = np.zeros((3, last + 1, len(contacts)))
-    for theta in np.geomspace(FRICTION_DAMPING.least_angle, np.pi, FRICTION_DAMPING.angles, endpoint=False):
+    ratio, preload, load = np.zeros((3, len(modes), len(contacts)))
+    angles = np.geomspace(FRICTION_DAMPING.least_angle, np.pi, FRICTION_DAMPING.angles, endpoint=False)
+    for theta in angles[::-1] if modes else ():
         k_r, k_i = (theta - np.sin(theta) * np.cos(theta)) / np.pi, np.sin(theta) ** 2 / np.pi
-        squares, shapes = scipy.linalg.eigh(held + k_r * added, subset_by_index=[0, last])
-        for mode in np.flatnonzero(elastic & (squares > 0.0)).tolist():
-            shape, omega = shapes[:, mode], float(np.sqrt(squares[mode]))
-            moved = (along.T @ shape) ** 2
-            loss = k_i * lossy * moved / (2.0 * squares[mode])
+        squares, shapes = scipy.linalg.eigh(held + k_r * added, subset_by_index=[0, most - 1])
+        same = linear_sum_assignment((followed.T @ shapes) ** 2, maximize=True)[1]
+        followed = shapes[:, same]
+        motion = np.abs(along.T @ followed)
+        motion[motion <= TOLERANCES.displacement * motion.max(initial=0.0)] = 0.0
+        for mode, square in enumerate(squares[same].tolist()):
+            if square <= 0.0:
+                continue
+            shape, moved = followed[:, mode], motion[:, mode] ** 2
+            loss = k_i * lossy * moved / (2.0 * square)
             if loss.sum() > best[mode]:
                 best[mode] = loss.sum()
                 ratio[mode] = np.bincount(owner, loss, len(contacts))
+                omega = float(np.sqrt(square))
                 own = float((modal.damping * modal.frequency) @ shape**2) / omega
                 size = abs(_force_on(scene, shape / np.sqrt(modal.mass), omega)) / (
-                    2.0 * (best[mode] + own) * squares[mode]
+                    2.0 * (best[mode] + own) * square
                 )
                 amplitude = size * np.sqrt(np.bincount(owner, moved, len(contacts)))
                 preload[mode] = per_force * amplitude * (1.0 - np.cos(theta))
                 load[mode] = k_v * np.abs(across.T @ shape) * size
+    unit = UNIT[scene.frequency_unit]
     return [
         {
-            "open": float(opened[mode] / UNIT[scene.frequency_unit]),
-            "stuck": float(stuck[mode] / UNIT[scene.frequency_unit]),
+            "open": float(modal.frequency[one.open_mode] / unit),
+            "open_mode": one.open_mode + 1,
+            "mac": one.mac,
+            "stuck": one.frequency / unit,
             "friction_damping": float(best[mode]),
             "by_contact": {
-                contact.name: float(one / best[mode]) if best[mode] else 0.0
-                for contact, one in zip(contacts, ratio[mode], strict=True)
+                contact.name: float(part / best[mode]) if best[mode] else 0.0
+                for contact, part in zip(contacts, ratio[mode], strict=True)
             },
             "preload": {
-                contact.name: float(one) for contact, one in zip(contacts, preload[mode], strict=True)
+                contact.name: float(force) for contact, force in zip(contacts, preload[mode], strict=True)
             },
             "opens": [
                 contact.name
@@ -110,7 +122,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
                 if moved > held > 0.0
             ],
         }
-        for mode in np.flatnonzero(elastic).tolist()[: FRICTION_DAMPING.modes]
+        for mode, one in enumerate(modes)
     ]
 
 

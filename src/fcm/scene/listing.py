@@ -12,6 +12,7 @@ from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.contact_springs import stuck_stiffness
 from fcm.scene.contact_stiffness import flexibility
 from fcm.scene.errors import counted
+from fcm.scene.open_modes import stuck_modes
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 from fcm.units import UNIT
@@ -79,7 +80,8 @@ def listing(scene: Scene) -> dict[str, Any]:
 def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[str, float | None]]:
     """Of each contact k_u and k_v, and the force per unit displacement of the structure without contacts.
 
-    None where no load is held: rigid-body modes move along it. Nor where no mode does.
+    None where no load is held: rigid-body modes move along it. Nor where no mode does. `elastic_tangential`
+    and `elastic_normal` are those of elastic modes alone, None where no such mode moves along it.
     """
     found: dict[str, dict[str, float | None]] = {}
     for contact, (along, across) in zip(scene.contacts, flexibility(scene).tolist(), strict=True):
@@ -87,11 +89,14 @@ def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[st
             shares[name] is None for name in shares if name.startswith(f"contact.{contact.name}.tangential")
         ]
         held = shares[f"contact.{contact.name}.normal"] is not None
+        elastic = [1.0 / one if one else None for one in (along, across)]
         found[contact.name] = {
             "k_u": contact.k_u,
-            "structure_tangential": 1.0 / along if along and not any(free) else None,
+            "structure_tangential": elastic[0] if not any(free) else None,
+            "elastic_tangential": elastic[0],
             "k_v": contact.k_v,
-            "structure_normal": 1.0 / across if across and held else None,
+            "structure_normal": elastic[1] if held else None,
+            "elastic_normal": elastic[1],
         }
     return found
 
@@ -208,11 +213,13 @@ def notes_of_modes(scene: Scene) -> list[str]:
     if rigid:
         of_open = f"0 ({counted(rigid, 'rigid-body mode')})" + (f", {of_open}" if opened.size else "")
     damped = f". Their damping ratios while stuck: {_listed(ratio[:most], 3)}" if omega.size else ""
-    among = ": of the first between the first of each, and so on. Rigid-body modes count" if rigid else ""
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
+    if rigid and omega.size:  # by number they do not belong together
+        alike = np.array([scene.modal.frequency[one.open_mode] for one in stuck_modes(scene)[:most]])
+        of_stuck += f", by shape those at {_listed(alike / UNIT[unit])} {unit} open"
     said = [
         f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "
-        f"The main peak of a mode lies between the two{among}"
+        f"The main peak of a mode lies {'mostly ' if rigid else ''}between the two"
     ]
     if scene.of_matrices and ratio.size and ratio.min() >= LIMITS.damping_ratio:
         said.append(

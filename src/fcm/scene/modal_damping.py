@@ -68,8 +68,10 @@ def damping_of(
         pushes = left @ loads
         seen = np.hstack((pushes, left[:, outputs]))
         modes = DampedModes(stiffness, modal, rigid)
-        effects = (coupling_effect(modes, pushes, seen, k, ends) for k in (0.0 * springs, springs))
-        said = _left_out(dragged, list(effects))
+        effects = [coupling_effect(modes, pushes, seen, k, ends) for k in (0.0 * springs, springs)]
+        if max(effects) <= MESSAGES.damping_left_out:  # as of a body that nothing pushes
+            dragged = 0.0
+        said = _left_out(dragged, effects)
     lowest = ends[0] if np.isfinite(ends[0]) else 0.0
     return Damping(ratio, float(dragged / np.hypot(lowest, dragged)) if dragged else 0.0, said)
 
@@ -95,12 +97,20 @@ def _left_out(dragged: float, effects: list[float]) -> list[str]:
     if not effects:
         return [f"structure: {what}"]
     free, stuck = map(_share, effects)
+    high = ": a resonance that is damped mostly by what is left out is far too high"
     return [
         f"structure: {what}; with it, the response within the range would change by {free} without contacts, "
-        f"{stuck} with all of them stuck"
+        f"{stuck} with all of them stuck{high if max(effects) >= 1.0 else ''}"
     ]
 
 
 def _share(change: float) -> str:
-    """A relative change in words: beside a resonance that is left without damping it is no number."""
-    return f"up to about {100 * change:.2g} %" if change < 1.0 else "all of it and more"
+    """A relative change in words: beside a resonance that is left without damping it is no number.
+
+    >>> _share(0.00123), _share(0.996), _share(2.0)
+    ('up to about 0.12 %', 'up to about 100 %', 'more than itself')
+    """
+    percent = 100.0 * change
+    if percent >= 100.0:
+        return "more than itself"
+    return f"up to about {percent:.0f} %" if percent >= 10.0 else f"up to about {percent:.2g} %"

@@ -12,8 +12,10 @@ import numpy as np
 from fcm.mesh import Mesh, MeshError, read_mesh
 from fcm.mesh.pairing import (
     MOST_NAMED,
+    PAIRING,
     Plane,
     across,
+    beyond,
     fitted_plane,
     nearest_partners,
     outward,
@@ -53,7 +55,7 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
         here = mesh.at(nodes)
         plane = _plane(section, mesh, nodes)
         interface = Interface(section.data.get("name", ""), here, here, (name,), plane=plane)
-        said = _said_of_plane(section, interface, plane)
+        said = [*_said_of_plane(section, interface, plane), *_said_of_side(section, mesh, nodes)]
         return PairTable([(str(node),) for node in nodes], interface=interface, said=tuple(said))
     (one, first), (other, second) = sets
     try:
@@ -79,14 +81,7 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
         if alone:
             text += f"; {counted(len(alone), 'node')} of {name} without a partner ({_some(alone)})"
     said = [text, *_said_of_plane(section, interface, plane)]
-    along = _vector(section.data.get("normal"))
-    if along is not None and side(mesh, pairing.pairs, along) < 0.0:
-        said.append(
-            Question(
-                f"contact {quoted(interface.name)}: its normal points from {other} to {one}, so that it "
-                "presses where they part: is it meant? The other way it would be the opposite"
-            )
-        )
+    said += _said_of_side(section, mesh, pairing.pairs, (one, other))
     return PairTable([tuple(map(str, pair)) for pair in pairing.pairs], interface=interface, said=tuple(said))
 
 
@@ -113,7 +108,9 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
     interface = Interface(name, first, second, plane=plane)
     said = [*_said_of_places(name, table, first, second), *_said_of_plane(section, interface, plane)]
     if not couples:
+        said += _said_of_side(section, mesh, tuple(pair[0] for pair in pairs))
         return replace(table, interface=interface, said=tuple(said))
+    said += _said_of_side(section, mesh, couples)
     apart = np.linalg.norm(
         mesh.at(tuple(a for a, _ in couples)) - mesh.at(tuple(b for _, b in couples)), axis=1
     )
@@ -260,6 +257,34 @@ def _said_of_lean(section: Section, interface: Interface) -> list[str]:
         Question(
             f"contact {quoted(interface.name)}: its normal leans by {angle:.2g} degrees from that of the "
             'plane in which its nodes lie. Is it meant? normal = "fitted" takes that of the plane'
+        )
+    ]
+
+
+def _said_of_side(
+    section: Section,
+    mesh: Mesh,
+    pairs: Sequence[tuple[int, int]] | tuple[int, ...],
+    sides: tuple[str, str] = ("its first nodes", "the others"),
+) -> list[str]:
+    """Question on a given normal that points from the second side of pairs to the first, or into the body of
+    nodes that touch the ground; nothing where neither places nor elements show the sides."""
+    along = _vector(section.data.get("normal"))
+    if along is None or not pairs:
+        return []
+    couples = [one for one in pairs if not isinstance(one, int)]
+    nodes = [one for one in pairs if isinstance(one, int)]
+    far = side(mesh, couples, along) if couples else beyond(mesh, nodes, along)
+    ends = mesh.at(tuple(node for pair in couples for node in pair) or tuple(nodes))
+    size = float(np.ptp(ends, axis=0).max()) * float(np.linalg.norm(along))
+    if far >= -PAIRING.side_tolerance * size:
+        return []
+    points = f"from {sides[1]} to {sides[0]}" if couples else "into the elements at its nodes"
+    where = "they part" if couples else "these leave the ground"
+    return [
+        Question(
+            f"contact {quoted(section.data.get('name', ''))}: its normal points {points}, so that it presses "
+            f"where {where}: is it meant? The other way it would be the opposite"
         )
     ]
 

@@ -1,0 +1,77 @@
+"""One line on a response: whether it is complete, its peaks stable, and how large their errors are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fcm.cli.columns import BEYOND, short
+from fcm.cli.curves import incomplete, shown_dofs
+
+
+def verdict(summary: Mapping[str, Any], remarks: int) -> str:
+    """Line on the peaks that the tables show, and how many remarks stand above it; empty without a response.
+
+    Curves of levels and nonlinear modes have no peaks of a response.
+
+    Examples
+    --------
+    >>> peak = {"amplitude": 1.0, "error": 2e-4, "stable": True}
+    >>> curve = {"complete": True, "points": 9, "parameters": {}, "peak": {"u": peak}}
+    >>> verdict({"curves": [curve]}, 0)
+    'result: complete; every peak shown is stable; errors of peaks are at most 2.0e-04'
+    >>> other = curve | {"complete": False, "peak": {"u": peak | {"stable": None, "error": None}}}
+    >>> verdict({"curves": [curve, other]}, 2)  # doctest: +NORMALIZE_WHITESPACE
+    'result: 1 of 2 curves stopped early; of 2 peaks shown, 1 of unknown stability;
+    errors of peaks are at most 2.0e-04, 1 unknown; 2 remarks on it above'
+    """
+    curves: Sequence[Mapping[str, Any]] = summary["curves"]
+    if not curves or any("mode" in curve or "level_folds" in curve for curve in curves):
+        return ""
+    parts = [incomplete(summary) or "complete"]
+    if peaks := _shown(summary):
+        parts += [_of_stability(peaks), _of_errors(summary, peaks)]
+    elif any(curve["points"] for curve in curves):
+        parts.append("nothing moves")
+    if remarks:
+        parts.append(f"{remarks} remark{'s' * (remarks > 1)} on it above")
+    return f"result: {'; '.join(parts)}"
+
+
+def _shown(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Peaks of the degrees of freedom that the tables show, those at rest left out."""
+    found = []
+    for curve in summary["curves"]:
+        for dof in shown_dofs(summary):
+            highest = [curve["peak"].get(dof) or {}]
+            found += [one for one in curve.get("peaks", {}).get(dof) or highest if one.get("amplitude")]
+    return found
+
+
+def _of_stability(peaks: Sequence[Mapping[str, Any]]) -> str:
+    """Part of the line on the stability of peaks and on their places."""
+    counts = {
+        "unstable": sum(one.get("stable", True) is False for one in peaks),
+        "of unknown stability": sum(one.get("stable", True) is None for one in peaks),
+    }
+    places = {
+        "on an isolated branch": sum(bool(one.get("on_isolated_branch")) for one in peaks),
+        "at an end of the range": sum(bool(one.get("at_edge")) for one in peaks),
+    }
+    told = [f"{count} {what}" for what, count in (counts | places).items() if count]
+    if not any(counts.values()):
+        return ", ".join(["every peak shown is stable", *told])
+    return ", ".join([f"of {len(peaks)} peak{'s' * (len(peaks) > 1)} shown", *told])
+
+
+def _of_errors(summary: Mapping[str, Any], peaks: Sequence[Mapping[str, Any]]) -> str:
+    """Part of the line on the errors of peaks; of exact motions by how much their periods do not close."""
+    if summary.get("method") == "exact":
+        closure = [one["closure_error"] for one in summary["curves"] if one.get("closure_error") is not None]
+        return f"periods close to {short(max(closure))}" if closure else "errors unknown"
+    told = [one["error"] for one in peaks if one.get("error") is not None]
+    if not told:
+        return "errors of peaks are unknown"
+    most = "up to more than 100 %" if short(max(told)) == BEYOND else f"at most {short(max(told))}"
+    unknown = len(peaks) - len(told)
+    return f"errors of peaks are {most}{f', {unknown} unknown' * bool(unknown)}"
