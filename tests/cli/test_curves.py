@@ -379,7 +379,7 @@ def test_a_csv_has_the_degrees_of_freedom_that_the_scene_asks_for(fcm, tmp_path)
         rows.append([line.split(",") for line in (tmp_path / "s.csv").read_text().splitlines()])
     every, some = rows
     of_u = [k for k, name in enumerate(every[0]) if name.split(" ")[1:2] == ["u"]]
-    assert len(of_u) == 5 and some == [[x for k, x in enumerate(row) if k not in of_u] for row in every]
+    assert len(of_u) == 6 and some == [[x for k, x in enumerate(row) if k not in of_u] for row in every]
     track = ("--track", "peaks", "--over", "contact.shroud.n_0", "--from", "4", "--to", "4.2")
     assert fcm("respond", "s.toml", *track, "--csv", "t.csv", "--harmonics", "1").code == 0
     header = (tmp_path / "t.csv").read_text().splitlines()[0].split(",")

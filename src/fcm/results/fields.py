@@ -216,7 +216,7 @@ def _add_trust(found: _Points) -> None:
     found.add("error", lambda c: c.error, ("dof",), long_name=either, units="1")
     here = f"{error}, at the same frequency: large on steep flanks and where peaks are shifted"
     found.add("error_at_frequency", lambda c: c.same_frequency_error, ("dof",), long_name=here, units="1")
-    left = "estimated shift by the harmonics left out, relative to the point's greatest amplitude; see error"
+    left = "estimated shift by the harmonics left out, relative to the greatest amplitude there; see error"
     found.add("truncation_error", lambda c: c.truncation_error, long_name=left, units="1")
     dies = "1 where small disturbances of the motion die out, 0 where not, missing where that is not known"
     found.add("stable", lambda c: c.stable, long_name=dies, units="1")
