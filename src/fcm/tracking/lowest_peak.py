@@ -39,7 +39,7 @@ from fcm.tracking.peak_envelope import (
     pieces_of,
     uncovered_values,
 )
-from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
+from fcm.tracking.start_points import SpecialPoints, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 T = TypeVar("T")
@@ -189,7 +189,7 @@ class LowestPeakSearch:
     def greatest_at(self, value: float) -> list[tuple[Condition, PieceHeight]]:
         """Special points of the response at a value that may be greatest, with their heights."""
         if value not in self.known_points:
-            here = for_scene(self.system, self.line.scene(self.system.scene, value))
+            here = self.system.with_scene(self.line.scene(self.system.scene, value))
             points = self._step(
                 f"points at {value!r}",
                 SpecialPoints,
