@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.branches import force_level
 from fcm.branches.force_level import LevelRange, level_curve, resonances, solutions
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.shared_levels import clear, shared_curve
@@ -19,7 +20,9 @@ from fcm.results.csv_file import write_csv
 from fcm.results.output import to_dataset
 from fcm.run import Execution
 from fcm.scene import load_scene
+from fcm.scene.draft import number_of
 from fcm.shooting import periodic
+from fcm.tracking.parameter_line import along
 
 from ..harmonic_balance.scenes import isola, isola_stuck, up_to
 from ..harmonic_balance.truth import state
@@ -171,17 +174,39 @@ def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads():
     """For draws of friction and preload there is none in common."""
     followed = []
 
-    def counted(system, omega):
+    def counted(system, omega, top):
         followed.append(system)
-        return level_curve(system, omega, LevelRange((0.0, highest_linear_limit(system, omega))))
+        return level_curve(system, omega, LevelRange((0.0, top)))
 
     clear()
     systems = [System(preloaded(isola(), n_0)) for n_0 in (-15.0, -15.5, -60.0)]
-    paths = [shared_curve(one, 1.22, counted) for one in systems]
-    assert len(followed) == 1 and paths[0] is paths[1] is paths[2]
+    paths = [shared_curve(one, 1.22, 6.0 / one.preload_unit, counted) for one in systems]
+    ends = [one.preload_unit * path.parameter[-1] for one, path in zip(systems, paths, strict=True)]
+    assert len(followed) == 1 and ends[0] == pytest.approx(6.0) and min(ends) > 6.0 * (1.0 - 1e-9)
+    assert all(np.array_equal(path.z, paths[0].z[: len(path.z)]) for path in paths)
+    assert len(paths[2].z) < len(paths[0].z)
+    further = shared_curve(systems[0], 1.22, 12.0 / systems[0].preload_unit, counted)
+    assert len(followed) == 2 and np.array_equal(further.z[: len(paths[2].z)], paths[2].z)
     scene = systems[0].scene
     drawn = System(replace(scene, parameters={**scene.parameters, "contact.c.mu": 0.05}))
     assert all(one.preload_unit for one in systems) and not drawn.preload_unit
+
+
+def test_responses_of_a_search_over_a_preload_share_curves_of_levels(monkeypatch):
+    """That of few harmonics to its end, and that of more as far as the least preload needs it."""
+    followed, coarse = [], force_level._coarse_curve
+
+    def counted(system, omega, linear, top, user_values):
+        followed.append((len(system.harmonics), top))
+        return coarse(system, omega, linear, top, user_values)
+
+    monkeypatch.setattr(force_level, "_coarse_curve", counted)
+    clear()
+    scene = load_scene("yang1998-n5")
+    system, line = System(scene, tuple(range(1, 8))), along(number_of(scene, "contact.shroud.n_0"))
+    for n_0 in (4.0, 8.0, 6.0):
+        assert solutions(system.with_scene(line.scene(scene, n_0)), 1.22).solutions
+    assert len(followed) == 2 and followed[0][0] < followed[1][0] and followed[1][1] < followed[0][1]
 
 
 def test_a_curve_of_levels_in_common_is_interrupted_as_that_of_a_system_of_its_own():
@@ -190,15 +215,15 @@ def test_a_curve_of_levels_in_common_is_interrupted_as_that_of_a_system_of_its_o
     def stop():
         raise KeyboardInterrupt
 
-    def followed(system, omega):
-        return level_curve(system, omega, LevelRange((0.0, highest_linear_limit(system, omega))))
+    def followed(system, omega, top):
+        return level_curve(system, omega, LevelRange((0.0, top)))
 
     system = System(preloaded(isola(), -15.0))
     system.normalised.work.poll()
     system.work.poll = stop
     clear()
     with pytest.raises(KeyboardInterrupt):
-        shared_curve(system, 1.22, followed)
+        shared_curve(system, 1.22, 1.0, followed)
 
 
 @pytest.mark.parametrize("harmonics", [1, 3])

@@ -16,7 +16,6 @@ from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
-from fcm.tracking.start_points import for_scene
 from fcm.tracking.tracked_point import Ending, TrackingSetup
 
 SPAN, RANGE = (0.5, 0.7), (1.45, 1.65)  # in which the peak of x0 turns back where steps are short
@@ -111,7 +110,7 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
 def tops(scene, dof, level, low, high):
     """Frequencies of an ordinary run's points in a window that are higher than their neighbours."""
     system = System(scene, (1, 2, 3))
-    at = for_scene(system, number_of(scene, "level").put(scene, level))
+    at = system.with_scene(number_of(scene, "level").put(scene, level))
     found = []
     for path in traced(at).branches.paths:
         height = reported_quantities(at, path).amplitude[:, dof]

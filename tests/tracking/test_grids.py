@@ -23,7 +23,6 @@ from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import SearchOptions
 from fcm.tracking.parameter_line import along
-from fcm.tracking.start_points import for_scene
 from fcm.tracking.tracked_point import TrackingSetup
 
 from ..harmonic_balance.scenes import gap5
@@ -192,12 +191,12 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     assert min(s for _, s in turns) < value < max(s for _, s in turns)
     tracked_points = [point for curve in curves for point in curve.points if abs(point.z[-1] - value) < 1e-9]
     folds = np.unique([point.z[-2] for point in tracked_points])
-    ordinary = every_branch(for_scene(setup.system, gap.put(scene, value))).traced.branches.paths
+    ordinary = every_branch(setup.system.with_scene(gap.put(scene, value))).traced.branches.paths
     isolated = [path for path in ordinary if path.status is Status.CLOSED]
     others = [path for path in ordinary if path.status is not Status.CLOSED]
     at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in others])
     closed = follow(
-        for_scene(setup.system, gap.put(scene, value)).new_balance(),
+        setup.system.with_scene(gap.put(scene, value)).new_balance(),
         beside_fold(setup, max(tracked_points, key=lambda point: point.z[-2]).z),
         (0.7, 1.5),
         options=FollowOptions(0.05),

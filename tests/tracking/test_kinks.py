@@ -10,14 +10,15 @@ from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.tracking import extended_system
+from fcm.tracking.curve import both_ways
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.kinks import Circle
 from fcm.tracking.nonsmooth_continuation import Pieces, land
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.start_points import for_scene, special_points
-from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
+from fcm.tracking.start_points import special_points
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 RADIUS = 1e-4
 PEAK = Condition(Kind.PEAK, 0)
@@ -32,7 +33,7 @@ def setup():
 @pytest.fixture(scope="module")
 def point(setup):
     """A peak, on which a curve of peaks runs through."""
-    here = for_scene(setup.system, setup.line.scene(setup.system.scene, 5.0))
+    here = setup.system.with_scene(setup.line.scene(setup.system.scene, 5.0))
     (_, z), *_ = special_points(here, [PEAK])[0]
     return land(setup, PEAK, np.append(z, 5.0))
 
@@ -92,3 +93,21 @@ def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(setu
         0.0, abs=1e-12
     )
     assert not is_top(problem, TrackedPoint(point.z, point.direction))
+
+
+def test_a_peak_is_not_followed_along_a_corner_at_which_its_condition_jumps():
+    """A contact of the blade begins another slip within its cycle there: no onset that is tracked."""
+    blade = load_scene("blade")
+    number = number_of(blade, "contact.*.n_0")
+    setup = TrackingSetup(System(number.freed(blade), (1, 2, 3)), along(number), (9.7, 9.8), step=0.05)
+    condition = Condition(Kind.PEAK, blade.modal.dofs.index("40y"))
+    here = setup.system.with_scene(setup.line.scene(setup.system.scene, 9.8))
+    starts = [z for _, z in special_points(here, [condition]).points if 2240.0 < z[-1] < 2245.0]
+    found = both_ways(setup, condition, land(setup, condition, np.append(starts[0], 9.8)))
+    assert len(starts) == 1
+    assert Ending.CORNER in found.endings
+    for point in found.points:
+        problem = setup.tracked(condition)
+        problem.measure(point.z)
+        problem.evaluate(point.z)
+        assert abs(problem.residual[-1]) < 1e-6 * problem.scale[problem.n]

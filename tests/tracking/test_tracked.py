@@ -325,6 +325,7 @@ class FallsAndEnds(LowestPeakSearch):
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
         self.visited_values, self.setup = {}, SimpleNamespace(span=self.span, options=TRACKING)
+        self.pieces = [SimpleNamespace(s=np.array(self.span))]
 
     def best(self):
         return (
@@ -332,9 +333,6 @@ class FallsAndEnds(LowestPeakSearch):
             if "lower" in self.curves
             else EnvelopeMinimum(3.0, 1.8, (), "corner")
         )
-
-    def pieces(self):
-        return [SimpleNamespace(s=np.array(self.span))]
 
     def visit(self, value):
         if value in self.span:
@@ -369,14 +367,12 @@ class Parted(LowestPeakSearch):
 
     def __init__(self, between):
         self.system, self.span, self.between = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), between
-        self.setup, self.curves = SimpleNamespace(span=self.span, options=TRACKING), []
+        self.setup = SimpleNamespace(span=self.span, options=TRACKING)
+        self.curves = self.pieces = []
         self.visited_values, self.visited = {}, set()
 
     def refine_curves(self, known):
         pass
-
-    def pieces(self):
-        return self.curves
 
     def greatest_at(self, value):
         self.visited_values[value] = PieceHeight(

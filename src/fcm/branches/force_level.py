@@ -108,8 +108,8 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Level
         most = min(most, reached.max_level)
     if reach is None and len(system.harmonics) > few_harmonics(system):
         few = system.with_harmonics(system.harmonics[: few_harmonics(system)])
-        reach = _followed(few, omega, linear, most, most).max_level
-    found = _followed(system, omega, linear, most if reach is None else min(reach, most), most)
+        reach = _followed(few, omega, linear, most).max_level
+    found = _followed(system, omega, linear, most if reach is None else min(reach, most))
     if linear >= 1.0:
         at_rest = np.append(next(linear_responses(system, omega, 1.0)), omega)
         return replace(found, solutions=(at_rest, *found.solutions))
@@ -134,17 +134,13 @@ def solutions_in_turn(
         yield solutions(system, omega, reach.get(omega))
 
 
-def _followed(system: System, omega: float, linear: float, top: float, most: float) -> LevelSolutions:
-    """Solutions at the level 1 on the curve from where it is linear to its top.
-
-    most: the level up to which curves are shared by systems of other preloads.
-    """
+def _followed(system: System, omega: float, linear: float, top: float) -> LevelSolutions:
+    """Solutions at the level 1 on the curve from where it is linear to its top."""
     if linear >= top:
         return LevelSolutions(
             omega, system.harmonics, (), True, _level_reach(system, Status.COMPLETE, np.empty(0))
         )
-    shared = _shared(system, omega, top) if top >= most else None
-    return shared or _found(system, omega, linear, top)
+    return _shared(system, omega, top) or _found(system, omega, linear, top)
 
 
 def _found(system: System, omega: float, linear: float, top: float) -> LevelSolutions:
@@ -172,18 +168,13 @@ def turned_back(path: Path, options: LevelReachOptions) -> bool:
 
 
 def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
-    """Solutions from the curve that systems of other preloads share, if it goes as far; else None.
-
-    That is followed to its end, which is expensive where fewer harmonics tell that less is enough.
-    """
+    """Solutions from the curve that systems of other preloads share, up to a level; None if there is none."""
     if not system.preload_unit or top >= LINEAR_LIMITS.max_level:
         return None
-    path = shared_curve(system, omega, _to_level_one)
-    if path is not None:  # whoever followed it
-        system.work.add(seconds_of(system, path.evaluations, len(system.harmonics)))
-    margin = 1.0 + system.option(LEVEL_CURVE).level_tolerance
-    if path is None or top > margin * system.preload_unit * path.parameter[-1]:
+    path = shared_curve(system, omega, top / system.preload_unit, _without_user_points)
+    if path is None:
         return None
+    system.work.add(seconds_of(system, path.evaluations, len(system.harmonics)))  # whoever followed it
     found = solutions_at_level_one(system, path, omega)
     if found is None:
         return None
@@ -192,14 +183,9 @@ def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
     return LevelSolutions(omega, system.harmonics, tuple(found), True, reach, turns)
 
 
-def _to_level_one(system: System, omega: float) -> Path:
-    return _coarse_curve(
-        system,
-        omega,
-        system.option(LEVEL_CURVE).linear_fraction * lowest_linear_limit(system, omega),
-        highest_linear_limit(system, omega),
-        (),
-    )
+def _without_user_points(system: System, omega: float, top: float) -> Path:
+    linear = system.option(LEVEL_CURVE).linear_fraction * lowest_linear_limit(system, omega)
+    return _coarse_curve(system, omega, linear, top, ())
 
 
 def _coarse_curve(

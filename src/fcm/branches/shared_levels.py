@@ -2,8 +2,8 @@
 
 The equations are homogeneous in displacements, forces and preloads together: what a preload n_0 makes of the
 level 1, the preload 1 makes of the level 1 / n_0. So a sweep of preloads follows one curve at a frequency,
-of the greatest preload 1 (and -1), and each of its curves finds its solutions on that. Which one of them
-followed it does not matter.
+of the greatest preload 1 (and -1), as far as any of them needs it. Each of its curves finds its solutions on
+that. Which one of them followed it does not matter.
 """
 
 from __future__ import annotations
@@ -11,15 +11,16 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from fcm.branches.options import SHARED_LEVELS
+from fcm.branches.options import LEVEL_CURVE, SHARED_LEVELS
 from fcm.continuation import Path, Status
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
-Followed = Callable[[System, float], Path]
+Followed = Callable[[System, float, float], Path]
 
 
 class _CurveCache(threading.local):
@@ -37,21 +38,24 @@ def clear() -> None:
     _CURVES.paths.clear()
 
 
-def shared_curve(system: System, omega: float, followed: Followed) -> Path | None:
-    """The curve of the system with preloads of 1, as it is followed once.
+def shared_curve(system: System, omega: float, top: float, followed: Followed) -> Path | None:
+    """The curve of the system with preloads of 1 up to a level, as it is followed once.
 
-    Nothing if that does not come to its end.
+    A longer one that is known is cut there. Nothing if that does not come to its end.
     """
     key = (*_curve_key(system), omega)
-    kept = _CURVES.paths
-    if key in kept:
-        kept.move_to_end(key)
-        return kept[key]
-    path = followed(system.normalised, omega)
-    kept[key] = path if path.status is Status.COMPLETE else None
+    kept, enough = _CURVES.paths, top / (1.0 + system.option(LEVEL_CURVE).level_tolerance)
+    path = kept.get(key)
+    if key not in kept or (path is not None and path.parameter[-1] < enough):
+        path = followed(system.normalised, omega, top)
+        kept[key] = path = path if path.status is Status.COMPLETE else None
+    kept.move_to_end(key)
     if len(kept) > SHARED_LEVELS.max_kept:
         kept.popitem(last=False)
-    return kept[key]
+    if path is None:
+        return None
+    count = 1 + int((path.parameter >= enough).argmax())
+    return replace(path.part(np.arange(count)), evaluations=path.evaluations * count // len(path.z))
 
 
 def _curve_key(system: System) -> tuple[object, ...]:

@@ -96,6 +96,10 @@ class System(Frozen):
         """The system with other harmonics."""
         return self._with(harmonics=self._with_driven(harmonics))
 
+    def with_scene(self, scene: Scene) -> System:
+        """The system of another scene of the same contacts, with which it shares what they have in common."""
+        return self._with(scene=scene, linear=linear_of(scene))
+
     def _with_driven(self, harmonics: tuple[int, ...]) -> tuple[int, ...]:
         driven = self.linear.driven
         return harmonics if set(driven) <= {*harmonics} else tuple(sorted({*harmonics, *driven}))

@@ -37,7 +37,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import KINDS as ONSETS
 from fcm.tracking.parameter_line import along
 from fcm.tracking.stability import stability_along
-from fcm.tracking.start_points import SpecialPoints, for_scene
+from fcm.tracking.start_points import SpecialPoints
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 from fcm.units import in_unit
 
@@ -206,7 +206,7 @@ def _along_points(
     """
     count, lost = 0, dict[str, npt.NDArray[np.bool_]]()
     for k, point in enumerate(one.points):
-        system = for_scene(setup.system, setup.line.scene(setup.system.scene, float(point.z[-1])))
+        system = setup.system.with_scene(setup.line.scene(setup.system.scene, float(point.z[-1])))
         z = np.array(point.z[None, :-1])
         count += int(undetermined(system.scene, cycles(system, z, loops(system, z))[0]).sum())
         for why, which in no_steady_states(system, z, np.ones(1)).items():

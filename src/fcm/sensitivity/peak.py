@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
+from scipy.linalg import lu_factor, lu_solve
 from scipy.optimize import brentq
 
 from fcm.continuation.corrector import Newton
@@ -157,32 +160,30 @@ class Peak:
         """Derivatives of the height and the frequency of the peak by a number."""
         if self.kind is Kind.UNKNOWN:
             return np.nan, np.nan
-        if self.solved(self.newton, self.z) is None:
-            return np.nan, np.nan
-        balance = self.newton.problem
-        assert isinstance(balance, Balance)
         if self.kind is Kind.CORNER:
             return self._of_corner(moved)
-        across = self._across(rates, balance)
-        height = self._growth(rates, balance, across)
+        balance = self.newton.problem
+        assert isinstance(balance, Balance)
+        R_p, X = rates.at(balance, self.z)
+        across = lu_solve(self._factors, np.append(-R_p / self.scale[:-1], 0.0)) * self.scale
+        balance.report(self.z, np.ascontiguousarray(across))
+        height = float(growth_of(balance, X)[self.dof] + balance.growth[self.dof])
         if self.kind is Kind.EDGE:
             return height, 0.0
         alpha = -self._slope_by_number(moved) / self.curvature
         return height, float(across[-1] + alpha * self.unit[-1] * self.scale[-1])
 
-    def _across(self, rates: Rates, balance: Balance) -> FloatArray:
-        """w: how the point in the plane across the curve moves."""
-        R_p = rates.at(balance, self.z)[0]
+    @cached_property
+    def _factors(self) -> tuple[FloatArray, npt.NDArray[np.int32]]:
+        """Factors of the equations of the plane across the curve: how the point moves in it."""
+        balance = self.newton.problem
+        assert isinstance(balance, Balance)
+        balance.evaluate(self.z)
         inner = jacobian_of(balance) * self.scale
-        matrix = np.vstack((inner / self.scale[:-1, None], self.unit))
-        found: FloatArray = np.linalg.solve(matrix, np.append(-R_p / self.scale[:-1], 0.0)) * self.scale
-        return found
-
-    def _growth(self, rates: Rates, balance: Balance, direction: FloatArray) -> float:
-        """Rate of the amplitude along a direction, and by a number."""
-        X = rates.at(balance, self.z)[1]
-        balance.report(self.z, np.ascontiguousarray(direction))
-        return float(growth_of(balance, X)[self.dof] + balance.growth[self.dof])
+        factors: tuple[FloatArray, npt.NDArray[np.int32]] = lu_factor(
+            np.vstack((inner / self.scale[:-1, None], self.unit))
+        )
+        return factors
 
     def _slope_by_number(self, moved: ParameterStencil) -> float:
         """c_p: derivative of the slope by the number, in the plane across the curve."""

@@ -7,6 +7,7 @@ signs on both sides. Another equation holds there: that the onset's function is 
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg.lapack import dtrtrs
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
@@ -31,10 +32,14 @@ class Corner:
         for _ in range(self.options.max_iterations):
             self.problem.evaluate(z)
             matrix = np.asarray(self.problem.jacobian) * scale / scale[:-1, None]
-            step = np.linalg.lstsq(matrix, -np.asarray(self.problem.residual) / scale[:-1], rcond=None)[0]
+            Q, R = np.linalg.qr(matrix.T, mode="complete")  # the last column of Q is across all equations
+            along, singular = dtrtrs(R[:-1], -np.asarray(self.problem.residual) / scale[:-1], trans=1)
+            if singular:
+                return None
+            step = Q[:, :-1] @ along
             z += scale * step
             if np.linalg.norm(step) < self.options.tolerance:
-                return z, np.linalg.svd(matrix)[2][-1]
+                return z, Q[:, -1].copy()
         return None
 
     def special_root(self, z: FloatArray, side: int | None, offset: float = 0.0) -> FloatArray | None:

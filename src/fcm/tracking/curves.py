@@ -16,7 +16,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.known_curves import passes
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.start_points import for_scene, special_points
+from fcm.tracking.start_points import special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 T = TypeVar("T")
@@ -84,7 +84,7 @@ def _follow_all(
     for number, value in enumerate(values):
         if progress is not None:
             progress(number / len(values))
-        there = for_scene(system, line.scene(system.scene, value))
+        there = system.with_scene(line.scene(system.scene, value))
         special = made.once(partial(special_points, there, conditions, made.setup.options))
         if special.faults:
             made.problems.append(f"at {value:.6g}: {special.faults}")
@@ -142,7 +142,7 @@ class _CurveCollection:
 
 def _met_by_peaks(setup: TrackingSetup, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
     """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
-    middle = for_scene(setup.system, setup.line.scene(setup.system.scene, 0.5 * sum(setup.span)))
+    middle = setup.system.with_scene(setup.line.scene(setup.system.scene, 0.5 * sum(setup.span)))
     peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
     points = special_points(middle, peaks, setup.options).points
     problem = setup.tracked(onsets[0])

@@ -20,7 +20,6 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.start_points import for_scene
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 
@@ -114,7 +113,7 @@ def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACK
 def _more(found: _RefinedPoint) -> tuple[int, ...]:
     """The harmonics of the reference; none more where nothing slips or opens."""
     z, s = found.point.z, float(found.point.z[-1])
-    system = for_scene(found.setup.system, found.setup.line.scene(found.setup.system.scene, s))
+    system = found.setup.system.with_scene(found.setup.line.scene(found.setup.system.scene, s))
     further, y = FurtherHarmonics(system), z[None, :-1]
     if further.linear(y).all():
         return system.harmonics

@@ -239,6 +239,16 @@ class ExtendedSystem(Problem):
                 )
         return step
 
+    def jumps(self, z: FloatArray) -> bool:
+        """Whether the special-point condition jumps within the least difference about z."""
+        self.varied.set_parameter(float(z[-1]))
+        ahead = self.options.special.min_difference_fraction * np.asarray(self.scale)[:-1] * self.row
+        sides = np.array(z[:-1]) - ahead, np.array(z[:-1]) + ahead
+        if not (self._margins(sides[0]) * self._margins(sides[1]) < 0.0).any():
+            return False
+        before, after = (self._special(side, self._evaluated(side)) for side in sides)
+        return abs(after - before) > self.options.pieces.max_jump
+
     def _margins(self, y: FloatArray) -> FloatArray:
         """Functions whose signs change where the Jacobian is not smooth."""
         balance = self.varied.balance

@@ -39,7 +39,7 @@ from fcm.tracking.peak_envelope import (
     pieces_of,
     uncovered_values,
 )
-from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
+from fcm.tracking.start_points import SpecialPoints, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 T = TypeVar("T")
@@ -69,6 +69,7 @@ class LowestPeakSearch:
     options: SearchOptions = SEARCH
     steps: KeptSteps = field(default_factory=KeptSteps)
     curves: list[SpecialPointCurve] = field(default_factory=list)
+    pieces: list[MonotonePiece] = field(default_factory=list)  # of these, that count for the targets
     visited_values: dict[float, PieceHeight] = field(
         default_factory=dict
     )  # the greatest of the responses that were traced
@@ -123,7 +124,7 @@ class LowestPeakSearch:
     def best(self) -> EnvelopeMinimum | None:
         """The least value of the envelope, after following curves wherever none was followed."""
         while True:
-            best = envelope_minimum(self.setup, self.pieces())
+            best = envelope_minimum(self.setup, self.pieces)
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
             if not new or len(self.visited_values) >= self.options.max_visits:
                 return best
@@ -133,7 +134,7 @@ class LowestPeakSearch:
     def _unknown(self, best: EnvelopeMinimum | None) -> list[float]:
         """Values about which nothing is followed, but for those where all is far above the least."""
         return [
-            s for s in uncovered_values(self.setup, self.pieces()) if best is None or self._is_near(s, best)
+            s for s in uncovered_values(self.setup, self.pieces) if best is None or self._is_near(s, best)
         ]
 
     def _is_near(self, s: float, best: EnvelopeMinimum) -> bool:
@@ -152,10 +153,6 @@ class LowestPeakSearch:
         """Values at which the response was traced and is lower than the least of what was followed."""
         below = 0.0 if best is None else best.value * (1.0 - self.options.height_tolerance)
         return [s for s, top in self.visited_values.items() if 0.0 < top.value < below]
-
-    def pieces(self) -> list[MonotonePiece]:
-        """The monotone pieces of the curves that count for the targets."""
-        return [piece for target in self.targets for piece in pieces_of(self.setup, self.curves, target)]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
         """The least peak of the responses traced until now, and its number; None where none has a peak."""
@@ -189,7 +186,7 @@ class LowestPeakSearch:
     def greatest_at(self, value: float) -> list[tuple[Condition, PieceHeight]]:
         """Special points of the response at a value that may be greatest, with their heights."""
         if value not in self.known_points:
-            here = for_scene(self.system, self.line.scene(self.system.scene, value))
+            here = self.system.with_scene(self.line.scene(self.system.scene, value))
             points = self._step(
                 f"points at {value!r}",
                 SpecialPoints,
@@ -207,9 +204,10 @@ class LowestPeakSearch:
         """The curve through a point, if it is not known."""
         if not any(passes(curve, condition, point, self.setup) for curve in self.curves):
             key = f"curve of {condition} through {point.z.tolist()}"
-            self.curves.append(
-                self._step(key, SpecialPointCurve, partial(both_ways, self.setup, condition, point))
-            )
+            curve = self._step(key, SpecialPointCurve, partial(both_ways, self.setup, condition, point))
+            self.curves.append(curve)
+            for target in self.targets:
+                self.pieces += pieces_of(self.setup, [curve], target)
 
     def _step(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
         return self.steps(f"{self.system.harmonics} {key}", kind, step)

@@ -34,7 +34,7 @@ from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import DESCENT, DescentOptions
 from fcm.tracking.parameter_line import ParameterLine
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, PieceHeight, Target
-from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
+from fcm.tracking.start_points import SpecialPoints, special_points
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 from fcm.tracking.trials import by_trials
 
@@ -91,7 +91,7 @@ class PeakEnvelope:
     def peaks(self, q: FloatArray) -> list[Member]:
         """Special points of the response at q that count for the targets, by tracing it."""
         ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
-        here = for_scene(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
+        here = self.system.with_scene(self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
         setup, found = self.setup(q, np.zeros(q.size)), []
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]

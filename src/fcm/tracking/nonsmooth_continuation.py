@@ -177,6 +177,8 @@ class Pieces(CornerCrossing):
                 lambda z: 1.0 - 2.0 * (self._signs(z) * signs < 0.0).any(), 0.25 * self.options.short_step
             )
             ends.append(_End(same, self._slowly))
+            smooth = End(lambda z: 1.0 - 2.0 * self.smooth.jumps(z), self.options.reached_distance)
+            ends.append(_End(smooth, lambda: self._reach_corner() or Ending.CORNER))
         return ends
 
     def _keep(self, path: Path) -> None:

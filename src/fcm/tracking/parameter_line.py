@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -34,14 +35,17 @@ class ParameterLine(NamedTuple):
     def scene(self, scene: Scene, s: float) -> Scene:
         """The scene with the numbers at s."""
         assert scene.draft is not None
+        values = self.values(s).tolist()
         every = {
             address: one
-            for number, value in zip(self.numbers, self.values(s), strict=True)
-            for address, one in number.values(float(value)).items()
+            for number, value in zip(self.numbers, values, strict=True)
+            for address, one in number.values(value).items()
         }
         # the rates there are taken of what it is made of; the level is relative to what was written
         fix = all(number.key != LEVEL for number in self.numbers)
-        return scene.draft.curve(scene, scene.parameters, every, fix=fix)
+        keys = (number.key for number in self.numbers)
+        swept = {**scene.parameters, **dict(zip(keys, values, strict=True))}
+        return replace(scene.draft.curve(scene, scene.parameters, every, fix=fix), parameters=swept)
 
 
 def along(number: Number) -> ParameterLine:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +13,7 @@ from fcm.at_rest import at_rest
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray, Scene
-from fcm.structure.linear import linear_of
+from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import onset
 from fcm.tracking.options import TRACKING, TrackingOptions
@@ -31,14 +29,6 @@ class SpecialPoints(NamedTuple):
     points: list[tuple[Condition, FloatArray]]
     faults: str
     uncertain: tuple[float, ...]
-
-
-def for_scene(system: System, scene: Scene) -> System:
-    """The system of another scene of the same contacts."""
-    other = copy(system)
-    object.__setattr__(other, "scene", scene)
-    object.__setattr__(other, "linear", linear_of(scene))
-    return other
 
 
 def special_points(
