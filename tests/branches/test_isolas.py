@@ -352,3 +352,16 @@ def test_curves_of_folds_with_sharp_tips_lead_to_closed_branches():
     for low, high in ((0.5065, 0.5118), (0.684, 0.718)):
         assert any(begin < low and high < end for begin, end in ranges)
         assert len(list(passings(curve, 0.5 * (low + high)))) >= 3
+
+
+@pytest.mark.parametrize("count", [8, pytest.param(17, marks=pytest.mark.slow)])
+def test_an_isolated_branch_that_few_harmonics_place_elsewhere_is_found_with_more(count):
+    """With five harmonics it is no branch of its own; with more its end at 1.117 is below their peak.
+
+    Its height by ten harmonics, where that of the other branch is 21.
+    """
+    curve = traced_curve(random_scene(1), Request(tuple(range(1, count + 1))))
+    assert curve.complete and not curve.folds_uncertain_at and len(curve.isolated) == 1
+    ten = every_branch(System(random_scene(1), tuple(range(1, 11))))
+    highest = max(one.amplitude[:, 0].max() for one in ten.quantities)
+    assert highest > 27.0 and curve.peaks["d0"].amplitude == pytest.approx(highest, rel=5e-3)

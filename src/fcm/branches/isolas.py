@@ -15,7 +15,7 @@ import numpy as np
 from fcm.branches.fold_continuation import Folds, folds_from
 from fcm.branches.force_level import LevelSolutions, few_harmonics
 from fcm.branches.level_folds import LevelFold
-from fcm.branches.options import FOLDS, FoldOptions
+from fcm.branches.options import FOLDS, PROLONGATION, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
@@ -56,8 +56,8 @@ def level_one_crossings(
     seconds = max(options.work_fraction * system.work.seconds, options.min_seconds)
     try:
         with system.work.limited_to(system.work.seconds + seconds):
-            for few, curve in curves:
-                for z in _at_level_one(few, system, curve):
+            for crossings in curves:
+                for z in crossings:
                     known = any(contains(path, z, system.reset_balance()) for path in paths)
                     if span[0] <= z[-1] <= span[1] and not known:
                         solutions.append(z)
@@ -83,14 +83,14 @@ def _begun(
 
 
 class _Curves:
-    """The curves of folds, each once, with the system that they are followed with.
+    """The solutions at the crossings of the level 1 by each curve of folds, which is followed once.
 
-    That has a few harmonics, or those that a fold was found with where the few do not have it.
+    It is followed with a few harmonics. Where these do not have the fold, or a crossing does not lead to a
+    solution with all, it is followed with more, up to those that the fold was found with.
     """
 
     def __init__(self, system: System, found: Sequence[LevelSolutions], options: FoldOptions) -> None:
         self.options, self.system = options, system
-        self.few = system.harmonics[: few_harmonics(system)]
         self.left = list(_begun(found, options))
         self.lost = list[float]()  # frequencies at which curves were lost
         self.known = dict[tuple[int, ...], _CurvesWith]()
@@ -100,23 +100,34 @@ class _Curves:
         """Frequencies of what was lost, and of what is left to be followed."""
         return *self.lost, *(float(turn.z[-1]) for turn, _ in self.left)
 
-    def __iter__(self) -> Iterator[tuple[System, Folds]]:
+    def __iter__(self) -> Iterator[list[FloatArray]]:
         while self.left:
             self.system.work.tell("folds of the level of the forces")
             turn, own = self.left[0]
-            for harmonics in dict.fromkeys((self.few, own)):
+            for harmonics in self._stages(own):
                 curves = self._with(harmonics)
                 there = turn.extended(curves.system, own)
                 if curves.pass_fold(there):
                     break
                 curve = curves.follow(there)
-                if curve is not None:
-                    self.lost += curve.lost
-                    yield curves.system, curve
+                if curve is None:
+                    continue
+                found, lost = _at_level_one(curves.system, self.system, curve)
+                if not lost or harmonics == own:
+                    self.lost += [*curve.lost, *lost]
+                    yield found
                     break
             else:
                 self.lost.append(float(turn.z[-1]))
             del self.left[0]
+
+    def _stages(self, own: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
+        """The harmonics with which a fold is followed in turn, the last those that it was found with."""
+        count, factor = few_harmonics(self.system), self.system.option(PROLONGATION).harmonics_factor
+        while count < len(own):
+            yield own[:count]
+            count *= factor
+        yield own
 
     def _with(self, harmonics: tuple[int, ...]) -> _CurvesWith:
         if harmonics not in self.known:
@@ -163,9 +174,10 @@ def _passes_fold(curve: Folds, turn: LevelFold, surface: Surface, options: FoldO
     return False
 
 
-def _at_level_one(few: System, system: System, curve: Folds) -> Iterator[FloatArray]:
-    """The solutions of a system beside the crossings of the level 1 by a curve of folds."""
-    off = curve.level - 1.0
+def _at_level_one(few: System, system: System, curve: Folds) -> tuple[list[FloatArray], list[float]]:
+    """The solutions of a system beside the crossings of the level 1 by a curve of folds; and the frequencies
+    [rad/s] of the crossings beside which none was found."""
+    off, found, lost = curve.level - 1.0, list[FloatArray](), list[float]()
     for i in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
         part = off[i] / (off[i] - off[i + 1])
         z = (curve.z[i] + part * (curve.z[i + 1] - curve.z[i]))[:-1]
@@ -173,8 +185,11 @@ def _at_level_one(few: System, system: System, curve: Folds) -> Iterator[FloatAr
         there = _corrected_in_plane(few, z, way)
         if there is not None and few.harmonics != system.harmonics:
             there = _prolongated(few, system, there, way)
-        if there is not None:
-            yield there
+        if there is None:
+            lost.append(float(z[-1]))
+        else:
+            found.append(there)
+    return found, lost
 
 
 def _corrected_in_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:

@@ -229,7 +229,7 @@ class LevelCurveOptions(Frozen):
     resonance_offset: float = 1e-4
     max_gap: float = 0.25
     distinct_peak: float = 0.01
-    same_peak: tuple[float, float] = (0.05, 0.7)
+    same_peak: tuple[float, float] = (0.02, 0.7)
     step: StepOptions = field(default_factory=StepOptions)
 
 
