@@ -210,7 +210,7 @@ def test_arrays_of_npz_and_mat(written, tmp_path):
     assert "amplitude[1] is nan" in mistakes(written(FIT.replace("a.csv", "b.npz")))
 
 
-def uff58(values, function=4, binary=None, even=True, ordinate=18):
+def uff58(values, function=4, binary=None, even=True, ordinate=0):
     """A dataset 58 over 10, 10.5, ... Hz; binary: the byte order of struct."""
     head = ["NONE"] * 5 + [f"{function:5d}{0:10d}{1:5d}{0:10d} NONE{1:10d}{3:4d} NONE{1:10d}{3:4d}"]
     head += [f"{6:10d}{len(values):10d}{int(even):10d}{10.0:13.5e}{0.5:13.5e}{0.0:13.5e}"]

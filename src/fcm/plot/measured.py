@@ -115,17 +115,18 @@ def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasur
     """
     from fcm.scene.files import DataFileError, Files
     from fcm.scene.measured_file import read_measured
+    from fcm.scene.measured_function import displacements
 
     try:
-        found = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), (), length=length)
+        found, function = read_measured(
+            path.name, Files(path.parent), ("frequency", "amplitude"), (), length=length
+        )
+        if function is not None:
+            found["amplitude"] = displacements(function, length)
     except DataFileError as error:
         raise PlotError(f"{path}: {error}") from None
     if "angular_frequency" in found:
         found["frequency"] = found["angular_frequency"] / UNIT.get(unit, 1.0)
-        if "per_force" in found and found["per_force"].any():
-            raise PlotError(f"{path}: its amplitudes are per unit of force: they are no displacements")
-        if "power" in found:
-            found["amplitude"] = found["amplitude"] / found["angular_frequency"] ** found["power"]
     return DrawnMeasured("", found["frequency"], found["amplitude"])
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,10 +22,17 @@ from fcm.scene.npz_file import names_in_npz, read_npz
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.options import MESSAGES
 from fcm.scene.reader_process import NAMES, read_apart
-from fcm.scene.uff_functions import read_functions
+from fcm.scene.uff_functions import Function, read_function
 from fcm.units import UNIT
 
 _UNITS = {"phase": {"rad": 1.0, "deg": np.pi / 180.0}, "damping": {"1": 1.0, "%": 0.01}}
+
+
+class MeasuredFile(NamedTuple):
+    """Columns of measured points by their names; of a universal file also the function that they are of."""
+
+    columns: dict[str, FloatArray]
+    function: Function | None = None
 
 
 def read_measured(
@@ -34,14 +42,14 @@ def read_measured(
     optional: Collection[str],
     others: Mapping[str, str] | None = None,
     length: str = "",
-) -> dict[str, FloatArray]:
+    places: tuple[str, str] = ("", ""),
+) -> MeasuredFile:
     """The columns of a file, (point,) each: all that are wanted, and those of the optional that it has.
 
     others: the names that wanted columns have in files of ``fcm respond``. length: unit of amplitudes, where
     known; a column that says another is refused. A file that says the unit of its frequencies, as a universal
-    file, which is in Hz, does: it has angular_frequency [rad/s] in place of frequency, and per_force (point,)
-    1 where amplitudes are those per unit of force, and power (point,) of the frequency that they have over
-    displacements, where the file says it.
+    file does, has angular_frequency [rad/s] in place of frequency. places: what was measured, and where the
+    force is, by which one function of several is chosen.
 
     Raises
     ------
@@ -54,7 +62,9 @@ def read_measured(
         raise DataFileError(f"{quoted(name)}: measured points are read from {choices(MEASURED)}")
     with files.opened(name) as path:
         if ending in (".uff", ".unv"):
-            return read_functions(path)
+            function = read_function(path, *places)
+            omega = 2.0 * np.pi * function.hertz
+            return MeasuredFile({"angular_frequency": omega, "amplitude": np.abs(function.value)}, function)
         if ending in (".mat", ".npz"):
             found, named = _arrays(path, [*wanted, *others.values(), *optional], files)
             chosen = _chosen(found, wanted, optional, others)
@@ -71,7 +81,7 @@ def read_measured(
         raise DataFileError(f"{quoted(name)}: its columns are of different lengths: {each}")
     if sizes == {0}:
         raise DataFileError(f"{quoted(name)} holds no points")
-    return found
+    return MeasuredFile(found)
 
 
 def _chosen(
