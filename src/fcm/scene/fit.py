@@ -15,13 +15,13 @@ from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.measured_function import PER_TIME, Excitation, Surroundings, compare
+from fcm.scene.measured_function import Excitation, Surroundings, compare
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
-from fcm.units import QUANTITIES, UNIT, in_unit
+from fcm.units import PER_TIME, QUANTITIES, UNIT, in_unit
 
 if TYPE_CHECKING:
     from fcm.scene.measured_file import MeasuredFile

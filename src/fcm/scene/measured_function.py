@@ -21,10 +21,9 @@ from fcm.scene.files import DataFileError
 from fcm.scene.measured_units import force_unit, length_unit, motion_unit, ratio_of
 from fcm.scene.names import motion_of
 from fcm.scene.uff_functions import Axis, Function, Place
-from fcm.units import QUANTITIES
+from fcm.units import PER_TIME, QUANTITIES
 
 FORCES = ("force", "reaction force")
-PER_TIME = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # behind the unit of a displacement
 
 
 class Excitation(Frozen):
