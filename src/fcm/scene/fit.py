@@ -21,7 +21,7 @@ from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
-from fcm.units import PER_TIME, QUANTITIES, UNIT, in_unit
+from fcm.units import ANGLES, PER_TIME, QUANTITIES, UNIT, in_unit
 
 if TYPE_CHECKING:
     from fcm.scene.measured_file import MeasuredFile
@@ -153,6 +153,9 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
         columns["amplitude"] = np.abs(value)
         if read.function.phased:
             columns["phase"] = np.angle(value)
+    elif "phase" in columns and (largest := float(np.abs(columns["phase"]).max())) > ANGLES.largest:
+        asked = f"has a phase of {shown(largest)} rad. Are they in degrees? Call the column phase [deg]"
+        scene.noted.append(Question(f"fit: {name} {asked}"))
     if section.mistakes.count > before:
         return None
     amplitude = columns["amplitude"]

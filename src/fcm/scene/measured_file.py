@@ -8,6 +8,7 @@ other names for some. A head may have a unit behind it, as in ``frequency [Hz]``
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -25,6 +26,7 @@ from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.uff_functions import Function, read_function
 from fcm.units import UNIT
 
+_HEAD = re.compile(r"(\w+)[\s_]*(?:[(\[/,]([^()\[\]]*)[)\]]?)?")  # a name, and a unit behind it
 _UNITS = {"phase": {"rad": 1.0, "deg": np.pi / 180.0}, "damping": {"1": 1.0, "%": 0.01}}
 
 
@@ -74,7 +76,10 @@ def read_measured(
     there = {*found, *(["frequency"] if "angular_frequency" in found else [])}
     if missing := [one for one in wanted if one not in there]:
         heads = [quoted(one) + (f" (or {quoted(others[one])})" if one in others else "") for one in missing]
-        raise DataFileError(f"{quoted(name)} has no column {', '.join(heads)}; it has {choices(named)}")
+        write = "".join(_right_head(one, named) for one in missing)
+        raise DataFileError(
+            f"{quoted(name)} has no column {', '.join(heads)}; it has {choices(named)}{write}"
+        )
     sizes = {value.size for value in found.values()}
     if len(sizes) > 1:
         each = ", ".join(f"{key} {value.size}" for key, value in found.items())
@@ -120,7 +125,12 @@ def _csv(
 
     What is no number is a fault in those that are read.
     """
-    text = path.read_text(encoding="utf-8-sig")
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        at = error.object.count(b"\n", 0, error.start) + 1
+        said = f"it is no text in UTF-8, from line {at} on: save it as UTF-8"
+        raise DataFileError(f"{quoted(path.name)} cannot be read: {said}") from None
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ,;\t")]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if not lines:
@@ -158,6 +168,20 @@ def _csv(
     table = np.array([values for _, values in rows], dtype=np.float64).reshape(len(rows), len(chosen))
     found = dict(zip(chosen, table.T.copy(), strict=True))
     return _in_units(found, {key: heads[i] for key, i in chosen.items()}, path.name, length), header
+
+
+def _right_head(column: str, heads: Sequence[str]) -> str:
+    """What to write in place of a head that nearly is a column's.
+
+    >>> _right_head("frequency", ["f", "Frequency (Hz)"]), _right_head("frequency", ["f"])
+    ('; write "Frequency (Hz)" as "frequency [Hz]"', '')
+    """
+    for head in heads:
+        found = _HEAD.fullmatch(head)
+        if found and found[1].lower() == column and head != column:
+            unit = f" [{found[2].strip()}]" if found[2] and found[2].strip() else ""
+            return f"; write {quoted(head)} as {quoted(column + unit)}"
+    return ""
 
 
 def _name_and_unit(head: str) -> tuple[str, str]:
