@@ -225,7 +225,7 @@ def test_a_unit_is_asked_about_where_the_scene_says_none(read):
     one, said = read(uff(ordinate=(12, "g"), denominator=(13, "N")))
     assert complex_of(one) == pytest.approx(np.array(VALUES))
     assert [isinstance(sentence, Question) for sentence in said] == [True, False]
-    assert said[0].startswith("fit: a.unv is in g. Is the scene?")
+    assert said[0].startswith("fit: a.unv is in g: is the scene, too?")
     _, said = read(uff(ordinate=(12, "mV"), denominator=(13, "EU")), units={"length": "m", "force": "N"})
     assert all(isinstance(sentence, Question) for sentence in said)
     assert 'is in "mV", which is not known: taken for m/s^2' in said[0]

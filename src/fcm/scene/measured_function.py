@@ -206,10 +206,10 @@ def _converted(
     if size is None:
         return 1.0
     if own is None and isclose(size, 1.0):
-        told.note_once(f"measured in {plain}: the scene does not say its [units], which have to be those")
+        told.note_once(f"measured in {plain}: the scene, without known [units], has to be in these, too")
         return 1.0
     if own is None:
-        told.ask(f"is in {label}. Is the scene? With its [units] of length and force it is converted")
+        told.ask(f"is in {label}: is the scene, too? With its [units] of length and force it is converted")
         return 1.0
     if not isclose(size, own):
         told.note(f"is in {label}, converted to {unit}")
