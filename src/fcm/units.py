@@ -23,6 +23,7 @@ UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}  # as the conventions for netCDF files write them
 EXCITATION = "excitation.frequency"  # key of where a curve over the level of the forces is
 QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}  # powers of i omega, over a displacement
+PER_TIME = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # behind the unit of a displacement
 EXCITED = "excitation.level"  # key of the level of the forces of a curve, where several were measured
 NATURAL = "modal.frequency"  # key of the frequencies of all modes; with its number of one
 DIGITS = 15  # that every number of so many has again after it was a binary one

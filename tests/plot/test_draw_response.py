@@ -9,6 +9,7 @@ from matplotlib.text import Annotation
 
 from fcm.plot import DrawnCurve, DrawnResponse, PlotError, draw_response, save
 from fcm.plot.measured import DrawnMeasured, FittedNumber
+from fcm.plot.points import DrawnPoints
 
 FREQUENCY = np.linspace(0.7, 1.7, 201)
 
@@ -369,6 +370,35 @@ def test_the_names_of_fitted_numbers_lie_within_the_picture():
     (legend,) = figure.legends
     assert len(legend.get_texts()) == 4
     assert legend.get_window_extent().x0 >= 0.0
+
+
+@pytest.mark.parametrize("count", [1, 3, 6])
+@pytest.mark.parametrize("errors", [False, True])
+def test_fitted_numbers_and_names_of_curves_do_not_overlap(count, errors):
+    """Names of equal curves find no room at their peaks, and stood upon the numbers."""
+    numbers = tuple(FittedNumber(f"contact.shroud.number_{k}", 1.23e-4, 0.5e-6) for k in range(count))
+    points = DrawnMeasured("u", FREQUENCY[:3], FREQUENCY[:3])
+    error = np.full(FREQUENCY.size, 1e-3) if errors else None
+    curves = [
+        resonance(9.0, 1.2, n_0, truncation_error=error, regimes=frozenset("E")) for n_0 in range(100, 108)
+    ]
+    figure = draw_response(replace(response(*curves), measured=(points,), fitted=numbers))
+    figure.draw_without_rendering()
+    boxes = [legend.get_window_extent() for legend in figure.legends]
+    boxes += [axes.get_tightbbox() for axes in figure.axes]
+    assert len(figure.legends) == 2 + errors
+    for i, one in enumerate(boxes):
+        assert figure.bbox.x0 <= one.x0 and one.x1 <= figure.bbox.x1
+        assert not any(one.overlaps(other) for other in boxes[:i])
+
+
+def test_points_of_the_exact_motion_and_measured_ones_share_a_legend():
+    curve = resonance(9.0, 1.2, 5.0)
+    exact = DrawnPoints(response(curve), (np.full(FREQUENCY.size, "up"),))
+    drawn = replace(response(curve), measured=(DrawnMeasured("u", FREQUENCY[:3], FREQUENCY[:3]),))
+    (legend,) = draw_response(drawn, points=exact).legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert names == ["harmonic balance", "exact motion, swept up", "measured"]
 
 
 def test_the_legend_names_no_line_that_is_too_short_to_be_seen():

@@ -152,3 +152,36 @@ def test_errors_come_with_their_curves(path):
     first, second = read_response(path).curves
     assert first.table_error.tolist() == [1.0, 2.0, 3.0] and second.table_error.tolist() == [4.0, 5.0]
     assert first.truncation_error is None
+
+
+@pytest.mark.parametrize(
+    ("quantity", "phase", "axis", "power"),
+    [
+        ("acceleration", NAN, "Acceleration of tip, fundamental", 2),
+        ("displacement", 0.5, "Displacement of tip, fundamental", 0),
+        ("displacement", NAN, "Amplitude of tip", None),
+    ],
+)
+def test_a_fit_is_drawn_in_the_quantity_that_was_measured(path, quantity, phase, axis, power):
+    """Crosses were fundamentals beside curves of half the peak-to-peak."""
+    with netCDF4.Dataset(path, "a") as data:
+        data.createDimension("data", 1)
+        data.createDimension("measured", 2)
+        own = {
+            "data_frequency": [1.0, 2.0], "data_amplitude": [60.0, 70.0], "data_displacement": [6.0, 7.0],
+            "data_level": [1.0, 1.0], "data_phase": [phase, phase],
+        }  # fmt: skip
+        for name, values in own.items():
+            data.createVariable(name, float, ("data", "measured"))[...] = [values]
+        for name, value in {"data_dof": "tip", "data_quantity": quantity}.items():
+            data.createVariable(name, str, ("data",))[...] = np.array([value], object)
+        fundamental = 0.9 * data["amplitude"][...]
+        data.createVariable("fundamental", float, ("curve", "point", "dof"))[...] = fundamental
+    axes = draw_response(read_response(path)).axes[0]
+    (crosses,) = (line for line in axes.lines if line.get_label() == "_measured")
+    drawn = np.array([7.0, 8.0, 9.0])
+    if power is not None:
+        drawn = 0.9 * drawn * (2.0 * np.pi * np.array([1.0, 2.0, 1.5])) ** power
+    assert axes.get_ylabel() == axis
+    assert crosses.get_ydata().tolist() == ([60.0, 70.0] if power is not None else [6.0, 7.0])
+    assert np.nanmax(axes.lines[0].get_ydata()) == pytest.approx(drawn[[0, 2]].max())

@@ -282,6 +282,18 @@ def test_coordinates_are_of_modal_mass_one():
 
 
 @pytest.mark.parametrize(
+    ("factors", "asked"), [([0.02, 0.03, 0.01, 0.03, 0.04, 0.02], True), (FACTORS, False)]
+)
+def test_factors_that_are_deviations_are_asked_about(factors, asked):
+    data = sector(6, 1)
+    data["cyclic"]["mistuning"] = {"factors": factors, "stiffness": (0.5 * blade_stiffness()).tolist()}
+    said = [one for one in scene_from_dict(data).notes if one.startswith("cyclic.mistuning")]
+    sentence = "cyclic.mistuning.factors: is 0.04, the greatest, right? "
+    sentence += "Properties are multiplied by them: write 0.97 for 3 % less"
+    assert said == ([sentence] if asked else [])
+
+
+@pytest.mark.parametrize(
     ("mistuning", "said"),
     [
         ({"factors": [1.0, 1.1]},
@@ -297,7 +309,9 @@ def test_coordinates_are_of_modal_mass_one():
         ({"stiffness": [1.0], "factors": FACTORS},
          ["stiffness: has 1 rows, but a sector has 3"]),
         ({"stiffness": [0.0, 0.0, 1e7], "factors": [0.1] * 6},
-         ["with these factors the ring has a negative"]),
+         ["blade is not part of the sector's stiffness; of factors write 0.97 for 3 % less"]),
+        ({"stiffness": [1.0] * 3, "factors": [0.02, -0.03, 0.01, 0.03, 0.04, 0.02]},
+         ["factors[1]: must be greater than 0, as 0.97 for 3 % less, is -0.03"]),
         ({"stiffness": [1.0] * 3, "factors": FACTORS, "scale": 30.0},
          ["with scale = 30 a factor is -1.1"]),
         ({"stiffness": [1.0] * 3, "factors": {"normal": [1, 1], "count": 9}},

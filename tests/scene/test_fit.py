@@ -210,7 +210,7 @@ def test_arrays_of_npz_and_mat(written, tmp_path):
     assert "amplitude[1] is nan" in mistakes(written(FIT.replace("a.csv", "b.npz")))
 
 
-def uff58(values, function=4, binary=None, even=True, ordinate=18):
+def uff58(values, function=4, binary=None, even=True, ordinate=0):
     """A dataset 58 over 10, 10.5, ... Hz; binary: the byte order of struct."""
     head = ["NONE"] * 5 + [f"{function:5d}{0:10d}{1:5d}{0:10d} NONE{1:10d}{3:4d} NONE{1:10d}{3:4d}"]
     head += [f"{6:10d}{len(values):10d}{int(even):10d}{10.0:13.5e}{0.5:13.5e}{0.0:13.5e}"]
@@ -278,3 +278,24 @@ def test_a_universal_file_without_a_response_says_what_it_holds(written):
 def test_a_file_that_is_not_there_is_said_beside_other_mistakes(written):
     said = mistakes(written(FIT.replace("a.csv", "no.csv").replace('dof = "u"', 'dof = "q"')))
     assert 'no.csv" is not there' in said and 'there is no degree of freedom "q"' in said
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [
+        ("Frequency (Hz),amplitude\n1,2\n", 'write "Frequency (Hz)" as "frequency [Hz]"'),
+        ("frequency[rad/s],AMPLITUDE\n1,2\n", 'write "frequency[rad/s]" as "frequency [rad/s]"'),
+        ("frequency[rad/s],AMPLITUDE\n1,2\n", 'write "AMPLITUDE" as "amplitude"'),
+        ("frequency,amplitude,größe\n1,2,3\n".encode("latin-1"),
+         "it is no text in UTF-8, from line 1 on: save it as UTF-8"),
+    ],
+)  # fmt: skip
+def test_what_to_write_is_said_of_heads_and_of_other_encodings(written, points, said):
+    assert said in mistakes(written(points=points))
+
+
+@pytest.mark.parametrize(("head", "asked"), [("phase", True), ("phase [deg]", False)])
+def test_phases_that_may_be_degrees_are_asked_about(written, head, asked):
+    notes = load_scene(written(points=f"frequency,amplitude,{head}\n0.9,1,-20\n1.1,2,-170\n")).notes
+    sentence = "fit: a.csv has a phase of 170 rad. Are they in degrees? Call the column phase [deg]"
+    assert (sentence in notes) == asked

@@ -12,6 +12,10 @@ from fcm.scene.toml_mistakes import slips
 SLIPS = [
     ("mu = .3", "mu = 0.3"),
     ("mu = -.3", "mu = -0.3"),
+    ("factors = [np.float64(1.02), np.float64(-9.8e-01)]", "factors = [1.02, -9.8e-01]"),
+    ("k_u = numpy.int64(5)", "k_u = 5"),
+    ("factors = array([1.02, 0.98])", "factors = [1.02, 0.98]"),
+    ("factors = np.array([1.02, 0.98], dtype=float32)", "factors = [1.02, 0.98]"),
     ("mu = 1.", "mu = 1.0"),
     ("mu = 1.e5", "mu = 1.0e5"),
     ("mu = 0,3", "mu = 0.3"),

@@ -157,7 +157,8 @@ def forced_rows(
             nearest = Nearest(observed, units[i], y[i], float(data.level[i]))
             z = nearest.found(*curve.start(y[i], units[i]))
             residual[i] = nearest.at(z)[0] - y[i]
-            by_number[i] = nearest.rates(z, rates)
+            if rates:
+                by_number[i] = nearest.rates(z, rates)
             low, high = scene.frequency_range
             unreached[i] = float(not low < z[-1] < high)
     return Rows(residual, by_number, unreached, data.values)

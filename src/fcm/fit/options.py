@@ -36,6 +36,10 @@ class FitOptions(Frozen):
     sure_standard_error : relative standard error of a number up to which it is determined whatever it is
         correlated with.
     poor_misfit : relative misfit of data from which on the model does not describe them.
+    remedied : misfit with a common factor or a change of phases, relative to that without, below which the
+        change is told.
+    scale_error : error of amplitudes, relative to the greatest of their data, while such a factor is looked
+        for. It is so large that measured points are compared with those at the same frequency.
     confidence : probability of the intervals of the numbers.
     reweightings : most times that errors which are not stated are estimated, and the fit is repeated.
     settled_move : change of the numbers in such a repetition, in standard errors, below which it is the last.
@@ -69,6 +73,8 @@ class FitOptions(Frozen):
     max_correlation: float = 0.98
     sure_standard_error: float = 0.05
     poor_misfit: float = 0.1
+    remedied: float = 0.5
+    scale_error: float = 1e6
     confidence: float = 0.95
     reweightings: int = 30
     settled_move: float = 1e-3

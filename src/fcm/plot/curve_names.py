@@ -14,6 +14,7 @@ from fcm.plot.style import LAYOUT, colour_bar
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
     from matplotlib.text import Annotation
     from matplotlib.transforms import Bbox
@@ -117,16 +118,16 @@ def name_at_side(
     lines: Sequence[Line2D],
     parameters: Sequence[Mapping[str, float]],
     units: Mapping[str, str],
-) -> None:
+) -> Legend | None:
     """Name lines by what was swept, in a legend beside the axes; very many by a bar of their colours."""
     if not parameters[0]:
-        return
+        return None
     differing, title = varying(parameters, units)
     names = [curve_label(one, False) for one in differing]
     if len(names) > LAYOUT.bar_names:
         colour_bar(figure, names, ", ".join(title))
-        return
-    figure.legend(lines, names, title=",\n".join(title), loc="outside right upper")
+        return None
+    return figure.legend(lines, names, title=",\n".join(title), loc="outside right upper")
 
 
 def varying(

@@ -16,7 +16,7 @@ _LAYOUT = {
     **dict.fromkeys(("frequency", "level", "stable", "table_error", "truncation_error", "sweep"), _POINT),
     **dict.fromkeys(("modal_amplitude", "damping_ratio", "resonant_level", "steady_state"), _POINT),
     "force_level": ("force_level",),
-    "amplitude": _DOF,
+    **dict.fromkeys(("amplitude", "fundamental"), _DOF),
     **dict.fromkeys(("regime", "n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force"), _CONTACT),
     **dict.fromkeys(("dissipated_energy", "slip_path", "greatest_normal_force"), _CONTACT),
     "contact_position": ("contact", "axis"),
@@ -34,8 +34,9 @@ _LAYOUT = {
     "displacement": ("curve", "instant", "dof"),
     **dict.fromkeys(("cycle_mean", "cycle_greatest", "cycle_least"), _OF_CYCLE),
     **dict.fromkeys(("data_frequency", "data_displacement", "data_level"), ("data", "measured")),
+    **dict.fromkeys(("data_amplitude", "data_phase"), ("data", "measured")),
     **dict.fromkeys(("data_modal_amplitude", "data_damping"), ("data", "measured")),
-    "data_dof": ("data",),
+    **dict.fromkeys(("data_dof", "data_quantity"), ("data",)),
     "track_what": ("track",),
     "tracked_amplitude": (*_TRACKED, "dof"),
     **dict.fromkeys(
@@ -55,6 +56,7 @@ _TEXTS = {
     "track_what",
     "optimum_kind",
     "data_dof",
+    "data_quantity",
 }
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +12,24 @@ import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.plot.errors import PlotError
+from fcm.plot.labels import with_unit
 from fcm.plot.options import READ
 from fcm.plot.style import LAYOUT
 from fcm.plot.summary import summary_of
-from fcm.units import EXCITED, UNIT
+from fcm.rotational_dofs import unit_of
+from fcm.units import EXCITED, PER_TIME, QUANTITIES, UNIT
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
 
-    from fcm.plot.read import DrawnCurve
+    from fcm.plot.read import DrawnCurve, DrawnResponse
 
 FloatArray = npt.NDArray[np.float64]
 NEEDED = ("data_frequency", "data_displacement", "data_level", "data_dof")
+OWN = ("data_amplitude", "data_phase", "data_quantity")
 BACKBONE = ("data_frequency", "data_modal_amplitude", "data_damping")
 SIZE, NEUTRAL = 4.0, "#404040"
 WORD = "measured"
@@ -36,6 +42,8 @@ class DrawnMeasured(Frozen):
     frequency: FloatArray
     amplitude: FloatArray
     level: FloatArray | None = None  # of the forces; None where it is not known
+    quantity: str = ""  # whose fundamental was measured; empty: half the peak-to-peak displacement
+    own: FloatArray | None = None  # amplitude of that quantity
 
 
 class MeasuredBackbone(Frozen):
@@ -95,11 +103,52 @@ def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:
     frequency, displacement, level = (floats(variables[name]) for name in NEEDED[:3])
     dofs = np.asarray(variables["data_dof"][:], dtype=str).tolist()
     known = np.isfinite(displacement)  # not of backbones
+    quantities, own = [""] * len(dofs), displacement
+    if all(name in variables for name in OWN):
+        own, phase = (floats(variables[name]) for name in OWN[:2])
+        every = np.asarray(variables[OWN[2]][:], dtype=str).tolist()
+        phased = [bool(np.isfinite(row).any()) for row in phase]
+        quantities = [
+            what if QUANTITIES.get(what, 0) > 0 or (what in QUANTITIES and turned) else ""
+            for what, turned in zip(every, phased, strict=True)
+        ]
     return tuple(
-        DrawnMeasured(dof, frequency[i, there], displacement[i, there], level[i, there])
+        DrawnMeasured(
+            dof, frequency[i, there], displacement[i, there], level[i, there], quantities[i], own[i, there]
+        )
         for i, (dof, there) in enumerate(zip(dofs, known, strict=True))
         if there.any()
     )
+
+
+def as_measured(response: DrawnResponse, column: int) -> tuple[DrawnResponse, str]:
+    """The response in the quantity that was measured at a degree of freedom, and the name of its axis.
+
+    Where all data there are of fundamentals, curves and points are: of the quantity, or of displacements if
+    several were measured. Else all are half peak-to-peak, and the name is empty.
+    """
+    dof = response.dofs[column]
+    own = [one for one in response.measured if one.dof in ("", dof)]
+    kinds = {one.quantity for one in own}
+    unit = UNIT.get(response.frequency_unit)
+    if not kinds or "" in kinds or unit is None or any(one.fundamental is None for one in response.curves):
+        return response, ""
+    several = len(kinds) > 1
+    quantity = "displacement" if several else kinds.pop()
+    curves = []
+    for curve in response.curves:
+        assert curve.fundamental is not None
+        amplitude = curve.amplitude.copy()
+        amplitude[:, column] = curve.fundamental[:, column] * (unit * curve.frequency) ** QUANTITIES[quantity]
+        curves.append(replace(curve, amplitude=amplitude))
+    points = tuple(
+        one if several or one.own is None or one.dof != dof else replace(one, amplitude=one.own)
+        for one in response.measured
+    )
+    name = f"{quantity.capitalize()} of {dof}, fundamental"
+    length = unit_of(dof, response.length)
+    name = with_unit(name, f"{length}{PER_TIME[quantity]}" if length else "")
+    return replace(response, curves=tuple(curves), measured=points), name
 
 
 def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasured:
@@ -115,17 +164,18 @@ def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasur
     """
     from fcm.scene.files import DataFileError, Files
     from fcm.scene.measured_file import read_measured
+    from fcm.scene.measured_function import displacements
 
     try:
-        found = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), (), length=length)
+        found, function = read_measured(
+            path.name, Files(path.parent), ("frequency", "amplitude"), (), length=length
+        )
+        if function is not None:
+            found["amplitude"] = displacements(function, length)
     except DataFileError as error:
         raise PlotError(f"{path}: {error}") from None
     if "angular_frequency" in found:
         found["frequency"] = found["angular_frequency"] / UNIT.get(unit, 1.0)
-        if "per_force" in found and found["per_force"].any():
-            raise PlotError(f"{path}: its amplitudes are per unit of force: they are no displacements")
-        if "power" in found:
-            found["amplitude"] = found["amplitude"] / found["angular_frequency"] ** found["power"]
     return DrawnMeasured("", found["frequency"], found["amplitude"])
 
 
@@ -185,17 +235,34 @@ def fitted_of(data: Any) -> tuple[FittedNumber, ...]:
         raise ValueError("its attribute summary is not of a fit") from error
 
 
-def name_measured(figure: Figure, fitted: Sequence[FittedNumber] = ()) -> None:
-    """Say above the axes what the crosses are, and which numbers were found."""
+def name_measured(
+    figure: Figure,
+    fitted: Sequence[FittedNumber] = (),
+    others: Mapping[str, Artist] | None = None,
+    beside: Legend | None = None,
+) -> Legend:
+    """Say above the axes what the crosses are, and which numbers were found; to the left of a legend beside
+    the axes, if there is one.
+
+    others : what else is to be named there, by its names
+    """
     from matplotlib.lines import Line2D
 
-    handles = [Line2D([], [], linestyle="none", marker="+", color=NEUTRAL, markersize=SIZE)]
-    handles += [Line2D([], [], linestyle="none") for _ in fitted]
-    for columns in range(min(len(handles), 1 + LAYOUT.fitted_of_row), 0, -1):
-        legend = figure.legend(
-            handles, [WORD, *map(str, fitted)], loc="outside upper right", ncols=columns,
-            handlelength=0.8, handletextpad=0.4,
-        )  # fmt: skip
-        if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
-            return
+    names: list[tuple[Artist, str]] = [(handle, name) for name, handle in (others or {}).items()]
+    names.append((Line2D([], [], linestyle="none", marker="+", color=NEUTRAL, markersize=SIZE), WORD))
+    names += [(Line2D([], [], linestyle="none"), str(one)) for one in fitted]
+    room = figure.bbox.width - (beside.get_window_extent().width if beside is not None else 0.0)
+    for columns in range(min(len(names), 1 + LAYOUT.fitted_of_row), 1, -1):
+        legend = _above(figure, names, columns, beside is not None)
+        if legend.get_window_extent().width <= room:
+            return legend
         legend.remove()
+    return _above(figure, names, 1, beside is not None)
+
+
+def _above(figure: Figure, names: Sequence[tuple[Artist, str]], columns: int, left: bool) -> Legend:
+    handles, words = zip(*names, strict=True)
+    return figure.legend(
+        handles, words, loc="outside upper left" if left else "outside upper right", ncols=columns,
+        handlelength=0.8, handletextpad=0.4,
+    )  # fmt: skip

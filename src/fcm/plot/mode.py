@@ -207,10 +207,10 @@ def draw_modes(drawn: DrawnModes) -> Figure:
         if len(modes) == 1:
             for axes, values in ((upper, modes[0].frequency), (lower, _PERCENT * modes[0].damping)):
                 mark_unfinished(axes, [(modes[0].amplitude, values)], drawn.unfinished)
-        if drawn.measured:
-            name_measured(figure, drawn.fitted)
         _name_lost(upper, modes)
-        name_at_side(figure, lines, [one.parameters for one in modes], drawn.units)
+        beside = name_at_side(figure, lines, [one.parameters for one in modes], drawn.units)
+        if drawn.measured:
+            name_measured(figure, drawn.fitted, beside=beside)
         if len(modes) == 1:
             _mark_resonances(figure, upper, lower, modes[0])
     return figure

@@ -19,7 +19,7 @@ from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 MARKERS = {"up": "^", "down": "v", "": "o"}  # by the sweep that visited a point; of a traced curve none did
 WORDS = {"up": "exact motion, swept up", "down": "swept down", "": "exact motion"}
@@ -77,8 +77,8 @@ def draw_points(
             )  # fmt: skip
 
 
-def name_points(figure: Figure, axes: Axes) -> None:
-    """Say above the axes what line and markers are."""
+def names_of_points(axes: Axes) -> dict[str, Line2D]:
+    """What line and markers are, by their names."""
     from matplotlib.lines import Line2D
 
     drawn = {str(line.get_label()): line for line in axes.get_lines()}
@@ -91,7 +91,7 @@ def name_points(figure: Figure, axes: Axes) -> None:
         handle.set(markerfacecolor="none", markeredgewidth=LAYOUT.point_edge)
         handles.append(handle)
     words = ["harmonic balance", *(WORDS[way] for way in ways)]
-    figure.legend(handles, words, loc="outside upper center", ncols=len(handles))
+    return dict(zip(words, handles, strict=True))
 
 
 def frequency_factor(theirs: str, ours: str) -> float:

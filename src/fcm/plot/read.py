@@ -18,6 +18,7 @@ from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
 from fcm.plot.measured import NEEDED as MEASURED
+from fcm.plot.measured import OWN as OF_MEASURED
 from fcm.plot.measured import DrawnMeasured, FittedNumber, fitted_of, measured_of
 from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
@@ -34,7 +35,17 @@ _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
-_ALSO = ("stable", "table_error", "truncation_error", "regime", "level", "complete", *MEASURED)
+_ALSO = (
+    "stable",
+    "table_error",
+    "truncation_error",
+    "regime",
+    "level",
+    "complete",
+    "fundamental",
+    *MEASURED,
+    *OF_MEASURED,
+)
 NO_NETCDF = "Unknown file format"  # what the library says of other files
 UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
 
@@ -53,6 +64,7 @@ class DrawnCurve(Frozen):
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
     table_error: FloatArray | None = None  # (point,) relative, before the correction
     truncation_error: FloatArray | None = None  # (point,) relative
+    fundamental: FloatArray | None = None  # (point, dof) amplitude
 
 
 class DrawnResponse(Frozen):
@@ -215,6 +227,7 @@ def _response(dataset: Any) -> DrawnResponse:
     regime = variables["regime"][:] if "regime" in variables else None
     swept = swept_values(variables)
     level = floats(variables["level"]) if "level" in variables else None
+    fundamental = floats(variables["fundamental"]) if "fundamental" in variables else None
     curves = tuple(
         _curve(
             {name: float(values[i]) for name, values in swept.items()},
@@ -223,6 +236,7 @@ def _response(dataset: Any) -> DrawnResponse:
             None if stable is None else stable[i],
             None if regime is None else regime[i],
             [None if error is None else error[i] for error in errors],
+            None if fundamental is None else fundamental[i],
         )
         for i in range(len(frequency))
     )
@@ -246,11 +260,15 @@ def _curve(
     stable: FloatArray | None,
     regime: Any,
     errors: list[FloatArray | None],
+    fundamental: FloatArray | None,
 ) -> DrawnCurve:
     """Curve without its padding; points of NaN between branches stay, so that no line joins them."""
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
     unknown = None if stable is None else np.isfinite(frequency[there]) & unknown_stability(stable[there])
+    table_error, truncation_error, own = (
+        None if one is None else one[there] for one in (*errors, fundamental)
+    )
     return DrawnCurve(
         parameters,
         frequency[there],
@@ -258,7 +276,9 @@ def _curve(
         None if stable is None else stable[there] != 0,
         unknown,
         frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
-        *(None if error is None else error[there] for error in errors),
+        table_error,
+        truncation_error,
+        own,
     )
 
 

@@ -14,8 +14,8 @@ from fcm.plot.curve_names import label_at_peaks, varying
 from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, with_unit
-from fcm.plot.measured import draw_measured, name_measured
-from fcm.plot.points import DrawnPoints, draw_points, name_points
+from fcm.plot.measured import as_measured, draw_measured, name_measured
+from fcm.plot.points import DrawnPoints, draw_points, names_of_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, wide
 from fcm.plot.style import (
     DOTS,
@@ -35,6 +35,7 @@ from fcm.rotational_dofs import unit_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
 
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
@@ -65,8 +66,11 @@ def draw_response(
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
     motion are drawn over the curves, and a backbone: nonlinear modes. A window is the part of the axis drawn.
     """
+    column = (response if window is None else within(response, window)).column(dof)
+    called = ""
+    if points is None and backbone is None:  # which are half peak-to-peak
+        response, called = as_measured(response, column)
     response = response if window is None else within(response, window)
-    column = response.column(dof)
     curves = _drawable(response, column, bool(log))
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
@@ -74,11 +78,14 @@ def draw_response(
         width = _WIDTH if len(curves) <= LAYOUT.bar_names else _THIN
         axes.set_prop_cycle(color=colours)
         lines = [_draw_curve(axes, curve, column, width) for curve in curves]
+        others: dict[str, Line2D] = {}
         if points is not None:
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
-            name_points(figure, axes)
-        if draw_measured(axes, response.measured, response.dofs[column], curves, colours):
-            name_measured(figure, response.fitted)
+            others = names_of_points(axes)
+        marked = draw_measured(axes, response.measured, response.dofs[column], curves, colours)
+        above = name_measured(figure, response.fitted, others) if marked else None
+        if others and not marked:
+            figure.legend(others.values(), others.keys(), loc="outside upper center", ncols=len(others))
         ends = [(curve.frequency, curve.amplitude[:, column]) for curve in response.curves]
         mark_unfinished(axes, ends, response.unfinished)
         say_unfinished(axes, response.unfinished)
@@ -87,6 +94,8 @@ def draw_response(
         if window is not None:
             axes.set_xlim(window)
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
+        if called:
+            axes.set_ylabel(called, parse_math=False)
         if below is not None:
             draw_errors(below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
@@ -99,7 +108,10 @@ def draw_response(
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
         # last: whether there is room at the peaks hangs on how high the axes have become
-        _name_curves(figure, axes, curves, lines, column, response.units)
+        beside = _name_curves(figure, axes, curves, lines, column, response.units)
+        if above is not None and beside is not None:
+            above.remove()
+            name_measured(figure, response.fitted, others, beside)
     return figure
 
 
@@ -252,17 +264,18 @@ def _name_curves(
     drawn: list[Line2D],
     column: int,
     units: Mapping[str, str],
-) -> None:
+) -> Legend | None:
     """Writes the curves' names at the peaks if there is room, otherwise in a legend beside the axes."""
     names = [_named(curve, units, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= LAYOUT.bar_names and label_at_peaks(figure, axes, lines, names):
-        return
-    if any(names):
-        _legend(figure, curves, drawn, units)
+        return None
+    return _legend(figure, curves, drawn, units) if any(names) else None
 
 
-def _legend(figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]) -> None:
+def _legend(
+    figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]
+) -> Legend | None:
     """Draws a legend beside the axes; several swept quantities are named once, above their values."""
     several = len(curves[0].parameters) > 1
     parameters, title = varying([curve.parameters for curve in curves], units)
@@ -270,8 +283,8 @@ def _legend(figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units
     if len(lines) > LAYOUT.bar_names:
         names = [_named(curve, units, names=False) for curve in curves]
         colour_bar(figure, names, ", ".join(title))
-        return
-    figure.legend(
+        return None
+    return figure.legend(
         lines,
         [_named(curve, units, names=not several) for curve in curves],
         title=",\n".join(title) if several else None,

@@ -15,6 +15,7 @@ from fcm.fit.estimate import Estimate, estimated
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
+from fcm.fit.remedy import remedy
 from fcm.fit.solve import Searches, SearchResult, Solved, solved
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
@@ -293,6 +294,7 @@ def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -
         ],
         harmonics=harmonics,
         advice=_advice(parameters, found, told, harmonics) if advise else [],
+        remedy=remedy(parameters, found, harmonics) if advise else "",
         final=not found.interrupted,
         settled=found.settled,
         interrupted=found.interrupted or untraced,

@@ -170,6 +170,7 @@ class Fitted:
     starts: list[FittedStart]
     harmonics: tuple[int, ...]
     advice: list[str] = field(default_factory=list)  # measurements that would tell more
+    remedy: str = ""  # a change of the data by which the model would meet them
     many: float = 10.0  # times a number: a standard error beyond is not given in percent
     final: bool = True  # whether the search for the numbers is at its end
     settled: bool = True  # whether it ended at a minimum
@@ -224,7 +225,7 @@ class Fitted:
                     "lacks something, as harmonics, or other numbers are nearer. The confidence intervals "
                     "do not include that"
                 )
-        return said
+        return [*said, self.remedy] if self.remedy else said
 
     def _relative(self, k: int) -> str:
         """How large the standard error of a number is, beside the number."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,16 +15,19 @@ from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
+from fcm.scene.measured_function import Excitation, Surroundings, compare
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
-from fcm.units import QUANTITIES, UNIT, in_unit
+from fcm.units import ANGLES, PER_TIME, QUANTITIES, UNIT, in_unit
+
+if TYPE_CHECKING:
+    from fcm.scene.measured_file import MeasuredFile
 
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
-_PER_TIME = {"velocity": "/s", "acceleration": "/s^2"}  # behind the unit of a displacement
 MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
 STARTS = Rule("a whole number from 1 to 100", low=1.0, high=100.0, whole=True)
 NOT_POSITIVE: Callable[[FloatArray], Any] = lambda values: ~(values > 0.0)  # noqa: E731
@@ -56,8 +59,9 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
     if not sections and section.mistakes.count == before:
         section.wrong("data", "missing; give [[fit.data]] with the file of measured points")
     units = top.data.get("units")
-    length = str(units.get("length", "")) if isinstance(units, Mapping) else ""
-    data = [_data(one, files, draft, reported, UNIT[unit], length) for one in sections]
+    own = [str(units.get(key, "")) if isinstance(units, Mapping) else "" for key in ("length", "force")]
+    scene = Surroundings(reported, (own[0], own[1]), files.noted)
+    data = [_data(one, files, draft, scene, UNIT[unit]) for one in sections]
     if section.mistakes.count > before:
         return None
     known = tuple(one for one in data if one)
@@ -105,9 +109,7 @@ def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[fl
     ]
 
 
-def _data(
-    section: Section, files: Files, draft: Draft, reported: Sequence[str], unit: float, length: str
-) -> Measured | None:
+def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, unit: float) -> Measured | None:
     """Reads one set of measured points."""
     before = section.mistakes.count
     backbone = "backbone" in section.data
@@ -118,7 +120,7 @@ def _data(
         if key in names("fit.data") and key not in (*allowed, "file", "backbone"):
             section.wrong(key, f"means nothing with a {'backbone' if backbone else 'response'}")
     section.only(*names("fit.data"))
-    dof = _dof(section, reported, needed=not backbone)
+    dof = _dof(section, scene.dofs, needed=not backbone)
     errors: dict[str, Any] = {
         key: section.number(key, FRACTION) if key in section.data else None
         for key in ("amplitude_error", "frequency_error", "damping_error")
@@ -134,18 +136,29 @@ def _data(
     column = level if isinstance(level, str) else ""
     others = {"damping": "damping_ratio"} if backbone else {}
     others["amplitude"] = f"amplitude {dof}" if dof else "modal_amplitude"
-    columns = _columns(section, files, name, column, others, length) if name else None
-    if columns is None or section.mistakes.count > before:
+    driven = _excitation(draft)
+    read = _columns(section, files, name, column, others, scene.units[0], driven) if name else None
+    if read is None or section.mistakes.count > before:
         return None
+    columns = read.columns
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
-    amplitude, count = columns["amplitude"], scaled.size
-    levels = columns[level] / _force(draft) if isinstance(level, str) else np.full(count, level)
-    if "power" in columns:
-        quantity = _quantity(section, name, quantity, float(columns["power"][0]))
-    if "per_force" in columns and columns["per_force"].any():
-        amplitude = amplitude * np.abs(levels) * _force(draft)
+    count = scaled.size
+    levels = columns[level] / abs(_force(driven)) if isinstance(level, str) else np.full(count, level)
+    if read.function is not None:
+        given = quantity if "quantity" in section.data else ""
+        quantity, factor = compare(read.function, name, dof, given, driven, scene, section.wrong)
+        value = factor * read.function.value
+        if read.function.per_reference and driven is not None:
+            value = value * levels * driven.amplitude * scaled**driven.power
+        columns["amplitude"] = np.abs(value)
+        if read.function.phased:
+            columns["phase"] = np.angle(value)
+    elif "phase" in columns and (largest := float(np.abs(columns["phase"]).max())) > ANGLES.largest:
+        asked = f"has a phase of {shown(largest)} rad. Are they in degrees? Call the column phase [deg]"
+        scene.noted.append(Question(f"fit: {name} {asked}"))
     if section.mistakes.count > before:
         return None
+    amplitude = columns["amplitude"]
     weight = columns.get("weight", np.ones(count))
     if not weight.max() > 0.0:
         section.wrong("file" if not backbone else "backbone", f"{quoted(name)}: all weights are 0")
@@ -162,14 +175,6 @@ def _data(
     )  # fmt: skip
 
 
-def _quantity(section: Section, name: str, given: str, power: float) -> str:
-    """Measured quantity, as a universal file declares it; another one given in the scene is a mistake."""
-    told = next(one for one, its in QUANTITIES.items() if its == power)
-    if told != given and "quantity" in section.data:
-        section.wrong("quantity", f"is {quoted(given)}, and {quoted(name)} says that it is {quoted(told)}")
-    return told
-
-
 def _columns(
     section: Section,
     files: Files,
@@ -177,8 +182,9 @@ def _columns(
     level: str,
     others: Mapping[str, str],
     length: str,
-) -> dict[str, FloatArray] | None:
-    """The columns of a file; None after a mistake."""
+    driven: Excitation | None,
+) -> MeasuredFile | None:
+    """The columns of a file, or its function; None after a mistake."""
     from fcm.scene.measured_file import read_measured
 
     backbone = "backbone" in section.data
@@ -188,13 +194,14 @@ def _columns(
         optional = ("weight",) if backbone else ("phase", "weight")
         dof, quantity = section.data.get("dof"), section.data.get("quantity", "displacement")
         own = unit_of(dof, length) if isinstance(dof, str) else length
-        own += _PER_TIME.get(quantity, "") if own and isinstance(quantity, str) else ""
-        found = read_measured(name, files, wanted, optional, others, own)
+        own += PER_TIME.get(quantity, "") if own and isinstance(quantity, str) else ""
+        places = (dof if isinstance(dof, str) else "", driven.dof if driven else "")
+        read = read_measured(name, files, wanted, optional, others, own, places)
     except DataFileError as error:
         for fault in error.faults:
             section.wrong(key, fault)
         return None
-    faults = []
+    faults, found = [], read.columns
     if backbone and "damping" not in found:
         faults.append("has no damping ratios; a backbone is read from .csv, .mat or .npz")
     if level and level not in found:
@@ -208,7 +215,7 @@ def _columns(
             faults.append(f"{column} of point {at[0] + 1} must be {text}, is {value}")
     for fault in faults:
         section.wrong(key, f"{quoted(name)}: {fault}")
-    return None if faults else found
+    return None if faults else read
 
 
 def _dof(section: Section, reported: Sequence[str], needed: bool) -> str:
@@ -232,15 +239,32 @@ def _level(section: Section, draft: Draft) -> float | str:
     value = section.data.get("level", 1.0)
     if not isinstance(value, str):
         return section.number("level", POSITIVE, 1.0)
-    if not _force(draft):
+    if not _force(_excitation(draft)):
         section.wrong(
             "level", "is a column of forces, which needs a scene with one [[force]] of an amplitude"
         )
     return value
 
 
-def _force(draft: Draft) -> float:
+def _force(driven: Excitation | None) -> complex:
     """The amplitude of the scene's one force, which its level multiplies; 0 where there are several."""
-    found = [one["amplitude"] for one in draft.parts["force"] if one["amplitude"]]
-    found += [one["acceleration"] for one in draft.parts["base"] if one.get("acceleration")]
-    return abs(float(found[0])) if len(found) == 1 else 0.0
+    return driven.amplitude if driven is not None else 0.0
+
+
+def _excitation(draft: Draft) -> Excitation | None:
+    """The one force of a scene, or the motion of its base; None where there are several.
+
+    A force on one degree of freedom is that along its axis.
+    """
+    found = []
+    for one in draft.parts["force"]:
+        if one["amplitude"]:
+            dof = one["dof"]
+            weights = dof[dof != 0.0] if dof is not None else np.ones(1)
+            amplitude = one["amplitude"] * (weights[0] if weights.size == 1 else 1.0)
+            turned = complex(amplitude * np.exp(1j * one["phase"]))
+            found.append(Excitation(turned, one["name"], one["power"]))
+    for one in draft.parts["base"]:
+        if one.get("acceleration"):
+            found.append(Excitation(complex(one["acceleration"] * np.exp(1j * one["phase"])), base=True))
+    return found[0] if len(found) == 1 else None

@@ -8,8 +8,10 @@ other names for some. A head may have a unit behind it, as in ``frequency [Hz]``
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,10 +23,18 @@ from fcm.scene.npz_file import names_in_npz, read_npz
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.options import MESSAGES
 from fcm.scene.reader_process import NAMES, read_apart
-from fcm.scene.uff_functions import read_functions
+from fcm.scene.uff_functions import Function, read_function
 from fcm.units import UNIT
 
+_HEAD = re.compile(r"(\w+)[\s_]*(?:[(\[/,]([^()\[\]]*)[)\]]?)?")  # a name, and a unit behind it
 _UNITS = {"phase": {"rad": 1.0, "deg": np.pi / 180.0}, "damping": {"1": 1.0, "%": 0.01}}
+
+
+class MeasuredFile(NamedTuple):
+    """Columns of measured points by their names; of a universal file also the function that they are of."""
+
+    columns: dict[str, FloatArray]
+    function: Function | None = None
 
 
 def read_measured(
@@ -34,14 +44,14 @@ def read_measured(
     optional: Collection[str],
     others: Mapping[str, str] | None = None,
     length: str = "",
-) -> dict[str, FloatArray]:
+    places: tuple[str, str] = ("", ""),
+) -> MeasuredFile:
     """The columns of a file, (point,) each: all that are wanted, and those of the optional that it has.
 
     others: the names that wanted columns have in files of ``fcm respond``. length: unit of amplitudes, where
     known; a column that says another is refused. A file that says the unit of its frequencies, as a universal
-    file, which is in Hz, does: it has angular_frequency [rad/s] in place of frequency, and per_force (point,)
-    1 where amplitudes are those per unit of force, and power (point,) of the frequency that they have over
-    displacements, where the file says it.
+    file does, has angular_frequency [rad/s] in place of frequency. places: what was measured, and where the
+    force is, by which one function of several is chosen.
 
     Raises
     ------
@@ -54,7 +64,9 @@ def read_measured(
         raise DataFileError(f"{quoted(name)}: measured points are read from {choices(MEASURED)}")
     with files.opened(name) as path:
         if ending in (".uff", ".unv"):
-            return read_functions(path)
+            function = read_function(path, *places)
+            omega = 2.0 * np.pi * function.hertz
+            return MeasuredFile({"angular_frequency": omega, "amplitude": np.abs(function.value)}, function)
         if ending in (".mat", ".npz"):
             found, named = _arrays(path, [*wanted, *others.values(), *optional], files)
             chosen = _chosen(found, wanted, optional, others)
@@ -64,14 +76,17 @@ def read_measured(
     there = {*found, *(["frequency"] if "angular_frequency" in found else [])}
     if missing := [one for one in wanted if one not in there]:
         heads = [quoted(one) + (f" (or {quoted(others[one])})" if one in others else "") for one in missing]
-        raise DataFileError(f"{quoted(name)} has no column {', '.join(heads)}; it has {choices(named)}")
+        write = "".join(_right_head(one, named) for one in missing)
+        raise DataFileError(
+            f"{quoted(name)} has no column {', '.join(heads)}; it has {choices(named)}{write}"
+        )
     sizes = {value.size for value in found.values()}
     if len(sizes) > 1:
         each = ", ".join(f"{key} {value.size}" for key, value in found.items())
         raise DataFileError(f"{quoted(name)}: its columns are of different lengths: {each}")
     if sizes == {0}:
         raise DataFileError(f"{quoted(name)} holds no points")
-    return found
+    return MeasuredFile(found)
 
 
 def _chosen(
@@ -110,7 +125,12 @@ def _csv(
 
     What is no number is a fault in those that are read.
     """
-    text = path.read_text(encoding="utf-8-sig")
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        at = error.object.count(b"\n", 0, error.start) + 1
+        said = f"it is no text in UTF-8, from line {at} on: save it as UTF-8"
+        raise DataFileError(f"{quoted(path.name)} cannot be read: {said}") from None
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ,;\t")]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if not lines:
@@ -148,6 +168,20 @@ def _csv(
     table = np.array([values for _, values in rows], dtype=np.float64).reshape(len(rows), len(chosen))
     found = dict(zip(chosen, table.T.copy(), strict=True))
     return _in_units(found, {key: heads[i] for key, i in chosen.items()}, path.name, length), header
+
+
+def _right_head(column: str, heads: Sequence[str]) -> str:
+    """What to write in place of a head that nearly is a column's.
+
+    >>> _right_head("frequency", ["f", "Frequency (Hz)"]), _right_head("frequency", ["f"])
+    ('; write "Frequency (Hz)" as "frequency [Hz]"', '')
+    """
+    for head in heads:
+        found = _HEAD.fullmatch(head)
+        if found and found[1].lower() == column and head != column:
+            unit = f" [{found[2].strip()}]" if found[2] and found[2].strip() else ""
+            return f"; write {quoted(head)} as {quoted(column + unit)}"
+    return ""
 
 
 def _name_and_unit(head: str) -> tuple[str, str]:

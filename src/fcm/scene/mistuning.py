@@ -17,6 +17,7 @@ from fcm.scene.excitation import DIRECTIONS
 from fcm.scene.files import Files
 from fcm.scene.keys import names
 from fcm.scene.names import Names
+from fcm.scene.options import LIMITS
 from fcm.scene.rules import RULES
 from fcm.scene.section import Part, Parts, Section
 from fcm.scene.sweep import SweptKey, draws_in
@@ -346,11 +347,13 @@ def mistuned_modes(modal: Part, whole: Part, unit: float) -> Part:
     from fcm.structure.eigen import StructureError
     from fcm.structure.mistuned import modes_of_mistuned
 
-    change = whole["basis"].stiffness(whole["energy"], factors_of(whole) - 1.0)
+    factors = factors_of(whole)
+    change = whole["basis"].stiffness(whole["energy"], factors - 1.0)
     try:
         squared, vectors = modes_of_mistuned((modal["frequency"] * unit) ** 2, change)
     except StructureError as error:
-        raise MistuningError(str(error)) from None
+        hint = "; of factors write 0.97 for 3 % less" if factors.max() < LIMITS.mistuning else ""
+        raise MistuningError(f"{error}{hint}") from None
     return modal | {
         "frequency": np.sqrt(squared) / unit,
         "damping": np.square(vectors).T @ modal["damping"],

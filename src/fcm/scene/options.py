@@ -98,6 +98,7 @@ class LimitOptions(Frozen):
     bytes_of_curve: float = 1000.0  # [byte] memory of the numbers of one curve of a sweep
     draws_timed: int = 8  # number of draws of a number that are timed before all are made
     draws_seconds: float = 600.0  # [s] longest time of all draws of a number; with more they are refused
+    mistuning: float = 0.5  # factor of every blade below which more likely a deviation is meant
     friction: float = 2.0  # coefficient of friction above which more likely a percentage is meant
     # damping ratio of every mode from which on no resonance is seen, and a percentage may be meant
     damping_of_all: float = 0.2

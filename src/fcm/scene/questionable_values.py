@@ -23,8 +23,8 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large, and where units
-    are given loss factors, too; no damping at all, coefficients of friction above two, negative gaps, and
-    angles of more than a turn that are given in rad.
+    are given loss factors, too; no damping at all, factors of mistuning that are all small, coefficients of
+    friction above two, negative gaps, and angles of more than a turn that are given in rad.
     """
     real = isinstance(top.data.get("units"), Mapping)
     found = [_of_ratio(*one, real) for one in _ratios(top, parts, swept)]
@@ -32,6 +32,7 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     found += [_of_friction(*one) for one in _of_contacts("mu", top, swept)]
     found += [_of_gap(*one) for one in _of_contacts("gap", top, swept)]
     found += [_of_angle(*one) for one in _angles(top, swept)]
+    found += [_of_factors(values) for values in _factors(parts)]
     return [Question(one) for one in found if one]
 
 
@@ -81,6 +82,12 @@ def _of_sweep(one: SweptKey) -> str:
     return f"sweep.{bare(one.key)}"
 
 
+def _factors(parts: Parts) -> Iterator[list[float]]:
+    """The factors of the blades of a mistuned ring."""
+    for ring in parts.get("whole", ()):
+        yield ring["factors"].ravel().tolist()
+
+
 def _numbers(value: Any) -> list[float]:
     """A number, or those of a list."""
     several = value if isinstance(value, list | tuple | np.ndarray) else [value]
@@ -106,6 +113,16 @@ def _of_nothing(key: str, values: Iterable[float], _whole: str) -> str:
     if not each or any(each):
         return ""
     return f"{key}: is 0 right? Where no contact slips nothing damps, and a resonance has no peak"
+
+
+def _of_factors(values: Sequence[float]) -> str:
+    greatest = max(values, default=1.0)
+    if not 0.0 < greatest < LIMITS.mistuning:
+        return ""
+    return (
+        f"cyclic.mistuning.factors: is {shown(greatest)}, the greatest, right? Properties are multiplied by "
+        "them: write 0.97 for 3 % less"
+    )
 
 
 def _of_friction(key: str, values: Iterable[float]) -> str:

@@ -129,7 +129,7 @@ RULES = {
     "phase": ANY,
     "sectors": Rule("a whole number from 2 to 1000", low=2.0, high=1000.0, whole=True),
     "engine_order": Rule("a whole number from -1000 to 1000", low=-1000.0, high=1000.0, whole=True),
-    "factors": POSITIVE,
+    "factors": Rule("greater than 0, as 0.97 for 3 % less", low=0.0, zero=False),
     "scale": NOT_NEGATIVE,
     "draw": Rule("a whole number of at least 0", low=0.0, whole=True),
     "nodal_diameter": Rule("a whole number of at least 0", low=0.0, whole=True),

@@ -380,6 +380,14 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
     ),
     ("a comment begins with #", lambda line: re.sub(r"^(\s*)(?://|/\*|;|%|!|--)\s*", r"\1# ", line)),
     ("a comment begins with #", _of_code(r"\s(?://|;|%|!)\s.*$", lambda m: f" # {m[0].strip(' /;%!')}")),  # type: ignore[arg-type]
+    (
+        "it is as numpy shows a number",
+        _substituted(r"\b(?:np|numpy)\.(?:float|u?int|longdouble)\w*\(([^()]*)\)", r"\1"),
+    ),
+    (
+        "it is as numpy shows an array",
+        _substituted(r"\b(?:(?:np|numpy)\.)?array\((\[[^()]*\])[^()]*\)", r"\1"),
+    ),
     ("a table begins with its name in brackets", _header),
     ("a number begins with a digit", _substituted(r"(?<![\w.])([-+]?)\.(?=\d)", r"\g<1>0.")),
     ("a digit follows the point of a number", _substituted(r"(?<![\w.])([-+]?\d+)\.(?![\d\w])", r"\1.0")),

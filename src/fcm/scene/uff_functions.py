@@ -1,45 +1,101 @@
-"""Measured functions of a universal file, dataset 58: a response over the frequency, as complex amplitudes.
+"""Measured functions of a universal file, dataset 58: a response over the frequency, and what it is of.
 
-Its sixth line names the function (4 is a frequency response function, 12 a spectrum), the seventh the type of
-its values (2 and 4 real, 5 and 6 complex, of single and double precision), their number, and whether the
-frequencies are evenly spaced; the ninth says what the values are of (8 a displacement, 11 a velocity, 12 an
-acceleration). Text is in columns of 13 or 20, as in Fortran's E13.5 and E20.12.
+Its sixth line names the function (4 is a frequency response function, 12 a spectrum), and node and direction
+of the response and of the reference. The seventh has the type of its values (2 and 4 real, 5 and 6 complex,
+of single and double precision), their number, and whether the frequencies are evenly spaced. The next three
+say what abscissa, ordinate and denominator are (18 a frequency, 8 a displacement, 13 a force), and their
+units. Text is in columns of 13 or 20, as in Fortran's E13.5 and E20.12, as many points as a line of 80 takes.
 Source: SDRC I-DEAS Test Data Universal File Format, dataset 58, as published by the University of Cincinnati.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError
+from fcm.scene.measured_units import hertz_of
+from fcm.scene.names import DIRECTIONS, motion_of
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.uff_datasets import Dataset, read_datasets
-from fcm.units import QUANTITIES
 
 ComplexArray = npt.NDArray[np.complex128]
 HEAD = 11  # lines before the values
-FUNCTION, FORM, ORDINATE = 5, 6, 8  # lines that say what it is, how its values are laid out, and of what
+FUNCTION, FORM, ABSCISSA, ORDINATE, DENOMINATOR = 5, 6, 7, 8, 9  # lines that say what it is
 RESPONSE, SPECTRUM = 4, 12
 KINDS = {
     RESPONSE: "a frequency response function", SPECTRUM: "a spectrum", 1: "a time response",
     2: "an auto spectrum", 3: "a cross spectrum", 6: "a coherence",
 }  # fmt: skip
-WIDTH = {2: 13, 4: 20, 5: 13, 6: 20}  # columns of a value, by its type
-MEASURED = {8: "displacement", 11: "velocity", 12: "acceleration"}
-SINGLE, DOUBLE = (2, 5), (4, 6)
-COMPLEX = (5, 6)
-EVEN_WIDTH = 13  # columns of an abscissa
+AXES = {
+    2: "stress", 3: "strain", 5: "temperature", 6: "heat flux", 8: "displacement", 9: "reaction force",
+    11: "velocity", 12: "acceleration", 13: "force", 15: "pressure", 16: "mass", 17: "time",
+    18: "frequency", 19: "rpm", 20: "order", 21: "sound pressure", 22: "sound intensity", 23: "sound power",
+}  # fmt: skip
+FREQUENCIES = ("", "frequency", "rpm")
+SINGLE, COMPLEX, TYPES = (2, 5), (5, 6), (2, 4, 5, 6)
+WIDTH_SINGLE, WIDTH_DOUBLE = 13, 20  # columns of a value; of an abscissa it is always the first
+LINE = 80  # columns
+ENTITIES = ((31, 41, 51, 55), (56, 66, 76, 80))  # columns of name, node and direction on the sixth line
+UNITS_AT = 46  # columns before the unit of an axis: a type, three exponents, the axis' label
 
 
-def read_functions(path: Path) -> dict[str, FloatArray]:
-    """angular_frequency [rad/s], amplitude, phase [rad], per_force and power of the one function of a file.
+class Place(NamedTuple):
+    """Where a response or its reference is: a name, a node, and a direction with its sign."""
 
-    power : of the frequency that the values have over displacements, where the file says it.
+    entity: str = ""
+    node: int = 0
+    direction: int = 0
+
+    @property
+    def dof(self) -> str:
+        """Node and direction, as a degree of freedom is named; empty where they are not given."""
+        known = self.node > 0 and 1 <= abs(self.direction) <= len(DIRECTIONS)
+        return f"{self.node}{DIRECTIONS[abs(self.direction) - 1]}" if known else ""
+
+    @property
+    def sign(self) -> float:
+        """-1 where the direction is against the axis."""
+        return -1.0 if self.direction < 0 else 1.0
+
+    def may_be(self, name: str) -> bool:
+        """Whether this is a degree of freedom, by node and direction, or by its name."""
+        return bool(name) and (self.dof == motion_of(name) if motion_of(name) else self.entity == name)
+
+
+class Axis(NamedTuple):
+    """What the values along an axis are of, and their unit; empty where the file does not say it."""
+
+    what: str = ""
+    unit: str = ""
+
+
+class Function(Frozen):
+    """A response over the frequency, and what its file says of it."""
+
+    hertz: FloatArray
+    value: ComplexArray  # along the positive axes
+    phased: bool
+    per_reference: bool  # whether values are those per unit of the reference
+    response: Place
+    reference: Place
+    ordinate: Axis
+    denominator: Axis
+    system: tuple[float, float] | None  # unit of length [m] and of force [N] of the whole file
+    unknown_unit: str = ""  # of the frequencies, then taken for Hz
+
+
+def read_function(path: Path, dof: str = "", forced: str = "") -> Function:
+    """The one response over the frequency of a file; of several that of a degree of freedom.
+
+    dof, forced : what was measured, and where the force is; empty where that is not known.
 
     Raises
     ------
@@ -50,22 +106,39 @@ def read_functions(path: Path) -> dict[str, FloatArray]:
     functions = [one for one in every if one.kind in ("58", "58b")]
     said = [(one, _kind(one)) for one in functions]
     chosen = [one for one, kind in said if kind in (RESPONSE, SPECTRUM)]
+    for at, name in ((0, dof), (1, forced)):
+        if len(chosen) > 1:
+            chosen = [one for one in chosen if _places(one)[at].may_be(name)] or chosen
     if len(chosen) != 1:
         others = ", ".join(dict.fromkeys(KINDS.get(kind, f"function {kind}") for _, kind in said)) or "none"
         held = ", ".join(dict.fromkeys(f"dataset {one.kind}" for one in every)) or "no dataset"
         what = f"has {counted(len(chosen), 'response')} over the frequency among its functions ({others})"
-        raise DataFileError(f"{quoted(path.name)} {what}; one is right. The file holds {held}")
-    frequency, value = _values(chosen[0], path)
-    found = {
-        "angular_frequency": 2.0 * np.pi * frequency,
-        "amplitude": np.abs(value),
-        "phase": np.angle(value),
-        "per_force": np.full(frequency.size, float(_kind(chosen[0]) == RESPONSE)),
-    }
-    words = _line(chosen[0], ORDINATE).split()
-    if words and words[0].isdecimal() and (quantity := MEASURED.get(int(words[0]))):
-        found["power"] = np.full(frequency.size, float(QUANTITIES[quantity]))
-    return found
+        which = f" at {dof}" if dof and len(chosen) > 1 else ""
+        raise DataFileError(f"{quoted(path.name)} {what}; one{which} is right. The file holds {held}")
+    return _function(chosen[0], path, _system(every))
+
+
+def _function(one: Dataset, path: Path, system: tuple[float, float] | None) -> Function:
+    abscissa, ordinate, denominator = (_axis(one, line) for line in (ABSCISSA, ORDINATE, DENOMINATOR))
+    if abscissa.what not in FREQUENCIES:
+        where = f"{quoted(path.name)}, line {one.first + ABSCISSA}"
+        raise DataFileError(f"{where}: its values are over the {abscissa.what}, not over the frequency")
+    frequency, value, phased = _values(one, path)
+    unit = hertz_of(abscissa.unit or ("rpm" if abscissa.what == "rpm" else "Hz"))
+    response, reference = _places(one)
+    per_reference = _kind(one) == RESPONSE
+    return Function(
+        hertz=(unit or 1.0) * frequency,
+        value=response.sign * (reference.sign if per_reference else 1.0) * value,
+        phased=phased,
+        per_reference=per_reference,
+        response=response,
+        reference=reference,
+        ordinate=ordinate,
+        denominator=denominator,
+        system=system,
+        unknown_unit="" if unit else abscissa.unit,
+    )
 
 
 def _kind(one: Dataset) -> int:
@@ -79,8 +152,60 @@ def _line(one: Dataset, at: int) -> str:
     return one.lines[at] if at < len(one.lines) else ""
 
 
-def _values(one: Dataset, path: Path) -> tuple[FloatArray, ComplexArray]:
-    """Frequencies [Hz] and complex values."""
+def _places(one: Dataset) -> tuple[Place, Place]:
+    """Response and reference; by words, or by columns where a name has a space or touches its node."""
+    text = _line(one, FUNCTION)
+    words = text.split()
+    parts = [words[4:7], words[7:10]] if len(words) == 10 else []
+    if not all(_whole(word) is not None for part in parts for word in part[1:]):
+        parts = []
+    parts = parts or [[text[a:b], text[b:c], text[c:d]] for a, b, c, d in ENTITIES]
+    first, second = (
+        Place(_said(entity), _whole(node) or 0, _whole(direction) or 0) for entity, node, direction in parts
+    )
+    return first, second
+
+
+def _whole(word: str) -> int | None:
+    digits = word.strip().removeprefix("-").removeprefix("+")
+    return int(word) if digits.isdecimal() and len(digits) <= 10 else None
+
+
+def _said(text: str) -> str:
+    """A label; empty where it says NONE, or is a mark for nothing."""
+    word = text.strip()
+    return "" if word.upper() in ("NONE", "-", "UNKNOWN") else word
+
+
+def _axis(one: Dataset, line: int) -> Axis:
+    """Type and unit of an axis; its label has twenty columns and may hold spaces."""
+    text = _line(one, line)
+    words = text.split()
+    kind = _whole(words[0]) if words else None
+    unit = text[UNITS_AT:] if len(text) > UNITS_AT else (words[5] if len(words) == 6 else "")
+    return Axis(AXES.get(kind or 0, ""), _said(_decoded(unit[:21])))
+
+
+def _decoded(text: str) -> str:
+    """A text that was read byte by byte, as UTF-8 if it is that: of units as m/s²."""
+    try:
+        return text.encode("latin-1").decode("utf-8")
+    except UnicodeError:
+        return text
+
+
+def _system(every: Sequence[Dataset]) -> tuple[float, float] | None:
+    """The units of length [m] and force [N] of dataset 164, whose factors lead from SI to them."""
+    for one in every:
+        numbers = [number_in(word) for word in _line(one, 1).split()[:2]] if one.kind == "164" else []
+        if len(numbers) == 2 and all(number is not None and number > 0.0 for number in numbers):
+            length, force = (float(number or 1.0) for number in numbers)
+            return 1.0 / length, 1.0 / force
+    return None
+
+
+def _values(one: Dataset, path: Path) -> tuple[FloatArray, ComplexArray, bool]:
+    """Abscissae, values, and whether these are complex."""
     words = _line(one, FORM).split()
     where = f"{quoted(path.name)}, line {one.first + FORM}"
     numbers = [number_in(word) for word in words[:5]]
@@ -90,24 +215,28 @@ def _values(one: Dataset, path: Path) -> tuple[FloatArray, ComplexArray]:
         )
     kind, count, even = (int(number or 0) for number in numbers[:3])
     first, step = (float(number or 0.0) for number in numbers[3:5])
-    if kind not in COMPLEX:
-        raise DataFileError(
-            f"{where}: its values are not complex (type {kind}); a response has a phase: type 5 or 6"
-        )
+    if kind not in TYPES:
+        raise DataFileError(f"{where}: its values are of type {kind}; known are 2 and 4 (real), 5 and 6")
     flat = _binary(one, kind, even) if one.kind == "58b" else _text(one, kind, even, path)
-    each = 2 if even else 3
+    each = (2 if kind in COMPLEX else 1) + (0 if even else 1)
     if flat.size != count * each:
         raise DataFileError(f"{where}: says {count} values, and {flat.size / each:g} follow")
     table = flat.reshape(count, each)
-    frequency = np.asarray(first + step * np.arange(count) if even else table[:, 0], dtype=np.float64)
-    return frequency, table[:, -2] + 1j * table[:, -1]
+    abscissa = np.asarray(first + step * np.arange(count) if even else table[:, 0], dtype=np.float64)
+    if kind in COMPLEX:
+        return abscissa, table[:, -2] + 1j * table[:, -1], True
+    if (table[:, -1] < 0.0).any():
+        raise DataFileError(
+            f"{where}: its values are real, and some are negative: export amplitudes, or complex values"
+        )
+    return abscissa, table[:, -1].astype(np.complex128), False
 
 
 def _text(one: Dataset, kind: int, even: int, path: Path) -> FloatArray:
     """The numbers of a text, which may touch one another in their columns."""
-    width = WIDTH[kind]
-    abscissa = [] if even else [EVEN_WIDTH if kind == 6 else width]  # of single precision
-    widths = [*abscissa, width, width] if abscissa else [width] * 6
+    width = WIDTH_SINGLE if kind in SINGLE else WIDTH_DOUBLE
+    point = [*([] if even else [WIDTH_SINGLE]), *[width] * (2 if kind in COMPLEX else 1)]
+    widths = point * (LINE // sum(point))
     found = []
     for number, line in enumerate(one.lines[HEAD:], one.first + HEAD):
         at, words = 0, []
@@ -115,7 +244,8 @@ def _text(one: Dataset, kind: int, even: int, path: Path) -> FloatArray:
             if word := line[at : at + columns].strip():
                 words.append(word)
             at += columns
-        if len(line.split()) == len(words) or any(number_in(word) is None for word in words):
+        beyond = bool(line[at:].strip())
+        if beyond or len(line.split()) == len(words) or any(number_in(word) is None for word in words):
             words = line.split()
         values = [number_in(word) for word in words]
         for word, value in zip(words, values, strict=True):
@@ -129,10 +259,7 @@ def _binary(one: Dataset, kind: int, even: int) -> FloatArray:
     """The numbers of the bytes: little-endian unless the file says otherwise."""
     order = ">" if one.big_endian else "<"
     real = np.dtype(f"{order}f{4 if kind in SINGLE else 8}")
-    if even:
-        return np.frombuffer(one.payload[: len(one.payload) // real.itemsize * real.itemsize], real).astype(
-            np.float64
-        )
-    row = np.dtype([("x", f"{order}f{4 if kind in SINGLE else 8}"), ("y", real, 2)])
+    row = np.dtype([*([] if even else [("x", real)]), ("y", real, 2 if kind in COMPLEX else 1)])
     rows = np.frombuffer(one.payload[: len(one.payload) // row.itemsize * row.itemsize], row)
-    return np.column_stack((rows["x"], rows["y"])).astype(np.float64).ravel()
+    parts = [rows[name].reshape(rows.size, -1) for name in row.names or ()]
+    return np.hstack(parts).astype(np.float64).ravel()

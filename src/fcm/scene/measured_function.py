@@ -1,0 +1,237 @@
+"""A measured function of a universal file beside the scene: where it is, what it is of, in which units.
+
+Place, quantity and units that the file says are compared with the measurement of [[fit.data]] and the force
+of the scene. What contradicts it is a mistake, another place is asked about, another unit is converted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import isclose
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.frozen import Frozen
+from fcm.model.question import Question
+from fcm.model.scene import FloatArray
+from fcm.rotational_dofs import is_rotation
+from fcm.scene.errors import quoted
+from fcm.scene.files import DataFileError
+from fcm.scene.measured_units import force_unit, length_unit, motion_unit, ratio_of
+from fcm.scene.names import motion_of
+from fcm.scene.uff_functions import Axis, Function, Place
+from fcm.units import PER_TIME, QUANTITIES
+
+FORCES = ("force", "reaction force")
+
+
+class Excitation(Frozen):
+    """What a scene is driven by, if it is one harmonic force or the motion of a base."""
+
+    amplitude: complex  # along the axis, of A in Im(A exp(i omega t))
+    dof: str = ""  # of a force on one
+    power: int = 0  # of omega that it is in proportion to
+    base: bool = False
+
+
+class Surroundings(NamedTuple):
+    """What of a scene measured functions are compared with."""
+
+    dofs: Sequence[str]
+    units: tuple[str, str]  # of length and of force, empty where the scene does not say them
+    noted: list[str]  # takes what is to be said
+
+
+class Scale(NamedTuple):
+    """What the values of a file are, and by what they are multiplied to be those of the scene."""
+
+    quantity: str
+    factor: float
+
+
+class _Told:
+    """A function beside its measurement; collects mistakes and notes."""
+
+    def __init__(self, name: str, wrong: Callable[[str, str], None], noted: list[str]) -> None:
+        self.name = name
+        self.wrong = wrong
+        self.noted = noted
+
+    def mistake(self, what: str, key: str = "file") -> None:
+        self.wrong(key, f"{quoted(self.name)} {what}")
+
+    def note(self, what: str) -> None:
+        self.noted.append(f"fit: {self.name} {what}")
+
+    def ask(self, what: str) -> None:
+        self.noted.append(Question(f"fit: {self.name} {what}"))
+
+    def note_once(self, what: str) -> None:
+        """Notes what is true of all files."""
+        if (said := f"fit: {what}") not in self.noted:
+            self.noted.append(said)
+
+
+def compare(
+    function: Function,
+    name: str,
+    dof: str,
+    quantity: str,
+    excitation: Excitation | None,
+    scene: Surroundings,
+    wrong: Callable[[str, str], None],
+) -> Scale:
+    """The quantity and the factor of a function's values; mistakes and notes on what does not agree.
+
+    Parameters
+    ----------
+    name : of the file
+    dof, quantity : of the measurement; the quantity is empty where the scene does not say it
+    wrong : takes a key and what is wrong there
+    """
+    told, units = _Told(name, wrong, scene.noted), scene.units
+    _compare_places(told, function, dof, excitation, scene.dofs)
+    upper, lower = ratio_of(function.ordinate.unit)
+    ordinate = function.ordinate._replace(unit=upper)
+    if function.unknown_unit:
+        told.ask(f"has frequencies in {quoted(function.unknown_unit)}, taken for Hz. Are they?")
+    found = _quantity(told, ordinate, dof, quantity)
+    factor = _factor(told, ordinate, dof, found, units, function.system)
+    if function.per_reference:
+        factor /= _reference_factor(told, function, lower, excitation, units)
+    if not function.phased:
+        told.note("has no phase: a displacement is taken as half the peak-to-peak value")
+    return Scale(found, factor)
+
+
+def _compare_places(
+    told: _Told, function: Function, dof: str, excitation: Excitation | None, dofs: Sequence[str]
+) -> None:
+    """Ask where node and direction, or the name, are those of another degree of freedom."""
+    pairs = [("the response at", "the measurement is at", function.response, dof)]
+    if function.per_reference and excitation is not None and excitation.dof:
+        pairs.append(("a force at", "the force of the scene is at", function.reference, excitation.dof))
+    for what, own, place, name in pairs:
+        if other := _elsewhere(place, name, dofs):
+            told.ask(f"has {what} {other}, and {own} {name}. Is it the right file?")
+
+
+def _elsewhere(place: Place, dof: str, dofs: Sequence[str]) -> str:
+    """Where a place is, if it is another degree of freedom by node and direction, or by name; else empty."""
+    if motion_of(dof):
+        return place.dof if place.dof != motion_of(dof) else ""
+    return place.entity if place.entity != dof and place.entity in dofs else ""
+
+
+def _quantity(told: _Told, ordinate: Axis, dof: str, given: str) -> str:
+    """Measured quantity, as the file declares it by type or unit; what contradicts the scene is a mistake."""
+    unit = motion_unit(ordinate.unit)
+    if ordinate.what and ordinate.what not in QUANTITIES:
+        told.mistake(
+            f"says that it is of {ordinate.what}, and a fit is to {given or 'the motion'} at {quoted(dof)}: "
+            "displacement, velocity or acceleration"
+        )
+        return given or "displacement"
+    if ordinate.what and unit and unit.quantity != ordinate.what:
+        told.mistake(f"says that it is {ordinate.what}, in {ordinate.unit}, the unit of {unit.quantity}")
+    found = ordinate.what or (unit.quantity if unit else "")
+    if found and given and found != given:
+        told.wrong("quantity", f"is {quoted(given)}, and {quoted(told.name)} says that it is {quoted(found)}")
+    if unit and unit.angular != is_rotation(dof):
+        kinds = ["a displacement", "a rotation"]
+        kinds = kinds if unit.angular else kinds[::-1]
+        told.mistake(f"is in {ordinate.unit}, the unit of {kinds[1]}, and {quoted(dof)} is {kinds[0]}")
+    if not found and not given:
+        told.ask("does not say what its values are of: are they displacements? Say it by quantity")
+    return found or given or "displacement"
+
+
+def _factor(
+    told: _Told,
+    ordinate: Axis,
+    dof: str,
+    quantity: str,
+    units: tuple[str, str],
+    system: tuple[float, float] | None,
+) -> float:
+    """By what values of the file are multiplied to be in the unit of the scene."""
+    turning, end = is_rotation(dof), PER_TIME[quantity]
+    own = f"rad{end}" if turning else f"{units[0]}{end}" if units[0] else ""
+    known, size, label = motion_unit(ordinate.unit), None, ordinate.unit
+    if known is None and label:
+        told.ask(f"is in {quoted(label)}, which is not known: taken for {own or 'that of the scene'}")
+        return 1.0
+    if known:
+        size = known.size
+    elif system and not turning:
+        size, label = system[0], f"m{end}" if system[0] == 1.0 else f"units of {system[0]:g} m{end}"
+    return _converted(told, size, label, 1.0 if turning else length_unit(units[0]), own, f"m{end}")
+
+
+def _reference_factor(
+    told: _Told, function: Function, lower: str, excitation: Excitation | None, units: tuple[str, str]
+) -> float:
+    """By what the reference is multiplied to be in the unit of the scene; a mistake if it is another one."""
+    denominator = function.denominator
+    if excitation is None:
+        told.mistake("has responses per unit of force, which needs a scene with one [[force]] or a [base]")
+        return 1.0
+    if denominator.what and excitation.base != (denominator.what not in FORCES):
+        driven = "the acceleration of its base" if excitation.base else "a [[force]]"
+        told.mistake(f"is per unit of {denominator.what}, and the scene is driven by {driven}")
+        return 1.0
+    if excitation.base:
+        if denominator.what not in ("", "acceleration"):
+            told.mistake(f"is per unit of {denominator.what}, and the scene has the acceleration of its base")
+        return _factor(told, denominator, "", "acceleration", units, function.system)
+    label = denominator.unit or lower
+    size = force_unit(label) if label else (function.system[1] if function.system else None)
+    if size is None and label:
+        own = units[1] or "that of the scene"
+        told.ask(f"is per unit of force in {quoted(label)}, which is not known: taken for {own}")
+        return 1.0
+    if not label and size is not None:
+        label = "N" if size == 1.0 else f"units of {size:g} N"
+    return _converted(told, size, label, force_unit(units[1]), units[1], "N")
+
+
+def _converted(
+    told: _Told, size: float | None, label: str, own: float | None, unit: str, plain: str
+) -> float:
+    """A unit of the file over one of the scene, told where they differ; 1 where one is not known.
+
+    size, label : of the unit of the file; own, unit : of that of the scene; plain : that of SI
+    """
+    if size is None:
+        return 1.0
+    if own is None and isclose(size, 1.0):
+        told.note_once(f"measured in {plain}: the scene, without known [units], has to be in these, too")
+        return 1.0
+    if own is None:
+        told.ask(f"is in {label}: is the scene, too? With its [units] of length and force it is converted")
+        return 1.0
+    if not isclose(size, own):
+        told.note(f"is in {label}, converted to {unit}")
+    return size / own
+
+
+def displacements(function: Function, length: str) -> FloatArray:
+    """Amplitudes of displacements, in a unit of length where it and that of the file are known.
+
+    Raises
+    ------
+    DataFileError
+        Of values per unit of a force, and of other quantities.
+    """
+    upper, _ = ratio_of(function.ordinate.unit)
+    unit, own = motion_unit(upper), length_unit(length)
+    what = function.ordinate.what or (unit.quantity if unit else "displacement")
+    if function.per_reference:
+        raise DataFileError("its amplitudes are per unit of force: they are no displacements")
+    if what not in QUANTITIES:
+        raise DataFileError(f"its values are of {what}: they are no displacements")
+    factor = unit.size / own if unit and own and not unit.angular else 1.0
+    omega = 2.0 * np.pi * function.hertz
+    found: FloatArray = factor * np.abs(function.value) / omega ** QUANTITIES[what]
+    return found
