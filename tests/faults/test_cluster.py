@@ -90,7 +90,7 @@ def test_a_worker_dies_another_is_refused_and_at_last_the_scheduler_is_lost(prog
     assert run.returncode == 0, run.err
     refused = f"fcm: warning: worker {older} is refused: it has fcm 0.0.9, and this is fcm {fcm.__version__}"
     assert run.err.splitlines()[0] == refused
-    assert [line.split()[0] for line in run.err.splitlines()[1:]] == ["wrote", "20", "largest"]
+    assert [line.split()[0] for line in run.err.splitlines()[1:]] == ["wrote", "20", "largest", "result:"]
     assert variables(program.folder / "a.nc") == variables(program.folder / "whole.nc")
 
     (program.folder / "a.nc").unlink()
