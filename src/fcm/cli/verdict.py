@@ -8,6 +8,8 @@ from typing import Any
 from fcm.cli.columns import BEYOND, short
 from fcm.cli.curves import incomplete, shown_dofs
 
+_UNSURE = ("folds_unsure_at", "branches_unsure_at", "symmetry_lost_at")  # of curves
+
 
 def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     """Line on the peaks that the tables show, and how many remarks stand above it; empty without a response.
@@ -20,6 +22,8 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     >>> curve = {"complete": True, "points": 9, "parameters": {}, "peak": {"u": peak}}
     >>> verdict({"curves": [curve]}, 0)
     'result: complete; every peak shown is stable; errors of peaks are at most 2.0e-04'
+    >>> verdict({"curves": [curve | {"folds_unsure_at": [1.0]}]}, 1).split(";")[0]
+    'result: complete, but branches may be missing'
     >>> other = curve | {"complete": False, "peak": {"u": peak | {"stable": None, "error": None}}}
     >>> verdict({"curves": [curve, other]}, 2)  # doctest: +NORMALIZE_WHITESPACE
     'result: 1 of 2 curves stopped early; of 2 peaks shown, 1 of unknown stability;
@@ -28,7 +32,8 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     curves: Sequence[Mapping[str, Any]] = summary["curves"]
     if not curves or any("mode" in curve or "level_folds" in curve for curve in curves):
         return ""
-    parts = [incomplete(summary) or "complete"]
+    unsure = any(curve.get(key) for curve in curves for key in _UNSURE)
+    parts = [(incomplete(summary) or "complete") + ", but branches may be missing" * unsure]
     if peaks := _shown(summary):
         parts += [_of_stability(peaks), _of_errors(summary, peaks)]
     elif any(curve["points"] for curve in curves):
