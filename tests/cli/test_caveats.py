@@ -193,7 +193,10 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
         "--level 0:4 --at F, with F beyond 1.207, or a sweep up and down by --method exact --at "
         "FROM:TO:COUNT, looks there. All of them: folds_unsure_at of --json"
     )
-    assert run.code == 0 and run.err.count(said) == 1 and run.err.count("may be missing") == 1
+    assert (
+        run.code == 0 and run.err.count(said) == 1 and run.err.count("isolated branches may be missing") == 1
+    )
+    assert run.err.splitlines()[-1].startswith("result: complete, but branches may be missing; ")
     curves = json.loads(run.out)["curves"]
     there = [1.20695]
     told = [curve.get("folds_unsure_at", []) for curve in curves]
