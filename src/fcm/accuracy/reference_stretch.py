@@ -16,7 +16,6 @@ from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.reference_pieces import lengths
 from fcm.branches.force_level import solutions
-from fcm.branches.narrow_resonances import narrow_resonances
 from fcm.branches.options import LEVEL_CURVE
 from fcm.continuation import Events, Mark, Path, Status
 from fcm.continuation.follow import Follower
@@ -84,7 +83,7 @@ class StretchFollower:
         self.finer, self.prolongation, self.curve, self.options = finer, prolongation, curve, options
         many = len(finer.scene.contacts) >= options.many_contacts
         self.following = options.following_of_many if many else options.following
-        self.each, self.narrow = seconds_of(finer, 1, len(finer.harmonics)), narrow_resonances(finer)
+        self.each = seconds_of(finer, 1, len(finer.harmonics))
         self.budget, self.evaluations = budget, 0
 
     def between(self, first: int, last: int, found: FloatArray) -> list[ReferencePiece]:
@@ -291,7 +290,6 @@ class StretchFollower:
             if self.budget.seconds < 0.0:
                 raise BudgetSpentError
 
-        events = replace(events, narrow=self.narrow)
         follower = Follower(balance, span, events, self.following, pay_as_far_as_it_lasts, stepper)
         with self.finer.exclusive_balance():
             stepper.newton.poll = self.finer.work.poll

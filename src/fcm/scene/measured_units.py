@@ -12,11 +12,11 @@ LENGTHS = {
     "in": 0.0254, "inch": 0.0254, "ft": 0.3048, "mil": 2.54e-5,
 }  # fmt: skip
 ANGLES = {"rad": 1.0, "deg": pi / 180.0, "°": pi / 180.0}
+GRAVITY = 9.80665  # [m/s^2]
 FORCES = {
     "N": 1.0, "mN": 1e-3, "kN": 1e3, "MN": 1e6, "daN": 10.0, "dyn": 1e-5,
-    "lbf": 4.4482216152605, "lb": 4.4482216152605, "kgf": 9.80665, "kp": 9.80665, "gf": 9.80665e-3,
+    "lbf": 4.4482216152605, "lb": 4.4482216152605, "kgf": GRAVITY, "kp": GRAVITY, "gf": 1e-3 * GRAVITY,
 }  # fmt: skip
-GRAVITY = 9.80665  # [m/s^2]
 _GRAVITIES = ("g", "gn", "g's")
 _HERTZ = {
     "hz": 1.0, "khz": 1e3, "rpm": 1.0 / 60.0, "1/min": 1.0 / 60.0, "rev/min": 1.0 / 60.0, "cpm": 1.0 / 60.0,
