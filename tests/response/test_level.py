@@ -194,13 +194,13 @@ def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads():
 
 def test_responses_of_a_search_over_a_preload_share_curves_of_levels(monkeypatch):
     """That of few harmonics to its end, and that of more as far as the least preload needs it."""
-    followed, coarse = [], force_level._coarse_curve
+    followed = []
 
-    def counted(system, omega, linear, top, user_values):
-        followed.append((len(system.harmonics), top))
-        return coarse(system, omega, linear, top, user_values)
+    def counted(system, omega, levels):
+        followed.append((len(system.harmonics), levels.span[1]))
+        return level_curve(system, omega, levels)
 
-    monkeypatch.setattr(force_level, "_coarse_curve", counted)
+    monkeypatch.setattr(force_level, "level_curve", counted)
     clear()
     scene = load_scene("yang1998-n5")
     system, line = System(scene, tuple(range(1, 8))), along(number_of(scene, "contact.shroud.n_0"))
