@@ -38,6 +38,7 @@ class _Program:
         self.works, self.last = False, -self.min_interval
         self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
         self.imports = 0  # that were under way when the work began
+        self.deferred = self.insists = False  # until an import has ended; whether one more came meanwhile
         self.notice = b""  # said at once, as what follows may take a moment
         self.before: dict[int, Any] = {}
 
@@ -47,6 +48,7 @@ class _Program:
         now = time.monotonic()
         if now - self.last >= self.min_interval:
             self.last = now
+            self.insists = self.deferred
             try:
                 os.write(2, self.notice)
             except OSError:  # be standard error closed
@@ -60,12 +62,17 @@ class _Program:
             os._exit(NOT_COMPLETED)
 
     def again(self, _number: int, frame: FrameType | None) -> None:
-        """Interrupt, but not in the middle of an import: libraries make other errors of it, or swallow it."""
+        """Interrupt, but not in the middle of an import: libraries make other errors of it, or swallow it.
+
+        Who interrupts once more does not wait for the import's end.
+        """
         if self.shields:
             self.waits = True
-        elif _imports(frame) > self.imports and time.monotonic() - self.last < self.min_interval and _later():
             return
-        else:
+        if self.insists:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)  # the one that was deferred does not come, too
+        self.deferred = not self.insists and _imports(frame) > self.imports and _later()
+        if not self.deferred:
             raise KeyboardInterrupt
 
     def lost(self, unraisable: Any) -> None:
@@ -156,10 +163,11 @@ def ends() -> None:
 
 
 def interrupted(error: BaseException) -> bool:
-    """Whether an exception is an interruption: an import that is interrupted may say that it failed."""
+    """Whether an exception is an interruption, or what an import that was interrupted made of it."""
+    made = Exception if _program is not None and _program.insists else (ImportError, SystemError)
     seen: BaseException | None = error
     for _ in range(100):
-        if not isinstance(seen, ImportError | SystemError):
+        if not isinstance(seen, made):
             break
         seen = seen.__cause__ or seen.__context__
     return isinstance(seen, KeyboardInterrupt)
