@@ -62,16 +62,18 @@ class _Program:
             os._exit(NOT_COMPLETED)
 
     def again(self, _number: int, frame: FrameType | None) -> None:
-        """Interrupt, but not in the middle of an import: libraries make other errors of it, or swallow it.
+        """Interrupt, but not where the exception could be lost; that is left within moments.
 
-        Who interrupts once more does not wait for the import's end.
+        In the middle of an import libraries make other errors of it, or swallow it; who interrupts once more
+        does not wait for its end. Compiled code drops it while it notes where an exception came from.
         """
         if self.shields:
             self.waits = True
             return
         if self.insists:
             signal.setitimer(signal.ITIMER_REAL, 0.0)  # the one that was deferred does not come, too
-        self.deferred = not self.insists and _imports(frame) > self.imports and _later()
+        imports = not self.insists and _imports(frame) > self.imports
+        self.deferred = (imports or _notes_an_origin(frame)) and _later()
         if not self.deferred:
             raise KeyboardInterrupt
 
@@ -96,6 +98,15 @@ def _imports(frame: FrameType | None) -> int:
         count += frame.f_code.co_filename == "<frozen importlib._bootstrap>"
         frame = frame.f_back
     return count
+
+
+def _notes_an_origin(frame: FrameType | None) -> bool:
+    """Whether a compiled module is making the frame that it shows in a traceback.
+
+    Cython evaluates ``_getframe()`` for that, with the limited interface of Python, and clears what is raised
+    in it.
+    """
+    return frame is not None and frame.f_code.co_names == ("_getframe",)
 
 
 _program: _Program | None = None
