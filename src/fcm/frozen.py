@@ -57,7 +57,7 @@ class Frozen:
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
-        every = dataclasses.fields(dataclasses.dataclass(init=False, repr=False, eq=False)(cls))
+        every = _fields_of(cls)
         missing = dataclasses.MISSING
         cls._positional = tuple(one.name for one in every if one.init and not one.kw_only)
         cls._taken = cls._positional + tuple(one.name for one in every if one.init and one.kw_only)
@@ -110,6 +110,21 @@ class Frozen:
     def __repr__(self) -> str:
         shown = ", ".join(f"{name}={getattr(self, name)!r}" for name in self._shown)
         return f"{type(self).__qualname__}({shown})"
+
+
+def _fields_of(cls: type[Frozen]) -> tuple[dataclasses.Field[Any], ...]:
+    """Make a class a dataclass without methods; its fields.
+
+    `dataclasses` reads each annotation three times, as it may be a string that means no field. That takes
+    half of the time, and is left out.
+    """
+    own = cls.__dict__.get("__annotations__", {})  # noqa: RUF063  # inspect would be loaded for it
+    cls.__annotations__ = {name: object for name, kind in own.items() if "ClassVar" not in str(kind)}
+    every = dataclasses.fields(dataclasses.dataclass(init=False, repr=False, eq=False)(cls))
+    cls.__annotations__ = own
+    for one in every:
+        one.type = own.get(one.name, one.type)
+    return every
 
 
 def _values(record: Any, names: tuple[str, ...]) -> tuple[Any, ...]:

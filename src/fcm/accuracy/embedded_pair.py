@@ -27,6 +27,7 @@ from fcm.accuracy.reference_errors import with_reference_errors
 from fcm.accuracy.reference_harmonics import reference_harmonics
 from fcm.accuracy.reference_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
 from fcm.continuation import Mark, Path
+from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
@@ -113,7 +114,7 @@ def errors_along(
         path.where(Mark.FOLD),
         quantities.amplitude.argmax(axis=0),
     )
-    special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
+    special = distinct_values(folds, path.where(Mark.PEAK), tops)
     share, met = _spectrum(system, path, quantities, special, size, options)
     more = reference_harmonics(system.harmonics, share, system.layout.ports, options)
     nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that it is not looked at

@@ -7,6 +7,7 @@ import numpy as np
 from fcm.accuracy.curve_distance import rises
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve, ReferenceTop
 from fcm.continuation import Mark
+from fcm.distinct_values import distinct_values
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray
 
@@ -122,6 +123,6 @@ def _highest(reference: ReferenceCurve, change: FloatArray) -> tuple[FloatArray,
         higher = ~reference.known[around] & (expected[around, d] > least)
         if not higher.any():
             return change, places
-        new = np.unique(around[higher])
+        new = distinct_values(around[higher])
         reference.find(new)
         change[new] = reference.change[new, 1:]

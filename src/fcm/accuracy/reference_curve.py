@@ -31,6 +31,7 @@ from fcm.accuracy.reference_pieces import (
 from fcm.accuracy.reference_stretch import ReferencePiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
+from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.cost_model import seconds_of
@@ -161,7 +162,7 @@ class ReferenceCurve:
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
         even = np.arange(0, count, self.options.point_interval)
-        first = np.unique(np.concatenate((special, even, [0, count - 1], changes, changes + 1)))
+        first = distinct_values(special, even, np.array([0, count - 1]), changes, changes + 1)
         self.find(first)
         before, after = first[:-1], first[1:]
         while len(before):

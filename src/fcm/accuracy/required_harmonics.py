@@ -20,6 +20,7 @@ from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, ref
 from fcm.accuracy.reference_pieces import distinct, lengths
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation import Mark, Path
+from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
@@ -138,7 +139,7 @@ def _places(
     for path, amplitude in zip(paths, amplitudes, strict=True):
         tops, most = amplitude.argmax(axis=0), amplitude.max(axis=0)
         rivals = most > options.rival_fraction * height
-        every, place = np.unique(tops[rivals]), lengths(path)
+        every, place = distinct_values(tops[rivals]), lengths(path)
         alone = every[distinct(place[every], pair.peak_spacing * (place[-1] - place[0]))]
         stands_for = alone[np.searchsorted(alone, tops, "right") - 1] if alone.size else tops
         for top in alone.tolist():

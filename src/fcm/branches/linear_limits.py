@@ -67,12 +67,10 @@ def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray
     if type(linear) is Linear and linear.natural.size < ports:
         return np.moveaxis(linear.answers_with(held, np.array(frequencies, dtype=np.float64)), 0, 1)
     found = np.empty((len(frequencies), cases, len(linear.driven), ports), dtype=np.complex128)
+    unit = np.eye(ports)
     for answer, omega in zip(found, frequencies, strict=True):
         for k, (G, X) in enumerate(zip(*linear.at(omega), strict=True)):
-            for one, springs in zip(answer[:, k], held, strict=True):  # many contacts: large ones
-                matrix = G * springs
-                matrix.flat[:: X.size + 1] += 1.0
-                one[:] = np.linalg.solve(matrix, X)
+            answer[:, k] = np.linalg.solve(G * held[:, None] + unit, X[:, None])[..., 0]
     return found
 
 

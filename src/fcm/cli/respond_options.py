@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib.resources import files
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -51,7 +50,7 @@ def _of_key(line: tuple[str, str, str, str]) -> str:
 
 def _template(_ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
     if wanted:
-        _printed((files("fcm") / "scene" / "template.toml").read_text("utf-8").rstrip("\n"))
+        _printed((Path(__file__).parents[1] / "scene" / "template.toml").read_text("utf-8").rstrip("\n"))
 
 
 def about_scenes(command: Any) -> Any:

@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
+from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 
 FloatArray = npt.NDArray[np.float64]
@@ -100,7 +101,7 @@ class Path(Frozen):
         """Indices of about `most` points evenly spread by number, and of all special points."""
         count = len(self.z)
         even = np.linspace(0, count - 1, min(max(most, 2), count)).round().astype(np.intp)
-        return np.union1d(even, self.where(SPECIAL))
+        return distinct_values(even, self.where(SPECIAL))
 
     def part(self, rows: npt.NDArray[np.intp]) -> Path:
         """The path with some of its points."""

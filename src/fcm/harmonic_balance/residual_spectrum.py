@@ -29,6 +29,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs, floor, isfinite
 
+from fcm.distinct_values import distinct_values
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, SpectrumOptions
 from fcm.harmonic_balance.system import System
@@ -50,7 +51,7 @@ def highest_harmonic(system: System) -> int:
 @lru_cache(maxsize=256)
 def left_out(highest: int, harmonics: tuple[int, ...]) -> npt.NDArray[np.intp]:
     """The harmonics up to the highest that are not among some."""
-    return np.setdiff1d(np.arange(1, highest + 1), harmonics)
+    return np.setdiff1d(np.arange(1, highest + 1), harmonics, assume_unique=True)
 
 
 @cython.cclass
@@ -142,12 +143,12 @@ class FurtherHarmonics:
         passed = np.floor(np.maximum(ratio[1:], ratio[:-1]))
         meets = (passed != np.floor(np.minimum(ratio[1:], ratio[:-1]))) & (passed <= self.highest)
         met = np.zeros(len(z), dtype=np.bool_)
-        for h in np.unique(passed[meets]).tolist():
+        for h in distinct_values(passed[meets]).tolist():
             if int(h) not in self.others:
                 continue
             step, mode = np.nonzero(meets & (passed == h))
             later = np.abs(ratio[step + 1, mode] - h) < np.abs(ratio[step, mode] - h)
-            at = np.unique(1 + step + later)
+            at = distinct_values(1 + step + later)
             ports = force[near[at], int(h) - 1].view(np.complex128)[..., 0][:, None]
             displaced = np.abs(linear.displacements(np.array([h]), omega[at], ports))[:, 0]
             leading = at[(displaced / size[at]).max(axis=1) > self.leading * most[near[at]]]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.frozen import Frozen
-from fcm.mesh.pairing import Plane
+
+if TYPE_CHECKING:
+    from fcm.mesh.pairing import Plane
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
+from fcm.distinct_values import distinct_values
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.friction_extent import FrictionExtent
@@ -29,7 +30,7 @@ def coexisting_stuck(
     others : of which families are known there.
     """
     found = []
-    for omega in np.unique([frequency[k] for k in rows]).tolist():
+    for omega in distinct_values(frequency[list(rows)]).tolist():
         here = frequency == omega
         across = (frequency[:-1] - omega) * (frequency[1:] - omega) < 0.0
         near = here | np.append(across, False) | np.append(False, across)

@@ -27,6 +27,7 @@ from fcm.branches.shakedown import shakedown_at
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark, Path, Status
 from fcm.continuation.follow import Progress
+from fcm.distinct_values import distinct_values
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
@@ -198,7 +199,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     doubted = far & (stable == 1.0)
     beside = (doubted | np.isnan(stable)) & np.isfinite(np.concatenate(believed))
     not_confirmed = 0
-    for k in np.unique(points.path[doubted | beside]).tolist() if not quick else ():
+    for k in distinct_values(points.path[doubted | beside]).tolist() if not quick else ():
         of = points.path == k
         own = points.z[of], doubted[of], beside[of]
         sure = confirmed_stable(system, *own, system.option(STABILITY), found.errors[k].motions)

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.branches.shakedown import changes_load
+from fcm.distinct_values import distinct_values
 from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -76,7 +77,7 @@ def residual_changes_at_levels(
     """
     scene, top, at = system.scene, amplitude.argmax(axis=0), float(z[0, -1])
     maybe, found = undetermined(scene, states), np.zeros(amplitude.shape[1])
-    for i in np.unique(top[maybe[top]]).tolist():
+    for i in distinct_values(top[maybe[top]]).tolist():
         forces = tuple(replace(one, amplitude=one.amplitude * float(level[i])) for one in scene.forces)
         held = replace(scene, forces=forces, frequency_range=(at, 2.0 * at))  # as at an end of a range
         there = System(held, system.harmonics, options=system.options, other_options=system.other_options)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.results.jumps import FrequencySweep
 from fcm.results.lower_peaks import lower_peaks, rise_beside
@@ -83,7 +84,7 @@ def without_points(curve: Curve, most: int = 0) -> Curve:
     """A curve with what is condensed of it, and so many of its points: where displacements are greatest."""
     at = np.flatnonzero(np.isfinite(curve.frequency))
     if at.size:
-        at = np.unique(at[curve.amplitude[at].argmax(axis=0)])[:most]
+        at = distinct_values(at[curve.amplitude[at].argmax(axis=0)])[:most]
     values = {field.name: getattr(curve, field.name) for field in fields(curve)}
     kept: dict[str, Any] = {name: x[at] for name, x in values.items() if isinstance(x, np.ndarray)}
     return replace(curve, **kept, across=None, condensed=condense(curve))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.results.options import RESULTS, JumpOptions
@@ -115,7 +116,7 @@ def _with_branch_points(
     """
     stays = stable == 1.0
     runs = np.diff(np.concatenate(([False], stays, [False])).astype(int))
-    ends = np.union1d(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1)
+    ends = distinct_values(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1)
     changes = np.flatnonzero(np.diff(stays) & np.isfinite(frequency[:-1] + frequency[1:]))
     places = list[tuple[int, int]]()  # after a point, what another is there
     for k in changes.tolist():

@@ -33,7 +33,7 @@ class MotionOfMode(Frozen):
     modes: npt.NDArray[np.complex128]  # (mode, 1 + harmonic) of Im(q exp(i h omega t)), the mean first
 
 
-@dataclass
+@dataclass(eq=False)
 class NonlinearMode:
     """Additional quantities at the points of a nonlinear mode; the curve's `frequency` is its own."""
 

@@ -22,7 +22,7 @@ class Stuck(Frozen):
     greatest: FloatArray  # (dof,)
 
 
-@dataclass
+@dataclass(eq=False)
 class Orbits:
     """Additional quantities at the points of an exact curve, see `fcm.response.exact.trace_exact`."""
 

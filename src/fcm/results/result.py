@@ -37,7 +37,7 @@ INTERRUPTED = "interrupted"  # and that of one which an interruption has cut off
 NOT_BEGUN = f"{INTERRUPTED} before it was traced"
 
 
-@dataclass
+@dataclass(eq=False)
 class Curve:
     """One response curve; frequencies in rad/s.
 
@@ -162,7 +162,7 @@ class Blades(Frozen):
         return np.array([[place[of_sector(name, k)] for k in range(self.sectors)] for name in self.names])
 
 
-@dataclass
+@dataclass(eq=False)
 class Response:
     """Result of a response calculation: all curves of a scene."""
 

@@ -7,7 +7,6 @@ it is known by what the files say.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import pickle
 import platform
@@ -21,6 +20,7 @@ from typing import Any
 import numpy as np
 
 import fcm
+from fcm.run.digest import sha256
 
 PROGRAM = (".py", ".so", ".pyd")  # endings of files that decide what is computed
 TABLE, LAST = ".nc", 64  # a table ends in a checksum of all its bytes (`fcm.table.file_checksum`)
@@ -33,7 +33,7 @@ def fingerprint(*parts: Any) -> bytes:
     (True, False)
     """
     seen: dict[int, bytes] = {}
-    return hashlib.sha256(installed(Path(fcm.__file__).parent) + _digest(parts, seen)).digest()
+    return sha256(installed(Path(fcm.__file__).parent) + _digest(parts, seen)).digest()
 
 
 @cache
@@ -44,7 +44,7 @@ def installed(folder: Path) -> bytes:
     where = scipy.origin if scipy is not None else None
     changed = os.stat(where).st_mtime_ns if where is not None else 0  # noqa: PTH116
     versions = fcm.__version__, platform.python_version(), platform.machine(), np.__version__, where, changed
-    return hashlib.sha256(repr((versions, sorted(files))).encode()).digest()
+    return sha256(repr((versions, sorted(files))).encode()).digest()
 
 
 def _files(folder: str) -> Iterator[os.DirEntry[str]]:
@@ -68,7 +68,7 @@ def program(folder: Path) -> bytes:
         np.__version__,
         scipy.__version__,
     )
-    digest = hashlib.sha256(repr(versions).encode())
+    digest = sha256(repr(versions).encode())
     for path in sorted(folder.rglob("*")):
         if path.suffix in (*PROGRAM, TABLE):
             content = path.read_bytes() if path.suffix != TABLE else _end(path)
@@ -88,7 +88,7 @@ def _digest(value: Any, seen: dict[int, bytes]) -> bytes:
         return seen[id(value)]
     name = type(value).__qualname__
     if isinstance(value, np.ndarray):
-        found = hashlib.sha256(f"{name} {value.shape} {value.dtype}".encode() + value.tobytes()).digest()
+        found = sha256(f"{name} {value.shape} {value.dtype}".encode() + value.tobytes()).digest()
     elif is_dataclass(value) and not isinstance(value, type):
         found = _of(name, (getattr(value, field.name) for field in fields(value)), seen)
     elif isinstance(value, dict):
@@ -96,13 +96,13 @@ def _digest(value: Any, seen: dict[int, bytes]) -> bytes:
     elif isinstance(value, tuple | list):
         found = _of(name, value, seen)
     elif isinstance(value, str | bytes | int | float | complex | None):
-        return hashlib.sha256(f"{name} {value!r}".encode()).digest()
+        return sha256(f"{name} {value!r}".encode()).digest()
     else:
-        found = hashlib.sha256(pickle.dumps(value)).digest()
+        found = sha256(pickle.dumps(value)).digest()
     seen[id(value)] = found
     return found
 
 
 def _of(name: str, parts: Iterable[Any], seen: dict[int, bytes]) -> bytes:
     digests = [_digest(part, seen) for part in parts]
-    return hashlib.sha256(f"{name} {len(digests)} ".encode() + b"".join(digests)).digest()
+    return sha256(f"{name} {len(digests)} ".encode() + b"".join(digests)).digest()

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import mmap
 import pickle
 import struct
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
+
+from fcm.run.digest import sha256
 
 START = b"\nfcm rec"
 _HEAD = struct.Struct("<8s32sqq32s")  # start, fingerprint, number, length, seal
@@ -39,7 +40,7 @@ def packed(record: Record) -> bytes:
 
 
 def _seal(record: Record) -> bytes:
-    return hashlib.sha256(record.fingerprint + struct.pack("<q", record.number) + record.payload).digest()
+    return sha256(record.fingerprint + struct.pack("<q", record.number) + record.payload).digest()
 
 
 def whole(descriptor: int, size: int, begin: int) -> Iterator[Record]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,7 +25,6 @@ from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
 from fcm.scene.files import Files
-from fcm.scene.fit import notes_of_data, read_fit
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     check_matrices,
@@ -85,7 +83,7 @@ def bundled_scenes() -> tuple[str, ...]:
 
 
 def _bundled() -> Path:
-    return Path(str(files("fcm") / "scenes"))
+    return Path(__file__).parents[1] / "scenes"
 
 
 def path_of(path_or_name: str | Path) -> Path:
@@ -193,7 +191,12 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts, drawn_rings(parts))))
     units = read_units(top)
-    fit = read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit)
+    fit, notes_of_fit = None, list[str]()
+    if "fit" in top.data:
+        from fcm.scene.fit import notes_of_data, read_fit  # and with it readers of measured data
+
+        fit = read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit)
+        notes_of_fit = notes_of_data(fit, ends, unit)
     notes = [
         *files.noted,
         *notes,
@@ -215,7 +218,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
         "start": start,
         "reported": reported,
         "output": asked,
-        "notes": (*notes, *notes_of_data(fit, ends, unit)),
+        "notes": (*notes, *notes_of_fit),
         "read": tuple(files.said),
         "interfaces": tuple(files.interfaces),
         "optimum": read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ())),

@@ -57,6 +57,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import ceil, fabs, sqrt
 
+from fcm.distinct_values import distinct_values
 from fcm.stability.disturbance import Propagator
 from fcm.stability.following_modes import Modes
 from fcm.stability.options import STABILITY, PropagationOptions
@@ -411,7 +412,7 @@ class ManyMonodromy:
         s = self.sequence
         order, whose = np.asarray(s.order)[: s.events], np.asarray(s.whose)[: s.events]
         into = np.asarray(s.into)[: s.events]
-        moving = np.unique(whose).astype(np.intp)
+        moving = distinct_values(whose).astype(np.intp)
         state = np.array(s.state)
         i: cython.int
         resting = int((state[moving] == STICK).sum())
