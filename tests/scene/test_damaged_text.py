@@ -143,7 +143,7 @@ def test_universal_files(tmp_path, name):
         "55": TRANSLATION.encode(), "2414": PERMAS.encode(), "binary": times() + TRANSLATION.encode(),
         "complex": NX.format(mass="1.50000E+00", values=values).replace("3992", "   1").encode(),
     }[name]  # fmt: skip
-    table = {"modal": {"file": "m.uff", "damping": 0.01}}
+    table = {"modal": {"file": "m.uff", "damping": 0.01, "mass": 1.0}}
     for changed, found in each(tmp_path, "m.uff", text, table, 2):
         shapes, known = np.abs(found.modal.shapes).ravel(), words(changed)
         assert set(shapes.tolist()) <= known or name == "complex", changed

@@ -114,12 +114,33 @@ def nx(values, mass="1.50000E+00"):
 
 
 def test_dataset_55_without_modal_masses(tmp_path):
-    scene = read(tmp_path, TRANSLATION, "1x")
+    scene = read(tmp_path, TRANSLATION, "1x", mass=1.0)
     assert scene.modal.dofs == ("1x", "1y", "1z", "2x", "2y", "2z")
     assert scene.modal.frequency == pytest.approx([20 * pi, 24 * pi])
     assert scene.modal.shapes[:, 3].tolist() == [0.150162, -0.0398226]
-    assert scene.notes == ("modal: m.uff gives no modal masses: the shapes are taken as mass-normalised",)
-    assert read(tmp_path, TRANSLATION, "1x", mass=[1.0, 1.0]).notes == ()
+    assert scene.modal.mass.tolist() == [1.0, 1.0] and scene.notes == ()
+
+
+@pytest.mark.parametrize("text, dof", [(TRANSLATION, "1x"), (PERMAS, "2x")])
+def test_shapes_whose_scale_is_not_known_are_refused(tmp_path, text, dof):
+    """A shape ten times as large answers a hundred times as much: nothing in the file tells the two apart."""
+    with pytest.raises(SceneError) as caught:
+        read(tmp_path, text, dof)
+    (said,) = caught.value.mistakes
+    assert said.startswith('modal.mass: missing; "m.uff" has 0 for the modal mass of each mode')
+    assert "Give mass = 1 if they are mass-normalised; else phi^T M phi of each mode" in said
+
+
+def test_a_modal_mass_that_one_mode_lacks_is_refused(tmp_path):
+    """The file's second mode has none: its place is not taken by that of a mass-normalised one."""
+    known = TRANSLATION.replace("1.00000e+01  0.00000e+00", "1.00000e+01  2.00000e+00")
+    with pytest.raises(SceneError, match=r"modal\.mass\[1\]: must be greater than 0, is 0"):
+        read(tmp_path, known, "1x")
+
+
+def test_shapes_of_the_scene_need_no_modal_masses_of_the_file(tmp_path):
+    shapes = [[1.0, 0.0, 0.0, 0.5, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.5, 0.0]]
+    assert read(tmp_path, TRANSLATION, "1x", shapes=shapes).modal.mass.tolist() == [1.0, 1.0]
 
 
 def test_dataset_2414_of_simcenter(tmp_path):
@@ -145,10 +166,9 @@ def test_a_shape_of_several_phases_is_refused(tmp_path):
 
 def test_dataset_2414_of_permas(tmp_path):
     """Six values a node, numbers without a space between them, no modal mass."""
-    scene = read(tmp_path, PERMAS, "2x")
+    scene = read(tmp_path, PERMAS, "2x", mass=1.0)
     assert len(scene.modal.dofs) == 12 and scene.modal.dofs[:2] == ("1x", "1y")
     assert scene.modal.shapes[0, scene.modal.dofs.index("2y")] == -0.0800098
-    assert any("gives no modal masses" in note for note in scene.notes)
 
 
 DOUBLE = [[-0.25, 1.0 / 3.0, -0.70857123456789012, 1e-101, 1.0, 0.0], [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]
@@ -165,7 +185,7 @@ def test_dataset_2414_in_double_precision(tmp_path, per_line):
             lines.append(f"{node:10d}")
             texts = [f"{v:26.16E}".replace("E-101", "-101") for v in row]
             lines += ["".join(texts[i : i + per_line]) for i in range(0, len(row), per_line)]
-        scenes.append(read(tmp_path, "\n".join([*lines, "    -1", ""]), "1x"))
+        scenes.append(read(tmp_path, "\n".join([*lines, "    -1", ""]), "1x", mass=1.0))
     for scene in scenes:
         assert scene.modal.shapes.reshape(2, 6).tolist() == pytest.approx(np.array(DOUBLE), rel=1e-15)
     text = (tmp_path / "m.uff").read_text().splitlines()
@@ -276,7 +296,8 @@ def times(order=1, size=None, more=b""):
 
 def read_bytes(folder, content, dof="1x"):
     (folder / "m.uff").write_bytes(content)
-    data = {"modal": {"file": "m.uff", "damping": 0.01}, "force": [{"dof": dof, "amplitude": 1.0}]}
+    modal = {"file": "m.uff", "damping": 0.01, "mass": 1.0}
+    data = {"modal": modal, "force": [{"dof": dof, "amplitude": 1.0}]}
     return scene_from_dict(data | {"response": {"frequency": [0.5, 1.5]}}, "test.toml", folder)
 
 
@@ -307,7 +328,7 @@ def test_a_binary_dataset_alone_is_listed_and_a_cut_one_is_said(tmp_path):
 
 def test_a_mark_among_the_words_at_the_head_of_a_dataset(tmp_path):
     """As pyuff's dataset_milestone_in_header.uff has one."""
-    modes = read(tmp_path, TRANSLATION.replace("NONE", "    -1", 1), "1x").modal
+    modes = read(tmp_path, TRANSLATION.replace("NONE", "    -1", 1), "1x", mass=1.0).modal
     assert modes.frequency == pytest.approx([20 * pi, 24 * pi])
 
 
@@ -316,7 +337,7 @@ def test_a_mark_among_the_words_at_the_head_of_a_dataset(tmp_path):
 def test_blank_lines_and_a_byte_order_mark_change_nothing(tmp_path, begin, line):
     lines = TRANSLATION.splitlines()
     lines.insert(line, "" if line % 2 else "   ")
-    modal = read(tmp_path, begin + "\n".join(lines), "1x").modal
+    modal = read(tmp_path, begin + "\n".join(lines), "1x", mass=1.0).modal
     assert modal.frequency == pytest.approx([20 * pi, 24 * pi])
     assert modal.shapes[:, 3].tolist() == [0.150162, -0.0398226]
 
@@ -325,7 +346,7 @@ def test_blank_lines_and_a_byte_order_mark_change_nothing(tmp_path, begin, line)
 def test_blank_lines_in_dataset_2414(tmp_path, line):
     lines = PERMAS.splitlines()
     lines.insert(line, "")
-    assert read(tmp_path, "\n".join(lines), "2x").modal.shapes[0, 6] == -0.153426
+    assert read(tmp_path, "\n".join(lines), "2x", mass=1.0).modal.shapes[0, 6] == -0.153426
 
 
 @pytest.mark.parametrize(
@@ -341,7 +362,7 @@ def test_blank_lines_in_dataset_2414(tmp_path, line):
 def test_exponents_as_fortran_writes_them(tmp_path, written, value):
     rest = "" if "-100" in written else "  1.50162e-01"
     text = TRANSLATION.replace("  1.50162e-01  1.50162e-01  1.50162e-01", f"  {written}{rest} 1.50162e-01", 1)
-    assert read(tmp_path, text, "1x").modal.shapes[0, 3] == value
+    assert read(tmp_path, text, "1x", mass=1.0).modal.shapes[0, 3] == value
 
 
 @pytest.mark.parametrize(

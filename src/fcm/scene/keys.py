@@ -64,7 +64,8 @@ TABLES: dict[str, dict[str, Key]] = {
     "modal": {
         "file": Key("of modes; keys beside it go before its own", ".npz, .mat, .uff or .unv", "none"),
         "dofs": Key("names of the degrees of freedom", "list of names", _GIVEN),
-        "mass": Key("modal masses", _rule("mass", _EACH_MODE), "1: shapes are mass-normalised"),
+        "mass": Key("modal masses phi^T M phi; given if a universal file has 0 for them",
+                    _rule("mass", _EACH_MODE), "1: shapes are mass-normalised"),
         "frequency": Key("undamped natural frequencies; 0 for rigid-body modes",
                          _rule("frequency", "; a list, one for each mode"), _GIVEN),
         "damping": Key("damping ratios: 0.01 is 1 % of critical damping", _rule("damping", _EACH_MODE),

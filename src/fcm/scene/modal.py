@@ -74,7 +74,7 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
         if section.data["file"] == "":
             section.wrong("file", "is empty; name a file of modes")
         return None, []
-    from fcm.scene.modal_file import note_of_scale, read_modal_file
+    from fcm.scene.modal_file import UNIVERSAL, question_of_scale, read_modal_file, without_masses
 
     try:
         found = read_modal_file(name, files, waves)
@@ -87,8 +87,11 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
     if "angular_frequency" in found:
         found["frequency"] = found.pop("angular_frequency") / UNIT[unit]
     notes += _unused(section, found, unused, name)
-    if "mass" not in found and "mass" not in section.data and "shapes" in found:
-        notes += note_of_scale(name, found["shapes"])
+    if not {"mass", "shapes"} & section.data.keys() and "mass" not in found and "shapes" in found:
+        if name.lower().endswith(UNIVERSAL):
+            section.wrong("mass", without_masses(name))
+        else:
+            notes += question_of_scale(name, found["shapes"])
     return Section({**found, **section.data}, section.path, section.mistakes), notes
 
 

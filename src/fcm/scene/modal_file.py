@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.question import Question
 from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.npz_file import names_in_npz, read_npz
@@ -25,7 +26,8 @@ KEYS = {  # of a file, and names that other programs give the same
     "participation": (),
     "nodal_diameter": ("nodal_diameters", "harmonic_index"),
 }
-ENDINGS = (".npz", ".mat", ".uff", ".unv")
+UNIVERSAL = (".uff", ".unv")
+ENDINGS = (".npz", ".mat", *UNIVERSAL)
 WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
 
 
@@ -49,7 +51,7 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
         elif ending == ".mat":
             found = dict(read_apart(path, WANTED, files))
             others = found.pop(NAMES, np.array([])).tolist()
-        elif ending in (".uff", ".unv"):
+        elif ending in UNIVERSAL:
             found, others = read_uff(path), []
         else:
             found = {name: np.asarray(one) for name, one in read_own(path).items()}
@@ -68,17 +70,33 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
         return found | {"notes": notes, "unused": unused}
 
 
-def note_of_scale(name: str, shapes: Any) -> list[str]:
-    """Note on shapes without modal masses: whether they can be mass-normalised.
+def without_masses(name: str) -> str:
+    """What is missing where a universal file gives no modal masses, and what would be right.
 
-    >>> note_of_scale("m.uff", np.array([[0.9, 0.5]]))
-    ['modal: m.uff gives no modal masses: the shapes are taken as mass-normalised']
+    Datasets 55 and 2414 have a place for them; zero in every mode says that they are not known.
     """
-    text = f"modal: {name} gives no modal masses: the shapes are taken as mass-normalised"
+    return (
+        f"missing; {quoted(name)} has 0 for the modal mass of each mode. Its shapes may have any scale, and "
+        "amplitudes depend on it. Give mass = 1 if they are mass-normalised; else phi^T M phi of each mode"
+    )
+
+
+def question_of_scale(name: str, shapes: Any) -> list[str]:
+    """A question on shapes without modal masses that all are scaled to a largest value of 1.
+
+    >>> question_of_scale("m.npz", np.array([[1.0, 0.5], [0.5, -1.0]]))[0][:60]
+    'modal: m.npz gives no modal masses, and each of its shapes i'
+    >>> question_of_scale("m.npz", np.array([[0.9, 0.5], [0.5, -1.0]]))
+    []
+    """
     several = np.ndim(shapes) == 2 and min(np.shape(shapes)) > 1
-    if several and (np.abs(np.abs(shapes).max(axis=1) - 1.0) < TOLERANCES.scaled_shape).all():
-        return [f"{text}, but all are scaled to a largest value of 1, so they are not; give modal.mass"]
-    return [text] if name.lower().endswith((".uff", ".unv")) else []
+    if not several or (np.abs(np.abs(shapes).max(axis=1) - 1.0) >= TOLERANCES.scaled_shape).any():
+        return []
+    text = (
+        f"modal: {name} gives no modal masses, and each of its shapes is scaled to a largest value of 1. Are "
+        "they mass-normalised? If not, all amplitudes are wrong: give modal.mass, phi^T M phi of each mode"
+    )
+    return [Question(text)]
 
 
 def _by_keys(
