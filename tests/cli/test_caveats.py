@@ -21,6 +21,27 @@ from fcm.scene import load_scene
 COMPUTED = {"exact_motion": InTime.COMPUTED.value}
 SCENE = Path(__file__).parents[1] / "shooting/scenes/two_periods.toml"
 
+GAP = """
+[modal]
+dofs = ["u", "v"]
+frequency = [1.0, 10.0]
+damping = 0.05
+shapes = [[0.7, 0.7], [1.0, -0.5]]
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [0.8, 1.6]
+[[contact]]
+name = "c"
+tangential = "u"
+normal = "v"
+mu = 0.4
+k_u = 1.0
+k_v = {k_v}
+{n_0}
+"""
+
 
 @pytest.mark.slow
 def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
@@ -144,6 +165,52 @@ def test_curves_on_which_no_contact_touches_are_said_to_be_linear(fcm, scene, lo
     scene.write_text(scene.read_text() + f'[sweep]\n"contact.0.n_0" = {loads}\n')
     run = fcm("respond", scene)
     assert run.code == 0 and said in run.err and ": the response is linear. With " in run.err
+
+
+@pytest.mark.parametrize("n_0", ["gap = 5.0", "gap = 0.0", "n_0 = -5.0"])
+def test_contacts_that_no_motion_loads(fcm, tmp_path, n_0):
+    """With k_v = 0 neither a smaller gap nor more force closes a contact, and both were recommended."""
+    written = tmp_path / "scene.toml"
+    written.write_text(GAP.format(n_0=n_0, k_v="0.0"))
+    run = fcm("respond", written)
+    asked = (
+        'warning: contact "c": is k_v = 0 right? The normal force is then n_0 whatever moves, and here none'
+    )
+    assert run.code == 0 and run.err.count(asked) == 1
+    said = (
+        "the response is linear. No motion loads contacts with k_v = 0: give k_v > 0, or n_0 > 0 as a const"
+    )
+    assert said in run.err and "more force" not in run.err and "smaller gap" not in run.err
+
+
+@pytest.mark.parametrize("n_0, k_v, sweep, closed", [
+    ("n_0 = 1.0", "0.0", "", True),
+    ("gap = 1.0", "0.0", '"contact.c.k_v" = [0.0, 1.0]', True),
+    ("n_0 = 1.0", "0.0", '"contact.c.n_0" = [-1.0, 1.0]', True),
+    ("gap = 1.0", "0.0", '"contact.c.gap" = [1.0, 0.1]', False),
+])  # fmt: skip
+def test_a_constant_load_is_asked_about_where_it_is_none_on_every_curve(tmp_path, n_0, k_v, sweep, closed):
+    written = tmp_path / "scene.toml"
+    written.write_text(GAP.format(n_0=n_0, k_v=k_v) + (f"[sweep]\n{sweep}\n" if sweep else ""))
+    assert any("is k_v = 0 right?" in note for note in load_scene(written).notes) is not closed
+
+
+def test_beside_a_contact_that_touches_each_open_one_has_its_remedy(fcm, tmp_path):
+    written, contact = tmp_path / "scene.toml", GAP[GAP.index("[[contact]]") :]
+    others = [contact.replace('"c"', f'"{name}"') for name in ("never", "far")]
+    text = GAP.format(n_0="n_0 = 1.0", k_v="1.0")
+    never, far = others[0].format(n_0="gap = 1.0", k_v="0.0"), others[1].format(n_0="gap = 1e6", k_v="1.0")
+    gap, load = (
+        "A smaller gap (a higher n_0) or more force helps",
+        "No motion loads contacts with k_v = 0: give",
+    )
+    for more, said in (
+        ([never], f'1 contact never touches within the range: "never". {load}'),
+        ([never, far], f'2 contacts never touch within the range: "never", "far". {gap}. {load}'),
+        ([far], f'1 contact never touches within the range: "far". {gap}\n'),
+    ):
+        written.write_text("\n".join([text, *more]))
+        assert said in fcm("respond", written).err
 
 
 @pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])

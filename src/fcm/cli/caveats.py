@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from math import inf, isclose
 from typing import Any
 
@@ -19,6 +19,7 @@ _LINEAR = {  # keys of curves on which no contact changes its state: what is sai
         "another preload or more force",
     ),
 }
+_CONSTANT = "No motion loads contacts with k_v = 0: give k_v > 0, or n_0 > 0 as a constant load"
 _KEEPS = "a contact that never slips keeps a friction force that its past decides"
 _BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequency
 
@@ -46,8 +47,11 @@ def _greatest_error(curve: Mapping[str, Any]) -> float:
     return max((inf if error is None else error for error in errors), default=0.0)
 
 
-def linear(summary: Mapping[str, Any]) -> str:
-    """Caveat that every contact sticks, or is open, all along each curve, which may not be meant; or ''."""
+def linear(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:
+    """Caveat that every contact sticks, or is open, all along each curve, which may not be meant; or ''.
+
+    constant : names of the contacts that no motion loads, as their k_v is 0
+    """
     curves = summary["curves"]
     found = {key for curve in curves for key in _LINEAR if curve.get(key)}
     if not curves or not all(any(curve.get(key) for key in _LINEAR) for curve in curves):
@@ -57,14 +61,17 @@ def linear(summary: Mapping[str, Any]) -> str:
     held = next((curve["shakedown_at"] for curve in curves if "shakedown_at" in curve), None)
     if held is not None:
         return f"{what.format(which)}: the response is linear. {_shaken_down(summary, held)}"
+    named = curves[0].get("contacts")
+    if found == {"all_open"} and named and {*constant} >= named.keys():
+        return f"{what.format(which)}: the response is linear. {_CONSTANT}"
     asked = ". Are gap and n_0 in the units of the structure?" if found == {"all_open"} else ""
     return f"{what.format(which)}: the response is linear. With {helps} it is not{asked}"
 
 
-def never_closed(summary: Mapping[str, Any]) -> str:
+def never_closed(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:
     """Caveat on contacts that never touch on any curve, beside others that do; or ''.
 
-    Empty as well if `linear` says so.
+    Empty as well if `linear` says so. Of those with a constant load the remedy is another.
     """
     curves = summary["curves"]
     if not curves or linear(summary) or not all(curve.get("contacts") for curve in curves):
@@ -81,7 +88,10 @@ def never_closed(summary: Mapping[str, Any]) -> str:
     where = "on any curve" if len(curves) > 1 else "within the range"
     more = f" and {len(apart) - SENTENCES.named} more" if len(apart) > SENTENCES.named else ""
     names = ", ".join(f'"{name}"' for name in apart[: SENTENCES.named]) + more
-    return f"{which} {where}: {names}. A smaller gap (a higher n_0) or more force helps"
+    unloaded = len({*apart} & {*constant})
+    helps = ["A smaller gap (a higher n_0) or more force helps"] if unloaded < len(apart) else []
+    helps += [_CONSTANT] if unloaded else []
+    return f"{which} {where}: {names}. {'. '.join(helps)}"
 
 
 def _shaken_down(summary: Mapping[str, Any], at: float) -> str:

@@ -43,12 +43,14 @@ class Announced(NamedTuple):
 
     resonant: bool  # whether a resonance is near the range of frequencies, as far as that is known
     harmonics_given: bool
+    constant_loads: tuple[str, ...]  # names of contacts that no motion loads
 
 
 def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
     """Announces what is going to be computed; without being asked only where that is a great deal."""
     from fcm.scene.listing import resonance_doubt
     from fcm.scene.rules import least_points
+    from fcm.scene.unclosed_gaps import constant_loads
 
     in_steps = asked.at is None and asked.mode is None and scene.has_range
     caveat = resonance_doubt(scene) if in_steps else ""
@@ -63,7 +65,7 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
         curves = f"{count} curve{'s' * (count > 1)}"
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
     given = asked.harmonics is not None or (asked.accuracy is None and scene.harmonics is not None)
-    return Announced(not caveat, given)
+    return Announced(not caveat, given, constant_loads(scene))
 
 
 def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
@@ -112,11 +114,11 @@ def close(
     if levels := searched_levels(result):
         messages.detail(levels)
     remarks = [
-        linear(result) if announced.resonant else "",
+        linear(result, announced.constant_loads) if announced.resonant else "",
+        never_closed(result, announced.constant_loads),
         *(
             one(result)
             for one in (
-                never_closed,
                 mirrored,
                 kept_friction,
                 nothing_stable,

@@ -61,7 +61,8 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     curve.across = None if motions is None else motions.at(rows)
     regime[at], cycle[at] = cycles(system, z, loop[at])
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
-    error, of_greatest = np.full(cycle.shape, np.nan), np.full(cycle.shape[1:], np.nan)
+    error = np.where(cycle == 0.0, 0.0, np.nan)  # what a contact that carries nothing cannot exert is exact
+    of_greatest = np.where(at.size > 0 and (cycle[at] == 0.0).all(axis=0), 0.0, np.nan)
     error[:, traced] = curve.cycle_error
     if curve.greatest is not None and traced:
         of_greatest[traced] = curve.greatest.error

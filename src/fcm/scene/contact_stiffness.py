@@ -43,8 +43,13 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
 def varies(scene: Scene, *ends: str) -> bool:
     """Whether numbers whose paths end so are swept, chosen or fitted."""
     keys = [] if scene.draft is None else [one.key for one in scene.draft.swept]
-    keys += [key for one in (scene.optimum, scene.fit) if one is not None for key in one.vary]
-    return any(key.endswith(ends) for key in keys)
+    return any(key.endswith(ends) for key in keys) or are_sought(scene, *ends)
+
+
+def are_sought(scene: Scene, *ends: str) -> bool:
+    """Whether numbers whose paths end so are chosen or fitted."""
+    tables = [one for one in (scene.optimum, scene.fit) if one is not None]
+    return any(key.endswith(ends) for one in tables for key in one.vary)
 
 
 def _soft(scene: Scene, ratio: float) -> str:

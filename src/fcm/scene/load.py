@@ -61,7 +61,7 @@ from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
 from fcm.scene.size_notices import SizeNotices
 from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.toml import read_toml
-from fcm.scene.unclosed_gaps import questions_of_gaps
+from fcm.scene.unclosed_gaps import question_of_constant_loads, questions_of_gaps
 from fcm.units import UNIT
 
 NOT_IN_PLANE = (
@@ -259,6 +259,7 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None) -> Sce
             *notes_of_planes(scene),
             *notes_of_stiffness(scene),
             *questions_of_gaps(scene),
+            *question_of_constant_loads(scene),
         ),
     )
 

@@ -6,6 +6,8 @@ Without contact the relative displacement along a contact's normal is at most
 
 over the range of frequencies, with modes of mass 1 and their rates of damping r_m. Modes are those with all
 contacts open, and those with all stuck that are closed at rest, which may carry the motion to the gap.
+
+A contact with k_v = 0 has the normal force max(n_0, 0) whatever moves. So no motion closes it, either.
 """
 
 from __future__ import annotations
@@ -17,8 +19,41 @@ import numpy as np
 from fcm.model.question import Question
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.contact_springs import stuck_stiffness
-from fcm.scene.contact_stiffness import SHORTER, varies
+from fcm.scene.contact_stiffness import SHORTER, are_sought, varies
+from fcm.scene.errors import several
 from fcm.scene.options import MESSAGES
+
+
+def constant_loads(scene: Scene) -> tuple[str, ...]:
+    """Names of the contacts with a constant normal force, as k_v = 0 on every curve."""
+    curves, contacts = scene.each_curve(), range(len(scene.contacts))
+    constant = [
+        all(one.contacts[i].k_v == 0.0 and one.contacts[i].law is None for one in curves) for i in contacts
+    ]
+    return tuple(one.name for one, is_constant in zip(scene.contacts, constant, strict=True) if is_constant)
+
+
+def question_of_constant_loads(scene: Scene) -> list[str]:
+    """A question about contacts that carry nothing, whatever moves: k_v = 0, and no preload on any curve."""
+    if are_sought(scene, ".n_0", ".k_v"):
+        return []
+    constant, curves = set(constant_loads(scene)), scene.each_curve()
+    names = [
+        one.name
+        for i, one in enumerate(scene.contacts)
+        if one.name in constant and all(curve.contacts[i].n_0 <= 0.0 for curve in curves)
+    ]
+    if not names:
+        return []
+    contacts, touches = (
+        ("contacts", "they never touch") if len(names) > 1 else ("contact", "it never touches")
+    )
+    return [
+        Question(
+            f"{contacts} {several(names)}: is k_v = 0 right? The normal force is then n_0 whatever moves, "
+            f"and here none, so that {touches}. A gap closes with k_v > 0; a constant load is n_0 > 0"
+        )
+    ]
 
 
 def questions_of_gaps(scene: Scene) -> list[str]:
