@@ -459,3 +459,82 @@ def test_of_many_contacts_those_of_the_greatest_ratio_are_listed(listed):
     table = out[out.index("the stiffness of each contact") :]
     assert [line.split()[0] for line in table.splitlines()[2:-1]] == [f"c{i}" for i in range(2, 12)]
     assert table.rstrip().endswith("and 3 more contacts: --json has all")
+
+
+ONE_MASS = """
+[structure]
+dofs = ["u", "v"]
+stiffness = [1.0, 1e4]
+mass = [1.0, 1.0]
+damping = 0.01
+[[contact]]
+name = "c"
+tangential = "u"
+normal = "v"
+mu = 0.5
+k_u = {k_u}
+k_v = 0.0
+n_0 = 1.0
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [0.1, 2.0]
+"""
+
+
+@pytest.mark.parametrize("k_u", [0.1, 30.0, 1e4])
+def test_friction_that_damps_more_than_critically_is_told(listed, k_u):
+    """Of one mass on a spring of 1 the ratio is k_i / (2 (1 + k_r)), by the areas of Jenkins loops."""
+    theta = np.linspace(0.0, np.pi, 2_000)
+    k_r, k_i = (theta - np.sin(theta) * np.cos(theta)) / np.pi, np.sin(theta) ** 2 / np.pi
+    most = (k_u * k_i / (2.0 * (1.0 + k_u * k_r))).max()
+    over = bool(most > 1.0)
+    done = listed(ONE_MASS.format(k_u=k_u))
+    (line,) = (one for one in done.out.splitlines() if " c  " in one and "%" in one)
+    cell = line.split()[4]
+    assert float(cell.rstrip("+")) == pytest.approx(most, rel=0.05) and cell.endswith("+") is over
+    assert ("overdamped: the ratio is that of a linear damper" in done.out) is over
+
+
+def test_a_nonlinear_mode_that_friction_damps_more_than_critically_is_told(tmp_path):
+    for k_u, over in ((0.1, False), (1e3, True)):
+        (tmp_path / "scene.toml").write_text(ONE_MASS.format(k_u=k_u))
+        done = called(
+            "respond",
+            tmp_path / "scene.toml",
+            "--mode",
+            1,
+            "--level",
+            "1e-5:1",
+            "--harmonics",
+            1,
+            "--force-level",
+            0.3,
+        )
+        assert done.code == 0 and ("+ overdamped: " in done.out) is over
+        assert ("no peak over the frequency: damped by more than 0.71" in done.out) is over
+
+
+@pytest.mark.parametrize("nodes", ["", 'nodes = [["1", "2"]]', 'nodes = [["1"], ["2"]]'])
+def test_preloads_are_of_a_pair_where_there_are_pairs(listed, nodes):
+    """The sentence stood there for each scene with friction."""
+    along = 'tangential = "x"\nnormal = "y"' if nodes else 'tangential = "1x"\nnormal = "1y"'
+    text = f"""
+    [structure]
+    dofs = ["1x", "1y", "2x", "2y"]
+    stiffness = [1.0, 2.0, 3.0, 4.0]
+    mass = [1.0, 1.0, 1.0, 1.0]
+    damping = 0.01
+    [[contact]]
+    name = "c"
+    {nodes}
+    {along}
+    mu = 0.5
+    k_u = 1.0
+    k_v = 1.0
+    n_0 = 1.0
+    """
+    done = listed("\n".join(line.strip() for line in text.splitlines()))
+    assert done.code == 0 and "that friction can add to each resonance" in done.out
+    assert ("n_0 is that of a pair" in done.out) is bool(nodes)

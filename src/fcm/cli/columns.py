@@ -103,6 +103,22 @@ def _width(text: str) -> int:
     return max(map(len, text.splitlines()))
 
 
+OVERDAMPED = "+"  # beside a damping ratio by friction that is critical or more
+OF_OVERDAMPED = (
+    f"{OVERDAMPED} overdamped: the ratio is that of a linear damper with the same loss in a cycle of one "
+    "amplitude. Nothing swings freely with it, and no resonance is seen: the response itself has the motion"
+)
+
+
+def ratio(value: float, digits: int = 4) -> str:
+    """A damping ratio by friction, with a mark from critical damping on.
+
+    >>> ratio(0.034081), ratio(18.517, 2)
+    ('0.03408', '19+')
+    """
+    return f"{value:.{digits}g}{OVERDAMPED if value >= 1.0 else ''}"
+
+
 NOT_COMPLETE = "NOT COMPLETE"
 BEYOND = "> 100 %"  # an error that is greater than what it is the error of
 

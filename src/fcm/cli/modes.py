@@ -7,17 +7,17 @@ from typing import Any
 
 import click
 
-from fcm.cli.columns import aligned, number
+from fcm.cli.columns import OF_OVERDAMPED, OVERDAMPED, aligned, number, ratio
 from fcm.cli.files import largest_file_option
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import scene_argument
 
 _FRICTION = (
-    "the damping ratio that friction can add to each resonance, estimated for closed contacts; "
-    "n_0 is that of a pair.\nopen: the mode without contacts of the most alike shape, MAC: how alike, "
-    "1 the same; - below {:g}:"
+    "the damping ratio that friction can add to each resonance, estimated for closed contacts{}.\n"
+    "open: the mode without contacts of the most alike shape, MAC: how alike, 1 the same; - below {:g}:"
 )
+_OF_PAIRS = "; n_0 is that of a pair"
 _OPENS = "*"  # beside a preload with which contacts would open
 _OF_OPENING = (
     f"{_OPENS} contacts would open with this preload, so that it does not hold, nor does the damping: "
@@ -50,7 +50,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     It has the greatest damping ratio that friction can add to each, estimated by one harmonic. Contacts stay
     closed, at their best preload, with the same share of slip. The contact with the greatest part is "most
     in". Its preload that gives this damping, in resonance with the scene's forces, is "n_0". It is marked
-    where contacts would open with it.
+    where contacts would open with it. A ratio of 1 and more is marked as overdamped.
 
     A third table has the stiffness of each contact, and that of the structure there, by a unit load without
     contacts. A contact of a hundredth of it changes little. With a hundred times as much it is as good as
@@ -140,13 +140,15 @@ def _resonances(found: dict[str, Any]) -> str:
                 number(one["stuck"]),
                 number(one["open"]) if one["mac"] >= SENTENCES.least_alike else "-",
                 f"{one['mac']:.3f}",
-                f"{one['friction_damping']:.2g}",
+                ratio(one["friction_damping"], 2),
                 *most,
             ]
         )
-    opening = f"\n{_OF_OPENING}" if any(one["opens"] for one in every) else ""
-    said = _FRICTION.format(SENTENCES.least_alike)
-    return f"{said}\n{aligned(rows, left=3)}{opening}"
+    marks = [_OF_OPENING] if any(one["opens"] for one in every) else []
+    marks += [OF_OVERDAMPED] if any(row[4].endswith(OVERDAMPED) for row in rows) else []
+    of_pairs = any(row[5] in found["of_pairs"] for row in rows)
+    said = _FRICTION.format(_OF_PAIRS if of_pairs else "", SENTENCES.least_alike)
+    return "\n".join([said, aligned(rows, left=3), *marks])
 
 
 def _lines(found: dict[str, Any], directions: list[str]) -> str:

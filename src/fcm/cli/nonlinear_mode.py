@@ -8,7 +8,19 @@ from typing import Any
 
 import click
 
-from fcm.cli.columns import BEYOND, NOT_COMPLETE, aligned, not_complete, number, ranges, short, swept
+from fcm.cli.columns import (
+    BEYOND,
+    NOT_COMPLETE,
+    OF_OVERDAMPED,
+    OVERDAMPED,
+    aligned,
+    not_complete,
+    number,
+    ranges,
+    ratio,
+    short,
+    swept,
+)
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import greatest_first, unit_of
 
@@ -62,6 +74,9 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
     if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
         told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
+    modes = [curve["mode"] for curve in curves if curve.get("mode")]
+    if any(ratio(one["greatest_damping"]["damping"]).endswith(OVERDAMPED) for one in modes):
+        told.append(OF_OVERDAMPED)
     told += not_complete(curves, names)
     lines = "\n".join([table, *filter(None, told)])
     return "\n\n".join(filter(None, [lines, _in_resonance(summary, names, unit)]))
@@ -84,8 +99,8 @@ def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[s
             [
                 *swept(curve),
                 *map(number, mode["frequency"]),
-                *(f"{D:.4g}" for D in mode["damping"]),
-                f"{top['damping']:.4g}",
+                *map(ratio, mode["damping"]),
+                ratio(top["damping"]),
                 number(top["frequency"]),
                 ranges(curve["harmonics"]),
                 short(curve["truncation_error"]),
@@ -136,9 +151,11 @@ def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> st
         return ""
     each = [f"{dof} [{own}]" if (own := unit_of(dof, length)) else dof for dof in dofs]
     header = [*names, "level", f"at {unit}", "damping", "modal amplitude", *each]
+    peakless = any(row[len(names) + 1] == "-" for row in rows)
     return (
         "in resonance with the scene's forces, times the level:\n"
         + aligned([header, *rows], left=0)
+        + ("\n- no peak over the frequency: damped by more than 0.71" if peakless else "")
         + "\nthese are estimates, as if the mode alone answered; their error is not among those told. The "
         "more it is damped the worse they are: at 0.1 they may be double. fcm respond without --mode has "
         "the response"

@@ -69,12 +69,19 @@ def listing(scene: Scene) -> dict[str, Any]:
         "frequency_unit": scene.frequency_unit,
         "modes": modes,
         "resonances": friction_damping(scene),
+        "of_pairs": _of_pairs(scene),
         "stiffness": _beside_structure(scene, shares),
         "normalisation": _normalisation(scene),
         "read": _read(scene, modal.frequency[:own]),
         "notes": list(scene.notes),
         "warnings": _warnings(scene, directions, motion),
     }
+
+
+def _of_pairs(scene: Scene) -> list[str]:
+    """Names of the contacts that are one pair of nodes of several."""
+    drafts = [] if scene.draft is None else scene.draft.parts["contact"]
+    return [one["name"] for one in drafts if "group" in one]
 
 
 def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[str, float | None]]:
