@@ -96,6 +96,84 @@ def test_a_peak_at_a_corner_of_the_curve():
     check(numbers, 1, (Kind.SMOOTH, Kind.CORNER), keys, frequency=[0.5, 3.0])
 
 
+def test_a_narrow_peak_that_no_contact_has_a_part_in():
+    """A = F / (2 m w0^2 z sqrt(1 - z^2)) at w0 sqrt(1 - 2 z^2); its steep sides were taken for a corner."""
+    scene = load_scene("extreme/no-motion-at-all")
+    found = run(scene, 1)
+    add_sensitivities(found, scene)
+    own, w0, z = found.curves[0].sensitivity, 1.2, 0.01
+    n, d = own.numbers.index("modal.damping.2"), list(found.curves[0].peaks).index("w")
+    height = 1.0 / (2.0 * w0**2 * z * np.sqrt(1.0 - z**2))
+    assert own.height[d, n] == pytest.approx(-height * (1.0 - 2.0 * z**2) / (z * (1.0 - z**2)), rel=1e-6)
+    assert own.frequency[d, n] == pytest.approx(-2.0 * z * w0 / np.sqrt(1.0 - 2.0 * z**2), rel=1e-6)
+
+
+def reasons(scene, harmonics=1):
+    found = run(scene, harmonics)
+    add_sensitivities(found, scene)
+    return [one for one in remarks(found, scene) if "unknown" in one], found.curves[0]
+
+
+def test_of_contacts_that_change_their_states_at_once_the_reason_is_told():
+    """The corner above with two halves of the contact: each of them has the margin that changes its sign."""
+    numbers = {
+        "modal.frequency.1": 1.59, "modal.damping.0": 0.065, "modal.damping.1": 0.065, "contact.c.mu": 0.348,
+        "contact.c.k_u": 2.47 / 2, "contact.c.k_v": 1.9 / 2, "contact.c.n_0": 4.45 / 2,
+        "force.v.amplitude": 0.0,
+    }  # fmt: skip
+    scene, _ = oscillator(numbers, frequency=[0.5, 3.0])
+    half = scene.contacts[0]
+    parts = dict(scene.draft.parts)
+    parts["contact"] = [draft | {"name": name} for draft in parts["contact"] for name in ("c", "d")]
+    two = tuple(replace(half, name=name) for name in ("c", "d"))
+    scene = replace(scene, contacts=two, draft=replace(scene.draft, parts=parts))
+    said, curve = reasons(scene)
+    assert curve.sensitivity.kind == (Kind.SMOOTH, Kind.UNKNOWN)
+    assert said == [
+        "sensitivities of peaks (curve 0, v) are unknown: several contacts change their states there at "
+        "once, so that each side has its own derivative. A [sweep] of two near values shows what a number "
+        "does"
+    ]
+    of_v = curve.summary()["sensitivity"]["v"]
+    assert of_v["unknown_because"].startswith("several contacts change")
+    assert "unknown_because" not in curve.summary()["sensitivity"]["u"]
+
+
+def test_of_a_number_that_moves_a_peak_out_of_reach_the_reason_is_told():
+    """Modes a thousandth apart: a step of 1e-4 of a frequency is a tenth of that."""
+    said, curve = reasons(load_scene("extreme/close-modes"))
+    assert curve.sensitivity.kind == (Kind.SMOOTH, Kind.SMOOTH)
+    assert said == [
+        'sensitivities of peaks (curve 0, u) by "modal.frequency.1" are unknown: the peak is not found again '
+        "with the number a little larger or smaller. A [sweep] of two near values shows what a number does"
+    ]
+
+
+def test_one_reason_of_several_peaks_is_told_once():
+    said, curve = reasons(load_scene("extreme/stiff-tangential"), 3)
+    assert curve.sensitivity.kind == (Kind.UNKNOWN, Kind.UNKNOWN)
+    (one,) = said
+    assert one.startswith("sensitivities of peaks (curve 0, u, and 1 more) are unknown: ")
+    assert one.endswith("Another max_step may find it; a [sweep] of two near values shows what a number does")
+
+
+def test_of_numbers_that_change_rigid_body_motions_the_reason_is_told():
+    modal = {
+        "dofs": ["u", "v"],
+        "frequency": [0.0, 2.0],
+        "damping": 0.05,
+        "shapes": [[1.0, 1.0], [1.0, -1.0]],
+    }
+    contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 1.0, "k_v": 0.0, "n_0": 5.0}
+    force, response = [{"dof": "u", "amplitude": 1.0}], {"frequency": [0.5, 3.0]}
+    said, _ = reasons(
+        scene_from_dict({"modal": modal, "contact": [contact], "force": force, "response": response})
+    )
+    (one,) = said
+    assert 'by "contact.c.k_v", "modal.frequency.0" and "modal.frequency.1" are unknown: the structure' in one
+    assert "has rigid-body motions, which the number may change. A [sweep] of two near values" in one
+
+
 def test_values_of_a_sweep_are_those_of_the_curve():
     swept = load_scene("yang1998")
     swept = replace(swept, curves=swept.curves[3:4])

@@ -86,7 +86,8 @@ def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int
     height, frequency = drawn.height[curve, column], drawn.frequency[curve, column]
     shown = _greatest(height, frequency)
     if shown.size == 0:
-        raise PlotError(f"the sensitivities of {drawn.dofs[column]} on curve {curve} are not known")
+        known = f"the sensitivities of {drawn.dofs[column]} on curve {curve} are not known"
+        raise PlotError(f"{known}: the run that wrote the file says why, as does its --json")
     names = [with_mode(drawn.numbers[i]) for i in shown]
     with house_style():
         figure = new_figure(LAYOUT.width, 0.9 + 0.24 * len(names))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -14,15 +14,16 @@ from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Progress
-from fcm.sensitivity.peak import Kind
+from fcm.scene.errors import several
+from fcm.sensitivity.peak import Kind, Unknown
 from fcm.sensitivity.peaks import Sensitivities, sensitivities
 
 WITHOUT = f"{INTERRUPTED} before its sensitivities were known"
 REMARKS = {
     Kind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
     Kind.EDGE: "at an end of the range: the derivative of the amplitude there",
-    Kind.UNKNOWN: "unknown",
 }
+MAY_BE_FOUND = (Unknown.NOT_SOLVED, Unknown.ONE_SIDED, Unknown.NO_MAXIMUM)  # from another point of the curve
 
 
 def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
@@ -71,18 +72,40 @@ def _peak(curve: Curve, scene: Scene, dof: int) -> tuple[int, FloatArray, bool] 
 
 
 def remarks(response: Response, scene: Scene) -> list[str]:
-    """Remarks on peaks whose derivatives are not those of a smooth curve."""
-    found = []
-    for kind, what in REMARKS.items():
-        of = [
-            (number, dof)
-            for number, curve in enumerate(response.curves)
-            if curve.sensitivity is not None
-            for dof, own in zip(curve.peaks, curve.sensitivity.kind, strict=True)
-            if own is kind and scene.reports(dof) and curve.peaks[dof].amplitude > 0.0
-        ]
-        if of:
-            number, dof = of[0]
-            which = f"curve {number}, {dof}" + (f", and {len(of) - 1} more" if len(of) > 1 else "")
-            found.append(f"sensitivities of peaks ({which}) {what}")
-    return found
+    """Remarks on peaks whose derivatives are not those of a smooth curve, and why they are unknown."""
+    groups: dict[str, list[tuple[int, str]]] = {}
+    by_number: dict[Unknown, list[tuple[int, str, str]]] = {}
+    for number, curve in enumerate(response.curves):
+        found = curve.sensitivity
+        if found is None:
+            continue
+        for d, dof in enumerate(curve.peaks):
+            if not scene.reports(dof) or not curve.peaks[dof].amplitude > 0.0:
+                continue
+            kind, why = found.kind[d], found.why[d]
+            if what := REMARKS.get(kind, ""):
+                groups.setdefault(what, []).append((number, dof))
+            elif kind is Kind.UNKNOWN:
+                groups.setdefault(f"are unknown: {_reason(why)}", []).append((number, dof))
+            for key, one in zip(found.numbers, found.why_by_number[d], strict=True):
+                if one is not Unknown.NOTHING:
+                    by_number.setdefault(one, []).append((number, dof, key))
+    said = [f"sensitivities of peaks ({_first(of)}) {what}" for what, of in groups.items()]
+    for why, of in by_number.items():
+        keys = list(dict.fromkeys(key for *_, key in of))
+        peaks = list(dict.fromkeys((number, dof) for number, dof, _ in of))
+        said.append(
+            f"sensitivities of peaks ({_first(peaks)}) by {several(keys)} are unknown: {_reason(why)}"
+        )
+    return said
+
+
+def _first(of: Sequence[tuple[int, str]]) -> str:
+    number, dof = of[0]
+    return f"curve {number}, {dof}" + (f", and {len(of) - 1} more" if len(of) > 1 else "")
+
+
+def _reason(why: Unknown) -> str:
+    """Why a derivative is unknown, and what helps."""
+    finds = "Another max_step may find it; a" if why in MAY_BE_FOUND else "A"
+    return f"{why.value}. {finds} [sweep] of two near values shows what a number does"

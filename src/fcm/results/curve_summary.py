@@ -222,13 +222,14 @@ def _contacts(found: Greatest, contacts: Sequence[str], unit: str) -> dict[str, 
 def _sensitivity(curve: Curve, found: Sensitivities, unit: str) -> dict[str, Any]:
     """Derivatives of each peak by each number; relative: share of the peak by share of the number."""
     out: dict[str, Any] = {}
-    for dof, kind, height, frequency in zip(
-        curve.peaks, found.kind, found.height, in_unit(found.frequency, unit), strict=True
+    for dof, kind, why, height, frequency in zip(
+        curve.peaks, found.kind, found.why, found.height, in_unit(found.frequency, unit), strict=True
     ):
         top = curve.peaks[dof].amplitude
         numbers = zip(found.numbers, found.values, height, frequency, strict=True)
         out[dof] = {
             "peak": kind.value,
+            **({"unknown_because": why.value} if why.value else {}),
             "stable": None if np.isnan(curve.peaks[dof].stable) else bool(curve.peaks[dof].stable),
             "numbers": {
                 key: {

@@ -34,6 +34,19 @@ class Kind(Enum):
     UNKNOWN = "unknown"
 
 
+class Unknown(Enum):
+    """Why a peak has no derivatives, or not by a number."""
+
+    NOTHING = ""  # they are known
+    AT_REST = "nothing moves there"
+    NOT_SOLVED = "its motion is not found again from its point"
+    ONE_SIDED = "the curve is not found on both sides of it"
+    NO_MAXIMUM = "no maximum is found beside its point"
+    SEVERAL = "several contacts change their states there at once, so that each side has its own derivative"
+    RIGID = "the structure has rigid-body motions, which the number may change"
+    LOST = "the peak is not found again with the number a little larger or smaller"
+
+
 class ParameterStencil(Frozen):
     """The balance with other values of a number: weights of a derivative, with the balances."""
 
@@ -67,6 +80,7 @@ class Peak:
         self.options = options
         self.dof, self.newton, self.edge = dof, Newton(system.new_balance()), edge
         self.kind, self.margin, self.curvature = Kind.UNKNOWN, -1, np.nan
+        self.why = Unknown.NOT_SOLVED  # where the kind is unknown
         balance = self.newton.problem
         balance.measure(z)
         self.scale = np.array(balance.scale)
@@ -81,7 +95,7 @@ class Peak:
         if point is None:
             return
         self.z = point
-        self.kind = Kind.EDGE if edge else self._kind()
+        self.kind, self.why = (Kind.EDGE, Unknown.NOTHING) if edge else self._kind()
 
     def solved(self, newton: Newton, guess: FloatArray) -> FloatArray | None:
         """The point of a curve in the plane across the direction through the guess; tangent is that there."""
@@ -102,22 +116,24 @@ class Peak:
         guess: FloatArray = self.z + length * self.scale * self.unit
         return guess
 
-    def _kind(self) -> Kind:
-        """Find the peak next to where it is said to be, and what it is."""
+    def _kind(self) -> tuple[Kind, Unknown]:
+        """Find the peak next to where it is said to be, and what it is, or why that is unknown."""
         before, after = (
             self._at_length(-self.options.side_distance),
             self._at_length(self.options.side_distance),
         )
         size = self._height(self.newton, self.z)
         if before is None or after is None:
-            return Kind.UNKNOWN
-        if abs(before[0]) < self.options.flat_slope * size and abs(after[0]) < self.options.flat_slope * size:
-            return Kind.SMOOTH if self._climb() else Kind.UNKNOWN
+            return Kind.UNKNOWN, Unknown.ONE_SIDED
+        flat = max(abs(before[0]), abs(after[0])) < self.options.flat_slope * size
         changed = np.flatnonzero(before[1] * after[1] < 0.0)
-        if changed.size != 1:
-            return Kind.UNKNOWN
+        if flat or not changed.size:  # a steep one without a corner is narrow
+            found = self._climb()
+            return (Kind.SMOOTH, Unknown.NOTHING) if found else (Kind.UNKNOWN, Unknown.NO_MAXIMUM)
+        if changed.size > 1:
+            return Kind.UNKNOWN, Unknown.SEVERAL
         self.margin = int(changed[0])
-        return Kind.CORNER
+        return Kind.CORNER, Unknown.NOTHING
 
     def _at_length(self, length: float) -> tuple[float, FloatArray] | None:
         """Slope and margins at a length along the curve."""

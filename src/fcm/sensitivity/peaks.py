@@ -26,7 +26,7 @@ from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import rates_of
-from fcm.sensitivity.peak import Kind, Peak, moved_by
+from fcm.sensitivity.peak import Kind, Peak, Unknown, moved_by
 
 
 class Sensitivities(Frozen):
@@ -37,6 +37,8 @@ class Sensitivities(Frozen):
     height: FloatArray  # (dof, number) derivative of the peak's height
     frequency: FloatArray  # (dof, number) and of its frequency [rad/s]
     kind: tuple[Kind, ...]  # (dof,)
+    why: tuple[Unknown, ...]  # (dof,) of derivatives that are unknown by every number
+    why_by_number: tuple[tuple[Unknown, ...], ...]  # (dof, number) of those of a known kind
 
 
 def numbers_of(scene: Scene) -> list[Number]:
@@ -101,16 +103,26 @@ def sensitivities(
     points = [Peak(system, d, z, edge, options) for d, z, edge in peaks]
     numbers = numbers_of(scene)
     height, frequency = (np.full((dofs, len(numbers)), np.nan) for _ in range(2))
+    why_by_number = [[Unknown.NOTHING] * len(numbers) for _ in range(dofs)]
     for k, number in enumerate(numbers):
         try:
             rates = rates_of(system, number.key, options)
         except ValueError:  # it changes what rigid-body motions there are
+            for point in points:
+                why_by_number[point.dof][k] = Unknown.RIGID
             continue
         moved = moved_by(scene, number, harmonics, options)
         for point in points:
-            height[point.dof, k], frequency[point.dof, k] = point.derivatives(rates, moved)
-    kind = [Kind.UNKNOWN] * dofs
+            found = height[point.dof, k], frequency[point.dof, k] = point.derivatives(rates, moved)
+            if not np.isfinite(found).all():
+                why_by_number[point.dof][k] = Unknown.LOST
+    kind, why = [Kind.UNKNOWN] * dofs, [Unknown.AT_REST] * dofs
     for point in points:
-        kind[point.dof] = point.kind
+        kind[point.dof], why[point.dof] = point.kind, point.why
+        if point.kind is Kind.UNKNOWN:
+            why_by_number[point.dof] = [Unknown.NOTHING] * len(numbers)
     values = np.array([number.value(scene) for number in numbers])
-    return Sensitivities(tuple(number.key for number in numbers), values, height, frequency, tuple(kind))
+    keys = tuple(number.key for number in numbers)
+    return Sensitivities(
+        keys, values, height, frequency, tuple(kind), tuple(why), tuple(map(tuple, why_by_number))
+    )
