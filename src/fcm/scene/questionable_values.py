@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import pi
 from typing import Any
 
 import numpy as np
 
 from fcm.model.question import Question
-from fcm.scene.errors import bare, shown
+from fcm.scene.errors import bare, choices, shown
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import as_float
 from fcm.scene.section import Parts, Section
@@ -17,10 +17,11 @@ from fcm.scene.sweep import SweptKey
 from fcm.units import ANGLES
 
 CRITICAL = "critical damping"
+SWEEP = "sweep."  # how the path of a swept key begins
 
 
 def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str]:
-    """A question for each key whose number is hardly meant as it is; the scene is read as it says.
+    """A question for each kind of number that is hardly meant as it is; the scene is read as it says.
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large, and where units
     are given loss factors, too; no damping at all, factors of mistuning that are all small, coefficients of
@@ -29,11 +30,37 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     real = isinstance(top.data.get("units"), Mapping)
     found = [_of_ratio(*one, real) for one in _ratios(top, parts, swept)]
     found += [_of_nothing(*one) for one in _ratios(top, parts, swept)]
-    found += [_of_friction(*one) for one in _of_contacts("mu", top, swept)]
-    found += [_of_gap(*one) for one in _of_contacts("gap", top, swept)]
-    found += [_of_angle(*one) for one in _angles(top, swept)]
+    found += _once(_of_friction, _of_contacts("mu", top, swept), max)
+    found += _once(_of_gap, _of_contacts("gap", top, swept), min)
+    found += _once(_of_angle, _angles(top, swept), _furthest)
     found += [_of_factors(values) for values in _factors(parts)]
     return [Question(one) for one in found if one]
+
+
+def _once(
+    question: Callable[[str, Iterable[float]], str],
+    numbers: Iterable[tuple[str, Iterable[float]]],
+    extreme: Callable[[Iterable[float]], float],
+) -> list[str]:
+    """One question of a kind about keys of the scene, of the most extreme number, that names the others.
+
+    Of a sweep each has its own.
+    """
+    asked = [(key, list(values)) for key, values in numbers]
+    asked = [(key, values) for key, values in asked if question(key, values)]
+    own = [question(key, values) for key, values in asked if key.startswith(SWEEP)]
+    given = {key: extreme(values) for key, values in asked if not key.startswith(SWEEP)}
+    if not given:
+        return own
+    worst = extreme(given.values())
+    first = next(key for key, value in given.items() if value == worst)
+    others = [key for key in given if key != first]
+    also = f". The same of {choices(others)}" if others else ""
+    return [f"{question(first, [worst])}{also}", *own]
+
+
+def _furthest(values: Iterable[float]) -> float:
+    return max(values, key=abs)
 
 
 def _ratios(
@@ -79,7 +106,7 @@ def _of_contacts(key: str, top: Section, swept: Sequence[SweptKey]) -> Iterator[
 
 
 def _of_sweep(one: SweptKey) -> str:
-    return f"sweep.{bare(one.key)}"
+    return f"{SWEEP}{bare(one.key)}"
 
 
 def _factors(parts: Parts) -> Iterator[list[float]]:
@@ -144,7 +171,7 @@ def _of_angle(key: str, values: Iterable[float]) -> str:
     value = max(values, default=0.0, key=abs)
     if abs(value) < ANGLES.largest:
         return ""
-    swept = key.startswith("sweep.")
+    swept = key.startswith(SWEEP)
     meant = "write it in rad" if swept else f'write "{shown(value)}deg"'
     turns = f"{shown(value)} rad are {abs(value) / (2.0 * pi):.3g} turns"
     return f"{key}: is {shown(value)} right? {turns}; if degrees are meant, {meant}"
