@@ -70,7 +70,19 @@ def test_without_jumps_there_is_one_table(fcm, scene):
 def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):
     cost, error, _ = fcm("respond", scene).err.splitlines()[-3:]
     assert cost.startswith("1 curve, ") and " points in " in cost and cost.endswith(" s")
-    assert error.startswith("largest relative error: ") and "by the table alone" in error
+    assert error.startswith("largest relative error: ") and "by the harmonics left out" in error
+
+
+@pytest.mark.parametrize(
+    ("options", "said"), [((), 0), (("--method", "table"), 1), (("-v",), 1), (("--method", "closed-form"), 0)]
+)
+def test_how_far_the_table_is_off_is_told_once_where_it_is_asked_for(fcm, scene, options, said):
+    """It is no error of the curve, and stood first among those of every curve of one harmonic."""
+    first = [one for one in options if one == "-v"]
+    done = fcm(*first, "respond", scene, "--harmonics", 1, *(one for one in options if one != "-v"))
+    assert done.code == 0 and done.err.count("solutions by it alone would be off by up to ") == said
+    (line,) = (one for one in done.err.splitlines() if one.startswith("largest relative error: "))
+    assert "table" not in line
 
 
 @pytest.mark.parametrize(("frequency", "count"), [("[0.8, 1.6]", 0), ("[0.8, 1.35]", 2)])

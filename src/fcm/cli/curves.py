@@ -494,15 +494,12 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     begun = sum(curve["points"] > 0 for curve in curves)
     of = f"{begun} of " if begun < len(curves) else ""
     count = f"{of}{len(curves)} curve{'' if len(curves) == 1 else 's'}"
-    tabled = [curve for curve in curves if len(curve.get("harmonics", ())) < 2]  # more are summed exactly
-    table, harmonic = _worst(tabled, "table_error"), _worst(curves, "truncation_error")
+    harmonic = _worst(curves, "truncation_error")
     errors = []
     if summary.get("method") == "exact":
         harmonic = None
         if (closure := _worst(curves, "closure_error")) is not None:
             errors.append(f"{closure:.1e} by which a period does not close{_of_lower_peaks(summary)}")
-    if summary.get("method") == "table" and table and not summary.get("directions"):
-        errors.append(f"{table:.1e} of solutions by the table alone, not of these points")
     if harmonic is not None:
         unknown = any(_unknown_error(curve, dof) for curve in curves for dof in curve["peak"])
         shown = shown_dofs(summary)  # of which the table has the peaks
@@ -535,6 +532,19 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
     )
+
+
+def of_table(summary: Mapping[str, Any]) -> str:
+    """How far solutions by the table alone are from the points of curves, which are none of them; or ''.
+
+    >>> of_table({"method": "table", "curves": [{"harmonics": [1], "table_error": 2.9e-5}]})
+    'the table: solutions by it alone would be off by up to 2.9e-05; these points are not'
+    """
+    tabled = [one for one in summary["curves"] if len(one.get("harmonics", ())) < 2]  # more never use it
+    table = _worst(tabled, "table_error")
+    if summary.get("method") != "table" or not table or summary.get("directions"):
+        return ""
+    return f"the table: solutions by it alone would be off by up to {table:.1e}; these points are not"
 
 
 def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[dict[str, Any]]:

@@ -23,7 +23,7 @@ from fcm.cli.caveats import (
     symmetry_lost,
     tracked_uncertain,
 )
-from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
+from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete, of_table
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
@@ -98,8 +98,8 @@ def close(
 ) -> None:
     """Prints what the run left out, its cost and error; sets the exit code of one that stopped early.
 
-    That a table has no effect is said where the command line asks for one. That contacts change no state is
-    said where a resonance is near the range: elsewhere it is no wonder.
+    What a table has to do with it is said where the command line asks for one. That contacts change no state
+    is said where a resonance is near the range: elsewhere it is no wonder.
     """
     for text in dict.fromkeys(defects):
         messages.detail(text)
@@ -109,6 +109,8 @@ def close(
         say(f"left out: {text}")
     if result["curves"]:
         messages.info(cost_and_error(result))
+        if text := of_table(result):
+            (messages.info if table_wanted else messages.detail)(text)
     elif "tracked" in result:
         messages.info(track.cost(result))
     if levels := searched_levels(result):
