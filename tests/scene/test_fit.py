@@ -6,6 +6,8 @@ import struct
 import numpy as np
 import pytest
 
+from fcm.model.question import Question
+from fcm.plot.errors import PlotError
 from fcm.plot.measured import read_measured_points
 from fcm.scene import SceneError
 from fcm.scene.load import load_scene
@@ -121,14 +123,112 @@ def test_names_that_are_accepted_are_said(written):
     assert 'has no column "damping" (or "damping_ratio"); it has "frequency", "amplitude", "zeta"' in said
     several = "curve,frequency,amplitude u\n0,1,2\n1,1,3\n"
     assert "column curve: it has 2 curves; leave the points of one" in mistakes(written(FIT, several))
-    of_others = "frequency [kHz],amplitude\n1,1\n2,3\n"
-    assert 'its frequency is in "kHz"; known are "rad/s", "Hz"' in mistakes(written(FIT, of_others))
-    in_mm = "frequency,amplitude u [mm]\n1,1\n2,3\n"
-    metres = oscillator(RANGE) + '[units]\nlength = "m"\nforce = "N"\n'
-    said = mistakes(written(FIT, in_mm, scene=metres))
-    assert "its amplitude is in mm, and here it has to be in m" in said
-    (one,) = load_scene(written(FIT, in_mm.replace("mm", "m"), scene=metres)).fit.data
-    assert one.amplitude.tolist() == [1.0, 3.0]
+    of_others = "frequency [orders],amplitude\n1,1\n2,3\n"
+    assert 'its frequency is in "orders"; known are "rad/s", "Hz", "kHz", "rpm"' in mistakes(
+        written(FIT, of_others)
+    )
+
+
+METRES = oscillator(RANGE, amplitude=2.0) + '[units]\nlength = "m"\nforce = "N"\n'
+
+
+@pytest.mark.parametrize(
+    ("head", "data", "factor", "quantity"),
+    [
+        ("amplitude", "", 1.0, "displacement"),
+        ("amplitude [m]", "", 1.0, "displacement"),
+        ("amplitude u [mm]", "", 1e-3, "displacement"),
+        ("amplitude [um]", "level = 3.0\n", 1e-6, "displacement"),
+        ("amplitude [mm/s]", 'quantity = "velocity"\n', 1e-3, "velocity"),
+        ("amplitude [m/s²]", 'quantity = "acceleration"\n', 1.0, "acceleration"),
+        ("amplitude [g]", "", 9.80665, "acceleration"),
+        ("amplitude [mm/N]", "level = 3.0\n", 6e-3, "displacement"),
+        ("amplitude [(in/s)/lbf]", "", 2.0 * 0.0254 / 4.4482216152605, "velocity"),
+    ],
+)
+@pytest.mark.parametrize("phased", [False, True])
+def test_amplitudes_of_a_table_in_another_unit_are_converted(written, head, data, factor, quantity, phased):
+    """By what its head says, as those of a universal file; another unit of length was refused."""
+    more = (",phase", ",0.5", ",-1") if phased else ("", "", "")
+    points = f"frequency,{head}{more[0]}\n0.9,1{more[1]}\n1.1,3{more[2]}\n"
+    (one,) = load_scene(written(FIT + data, points, scene=METRES)).fit.data
+    assert one.amplitude.tolist() == pytest.approx([factor, 3.0 * factor], rel=1e-12)
+    assert one.quantity == quantity
+    assert one.phase is None if not phased else one.phase.tolist() == pytest.approx([0.5, -1.0])
+
+
+def test_what_was_converted_is_said_once_and_what_the_scene_does_not_say_is_asked(written):
+    points = "frequency,amplitude [mm]\n0.9,1\n1.1,3\n"
+
+    def said(scene):
+        return [one for one in load_scene(written(FIT, points, scene=scene)).notes if one.startswith("fit:")]
+
+    assert said(METRES) == ["fit: a.csv is in mm, converted to m"]
+    (question,) = said(oscillator(RANGE))
+    assert question == (
+        "fit: a.csv is in mm: is the scene, too? With its [units] of length and force it is converted"
+    )
+    assert isinstance(question, Question)
+
+
+@pytest.mark.parametrize(
+    ("head", "data", "words"),
+    [
+        ("amplitude [V]", "", 'its amplitude is in "V", no unit of a motion that is known: m, mm, in and'),
+        (
+            "amplitude [m/s]",
+            'quantity = "displacement"\n',
+            'quantity: is "displacement", and "a.csv" says that',
+        ),
+        ("amplitude [deg]", "", 'is in deg, the unit of a rotation, and "u" is a displacement'),
+        ("amplitude [kg]", "", 'its amplitude is in "kg", no unit of a motion'),
+    ],
+)
+def test_units_of_another_quantity_are_refused(written, head, data, words):
+    points = f"frequency,{head}\n0.9,1\n1.1,3\n"
+    assert words in mistakes(written(FIT + data, points, scene=METRES))
+
+
+@pytest.mark.parametrize(("head", "size"), [("kHz", 2e3 * np.pi), ("rpm", np.pi / 30.0), ("Hz", 2.0 * np.pi)])
+def test_frequencies_of_a_table_in_another_unit_are_converted(written, head, size):
+    (one,) = load_scene(written(points=f"frequency [{head}],amplitude\n1,1\n2,3\n")).fit.data
+    assert one.frequency.tolist() == pytest.approx([size, 2.0 * size], rel=1e-14)
+
+
+@pytest.mark.parametrize(("head", "size"), [("F", 1.0), ("F [N]", 1.0), ("F [kN]", 1e3), ("F [V]", None)])
+def test_a_column_of_forces_in_another_unit_is_converted(written, head, size):
+    """A level of kN was a thousandth of itself."""
+    path = written(FIT + 'level = "F"\n', f"frequency,amplitude,{head}\n1,1,4\n2,3,6\n", scene=METRES)
+    if size is None:
+        assert '"a.csv" has levels in "V", which is no known unit of force' in mistakes(path)
+    else:
+        assert load_scene(path).fit.data[0].level.tolist() == pytest.approx([2.0 * size, 3.0 * size])
+
+
+def test_a_backbone_in_another_unit(written):
+    points = "frequency,amplitude [{}],damping\n1,1,0.01\n0.9,2,0.02\n"
+    of_dof = BACKBONE + 'dof = "u"\n'
+    (one,) = load_scene(written(of_dof, points.format("mm"), scene=METRES)).fit.data
+    assert one.amplitude.tolist() == pytest.approx([1e-3, 2e-3])
+    assert "in mm/N, and a backbone is of" in mistakes(written(of_dof, points.format("mm/N"), scene=METRES))
+    assert 'says that it is "velocity"' in mistakes(written(of_dof, points.format("mm/s"), scene=METRES))
+    said = mistakes(written(BACKBONE, points.format("mm"), scene=METRES))
+    assert 'its amplitude is modal, and in "mm"; give it without' in said
+
+
+def test_drawn_points_of_a_table_are_in_the_unit_of_the_curves(tmp_path):
+    path = tmp_path / "a.csv"
+    for head, unit, expected in (
+        ("amplitude [mm]", "m", [1e-3, 3e-3]),
+        ("amplitude [m]", "m", [1.0, 3.0]),
+        ("amplitude", "m", [1.0, 3.0]),
+        ("amplitude [m/s]", "mm", [1e3 / 2.0, 3e3 / 4.0]),
+    ):
+        path.write_text(f"frequency [rad/s],{head}\n2,1\n4,3\n")
+        assert read_measured_points(path, "rad/s", unit).amplitude.tolist() == pytest.approx(expected)
+    path.write_text("frequency,amplitude [V]\n2,1\n4,3\n")
+    with pytest.raises(PlotError, match='its amplitude is in "V", no unit of a motion'):
+        read_measured_points(path, "rad/s", "m")
 
 
 def test_a_unit_in_a_head_is_converted_or_refused(written):

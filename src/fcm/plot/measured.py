@@ -155,7 +155,7 @@ def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasur
     """Points of a file of measurements, as of [fit]: frequencies in a unit, displacements in that of length,
     if it is known.
 
-    What a universal file says to be velocities or accelerations is divided by the frequency.
+    What a file says to be velocities or accelerations is divided by the frequency.
 
     Raises
     ------
@@ -164,19 +164,20 @@ def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasur
     """
     from fcm.scene.files import DataFileError, Files
     from fcm.scene.measured_file import read_measured
-    from fcm.scene.measured_function import displacements
+    from fcm.scene.measured_function import displacements, function_of_table
 
     try:
-        found, function = read_measured(
-            path.name, Files(path.parent), ("frequency", "amplitude"), (), length=length
-        )
+        read = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), ())
+        found, function, of_head = read.columns, read.function, read.units.get("amplitude", "")
+        if "angular_frequency" not in found:
+            found["angular_frequency"] = UNIT.get(unit, 1.0) * found.pop("frequency")
+        if function is None and of_head and of_head != length:
+            function = function_of_table(found["angular_frequency"], found, of_head)
         if function is not None:
             found["amplitude"] = displacements(function, length)
     except DataFileError as error:
         raise PlotError(f"{path}: {error}") from None
-    if "angular_frequency" in found:
-        found["frequency"] = found["angular_frequency"] / UNIT.get(unit, 1.0)
-    return DrawnMeasured("", found["frequency"], found["amplitude"])
+    return DrawnMeasured("", found["angular_frequency"] / UNIT.get(unit, 1.0), found["amplitude"])
 
 
 def draw_measured(

@@ -15,7 +15,13 @@ from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.measured_function import Excitation, Surroundings, compare
+from fcm.scene.measured_function import (
+    Excitation,
+    Surroundings,
+    compare,
+    force_factor,
+    function_of_table,
+)
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
@@ -25,6 +31,7 @@ from fcm.units import ANGLES, PER_TIME, QUANTITIES, UNIT, in_unit
 
 if TYPE_CHECKING:
     from fcm.scene.measured_file import MeasuredFile
+    from fcm.scene.uff_functions import Function
 
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
@@ -137,25 +144,31 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
     others = {"damping": "damping_ratio"} if backbone else {}
     others["amplitude"] = f"amplitude {dof}" if dof else "modal_amplitude"
     driven = _excitation(draft)
-    read = _columns(section, files, name, column, others, scene.units[0], driven) if name else None
+    read = _columns(section, files, name, column, others, driven) if name else None
     if read is None or section.mistakes.count > before:
         return None
     columns = read.columns
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
     count = scaled.size
-    levels = columns[level] / abs(_force(driven)) if isinstance(level, str) else np.full(count, level)
-    if read.function is not None:
-        given = quantity if "quantity" in section.data else ""
-        quantity, factor = compare(read.function, name, dof, given, driven, scene, section.wrong)
-        value = factor * read.function.value
-        if read.function.per_reference and driven is not None:
+    levels = np.full(count, 1.0 if isinstance(level, str) else level)
+    if isinstance(level, str):
+        force = columns[level] * force_factor(read.units.get(level, ""), name, driven, scene, section.wrong)
+        levels = force / abs(_force(driven))
+    if read.function is None and "phase" in columns:
+        largest = float(np.abs(columns["phase"]).max())
+        if largest > ANGLES.largest:
+            asked = f"has a phase of {shown(largest)} rad. Are they in degrees? Call the column phase [deg]"
+            scene.noted.append(Question(f"fit: {name} {asked}"))
+    function = read.function or _function_of_table(section, read, scaled, name, dof, scene)
+    if function is not None:
+        given = quantity if "quantity" in section.data or backbone else ""
+        quantity, factor = compare(function, name, dof, given, driven, scene, section.wrong)
+        value = factor * function.value
+        if function.per_reference and driven is not None:
             value = value * levels * driven.amplitude * scaled**driven.power
         columns["amplitude"] = np.abs(value)
-        if read.function.phased:
+        if function.phased:
             columns["phase"] = np.angle(value)
-    elif "phase" in columns and (largest := float(np.abs(columns["phase"]).max())) > ANGLES.largest:
-        asked = f"has a phase of {shown(largest)} rad. Are they in degrees? Call the column phase [deg]"
-        scene.noted.append(Question(f"fit: {name} {asked}"))
     if section.mistakes.count > before:
         return None
     amplitude = columns["amplitude"]
@@ -175,13 +188,39 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
     )  # fmt: skip
 
 
+def _function_of_table(
+    section: Section, read: MeasuredFile, omega: FloatArray, name: str, dof: str, scene: Surroundings
+) -> Function | None:
+    """The function that a table with a unit of amplitudes is; None without one, or in the scene's own."""
+    unit, backbone = read.units.get("amplitude", ""), "backbone" in section.data
+    quantity = str(section.data.get("quantity", "displacement"))
+    length = unit_of(dof, scene.units[0])
+    if not unit or (length and unit == f"{length}{PER_TIME.get(quantity, '')}"):
+        return None
+    key = "backbone" if backbone else "file"
+    if not dof:
+        if length and unit != length:
+            section.wrong(
+                key, f"{quoted(name)}: its amplitude is modal, and in {quoted(unit)}; give it without"
+            )
+        return None
+    try:
+        found = function_of_table(omega, read.columns, unit)
+    except DataFileError as error:
+        section.wrong(key, f"{quoted(name)}: {error}")
+        return None
+    if backbone and found.per_reference:
+        section.wrong(key, f"{quoted(name)}: its amplitude is in {unit}, and a backbone is of displacements")
+        return None
+    return found
+
+
 def _columns(
     section: Section,
     files: Files,
     name: str,
     level: str,
     others: Mapping[str, str],
-    length: str,
     driven: Excitation | None,
 ) -> MeasuredFile | None:
     """The columns of a file, or its function; None after a mistake."""
@@ -192,11 +231,9 @@ def _columns(
     wanted = ["frequency", "amplitude", *(["damping"] if backbone else []), *([level] if level else [])]
     try:
         optional = ("weight",) if backbone else ("phase", "weight")
-        dof, quantity = section.data.get("dof"), section.data.get("quantity", "displacement")
-        own = unit_of(dof, length) if isinstance(dof, str) else length
-        own += PER_TIME.get(quantity, "") if own and isinstance(quantity, str) else ""
+        dof = section.data.get("dof")
         places = (dof if isinstance(dof, str) else "", driven.dof if driven else "")
-        read = read_measured(name, files, wanted, optional, others, own, places)
+        read = read_measured(name, files, wanted, optional, others, places)
     except DataFileError as error:
         for fault in error.faults:
             section.wrong(key, fault)

@@ -11,6 +11,7 @@ import csv
 import re
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from fcm.files import MEASURED
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.measured_units import FREQUENCIES, hertz_of
 from fcm.scene.npz_file import names_in_npz, read_npz
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.options import MESSAGES
@@ -31,10 +33,15 @@ _UNITS = {"phase": {"rad": 1.0, "deg": np.pi / 180.0}, "damping": {"1": 1.0, "%"
 
 
 class MeasuredFile(NamedTuple):
-    """Columns of measured points by their names; of a universal file also the function that they are of."""
+    """Columns of measured points by their names; of a universal file also the function that they are of.
+
+    units are those that heads of columns say and the scene knows how to convert; not of frequencies, phases
+    and damping, which are converted.
+    """
 
     columns: dict[str, FloatArray]
     function: Function | None = None
+    units: Mapping[str, str] = MappingProxyType({})
 
 
 def read_measured(
@@ -43,15 +50,13 @@ def read_measured(
     wanted: Sequence[str],
     optional: Collection[str],
     others: Mapping[str, str] | None = None,
-    length: str = "",
     places: tuple[str, str] = ("", ""),
 ) -> MeasuredFile:
     """The columns of a file, (point,) each: all that are wanted, and those of the optional that it has.
 
-    others: the names that wanted columns have in files of ``fcm respond``. length: unit of amplitudes, where
-    known; a column that says another is refused. A file that says the unit of its frequencies, as a universal
-    file does, has angular_frequency [rad/s] in place of frequency. places: what was measured, and where the
-    force is, by which one function of several is chosen.
+    others: the names that wanted columns have in files of ``fcm respond``. A file that says the unit of its
+    frequencies, as a universal file does, has angular_frequency [rad/s] in place of frequency. places: what
+    was measured, and where the force is, by which one function of several is chosen.
 
     Raises
     ------
@@ -62,6 +67,7 @@ def read_measured(
     ending = Path(name).suffix.lower()
     if ending not in MEASURED:
         raise DataFileError(f"{quoted(name)}: measured points are read from {choices(MEASURED)}")
+    units: dict[str, str] = {}
     with files.opened(name) as path:
         if ending in (".uff", ".unv"):
             function = read_function(path, *places)
@@ -72,7 +78,7 @@ def read_measured(
             chosen = _chosen(found, wanted, optional, others)
             found = {key: found[its] for key, its in chosen.items()}
         else:
-            found, named = _csv(path, wanted, optional, others, length)
+            found, named, units = _csv(path, wanted, optional, others)
     there = {*found, *(["frequency"] if "angular_frequency" in found else [])}
     if missing := [one for one in wanted if one not in there]:
         heads = [quoted(one) + (f" (or {quoted(others[one])})" if one in others else "") for one in missing]
@@ -86,7 +92,7 @@ def read_measured(
         raise DataFileError(f"{quoted(name)}: its columns are of different lengths: {each}")
     if sizes == {0}:
         raise DataFileError(f"{quoted(name)} holds no points")
-    return MeasuredFile(found)
+    return MeasuredFile(found, None, units)
 
 
 def _chosen(
@@ -119,9 +125,11 @@ def _arrays(path: Path, wanted: Sequence[str], files: Files) -> tuple[dict[str, 
 
 
 def _csv(
-    path: Path, wanted: Sequence[str], optional: Collection[str], others: Mapping[str, str], length: str
-) -> tuple[dict[str, FloatArray], list[str]]:
-    """Columns of a text file, whose first line names them; lines that begin with # are passed over.
+    path: Path, wanted: Sequence[str], optional: Collection[str], others: Mapping[str, str]
+) -> tuple[dict[str, FloatArray], list[str], dict[str, str]]:
+    """Columns of a text file, whose first line names them, the line, and the units of columns that it says.
+
+    Lines that begin with # are passed over.
 
     What is no number is a fault in those that are read.
     """
@@ -167,7 +175,9 @@ def _csv(
         raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[: MESSAGES.faults]))
     table = np.array([values for _, values in rows], dtype=np.float64).reshape(len(rows), len(chosen))
     found = dict(zip(chosen, table.T.copy(), strict=True))
-    return _in_units(found, {key: heads[i] for key, i in chosen.items()}, path.name, length), header
+    units = {key: heads[i][1] for key, i in chosen.items() if heads[i][1]}
+    found = _in_units(found, units, path.name)
+    return found, header, {key: unit for key, unit in units.items() if key not in ("frequency", *_UNITS)}
 
 
 def _right_head(column: str, heads: Sequence[str]) -> str:
@@ -207,27 +217,24 @@ def _curves(
     return [f"column curve: it has {found} curves; leave the points of one"] if found > 1 else []
 
 
-def _in_units(
-    found: dict[str, FloatArray], heads: Mapping[str, tuple[str, str]], file: str, length: str
-) -> dict[str, FloatArray]:
+def _in_units(found: dict[str, FloatArray], units: Mapping[str, str], file: str) -> dict[str, FloatArray]:
     """Frequencies in rad/s where the file says their unit, phases in rad, damping as ratios.
 
     DataFileError of another unit.
     """
-    _, unit = heads.get("frequency", ("", ""))
-    if unit in UNIT:
-        found["angular_frequency"] = UNIT[unit] * found.pop("frequency")
-    elif unit:
-        raise DataFileError(f"{quoted(file)}: its frequency is in {quoted(unit)}; known are {choices(UNIT)}")
-    for key, known in _UNITS.items():
-        _, unit = heads.get(key, ("", ""))
-        if unit in known:
-            found[key] *= known[unit]
+    if unit := units.get("frequency", ""):
+        size = UNIT.get(unit) or 2.0 * np.pi * (hertz_of(unit) or 0.0)
+        if not size:
+            known = choices(FREQUENCIES)
+            raise DataFileError(f"{quoted(file)}: its frequency is in {quoted(unit)}; known are {known}")
+        found["angular_frequency"] = size * found.pop("frequency")
+    for key, known_units in _UNITS.items():
+        unit = units.get(key, "")
+        if unit in known_units:
+            found[key] *= known_units[unit]
         elif unit:
-            raise DataFileError(f"{quoted(file)}: its {key} is in {quoted(unit)}; known are {choices(known)}")
-    _, unit = heads.get("amplitude", ("", ""))
-    if unit and length and unit.replace("²", "^2") != length:
-        raise DataFileError(f"{quoted(file)}: its amplitude is in {unit}, and here it has to be in {length}")
+            known = choices(known_units)
+            raise DataFileError(f"{quoted(file)}: its {key} is in {quoted(unit)}; known are {known}")
     return found
 
 

@@ -1,12 +1,13 @@
-"""A measured function of a universal file beside the scene: where it is, what it is of, in which units.
+"""A measured function of a file beside the scene: where it is, what it is of, in which units.
 
-Place, quantity and units that the file says are compared with the measurement of [[fit.data]] and the force
-of the scene. What contradicts it is a mistake, another place is asked about, another unit is converted.
+Place, quantity and units that a universal file says are compared with the measurement of [[fit.data]] and the
+force of the scene. What contradicts it is a mistake, another place is asked about, another unit is converted.
+The head of a column of a table may say a unit, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import isclose
 from typing import NamedTuple
 
@@ -48,6 +49,32 @@ class Scale(NamedTuple):
 
     quantity: str
     factor: float
+
+
+def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit: str) -> Function:
+    """The function over frequencies [rad/s] that columns of amplitudes, in a unit, and phases are.
+
+    DataFileError of a unit that is none of a motion.
+    """
+    upper, lower = ratio_of(unit)
+    if motion_unit(upper) is None:
+        raise DataFileError(
+            f"its amplitude is in {quoted(unit)}, no unit of a motion that is known: m, mm, in and others, "
+            "rad, deg, each also by s or s^2, and g; and each of these by a unit of force as N"
+        )
+    phase = columns.get("phase")
+    return Function(
+        hertz=omega / (2.0 * np.pi),
+        value=columns["amplitude"] * np.exp(1j * (np.zeros_like(omega) if phase is None else phase)),
+        phased=phase is not None,
+        per_reference=bool(lower),
+        response=Place(),
+        reference=Place(),
+        ordinate=Axis("", unit),
+        denominator=Axis(),
+        system=None,
+        of_table=True,
+    )
 
 
 class _Told:
@@ -100,9 +127,28 @@ def compare(
     factor = _factor(told, ordinate, dof, found, units, function.system)
     if function.per_reference:
         factor /= _reference_factor(told, function, lower, excitation, units)
-    if not function.phased:
+    if not function.phased and not function.of_table:
         told.note("has no phase: a displacement is taken as half the peak-to-peak value")
     return Scale(found, factor)
+
+
+def force_factor(
+    unit: str,
+    name: str,
+    excitation: Excitation | None,
+    scene: Surroundings,
+    wrong: Callable[[str, str], None],
+) -> float:
+    """By what a column of forces, or of accelerations of the base, is multiplied to be those of the scene."""
+    told, units = _Told(name, wrong, scene.noted), scene.units
+    if excitation is not None and excitation.base:
+        return _factor(told, Axis("", unit), "", "acceleration", units, None)
+    if unit in ("", units[1]):
+        return 1.0
+    if (size := force_unit(unit)) is None:
+        told.mistake(f"has levels in {quoted(unit)}, which is no known unit of force", "level")
+        return 1.0
+    return _converted(told, size, unit, force_unit(units[1]), units[1], "N")
 
 
 def _compare_places(

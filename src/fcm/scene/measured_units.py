@@ -22,6 +22,7 @@ _HERTZ = {
     "hz": 1.0, "khz": 1e3, "rpm": 1.0 / 60.0, "1/min": 1.0 / 60.0, "rev/min": 1.0 / 60.0, "cpm": 1.0 / 60.0,
     "rad/s": 0.5 / pi,
 }  # fmt: skip
+FREQUENCIES = ("rad/s", "Hz", "kHz", "rpm")  # the usual ones, as messages name them
 _PER_TIME = {"/s^2": 2, "/s": 1, "": 0}  # behind a length, and the power of the frequency
 _BRACKETS = "()[] "
 _SAME = {

@@ -90,6 +90,7 @@ class Function(Frozen):
     denominator: Axis
     system: tuple[float, float] | None  # unit of length [m] and of force [N] of the whole file
     unknown_unit: str = ""  # of the frequencies, then taken for Hz
+    of_table: bool = False  # whether it is made of columns, not of a universal file
 
 
 def read_function(path: Path, dof: str = "", forced: str = "") -> Function:
