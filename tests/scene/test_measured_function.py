@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.model.question import Question
+from fcm.plot.errors import PlotError
 from fcm.plot.measured import read_measured_points
 from fcm.scene import SceneError
 from fcm.scene.load import scene_from_dict
@@ -255,3 +256,96 @@ def test_drawn_points_are_in_the_unit_of_the_curves(tmp_path):
 def test_responses_per_unit_of_force_need_one_force(read):
     with pytest.raises(SceneError, match=r"has responses per unit of force, which needs a scene with one"):
         read(uff(), force={"amplitude": 0.0})
+
+
+def qualifier(scale=0, *, octave=0, weighting=0, window=0, normalised=0, numerator=0):
+    """A dataset 1858 as pyuff's 1858.uff has it."""
+    first = "".join(f"{word:12d}" for word in (0, octave, 1, 0, 0, 0))
+    second = (weighting, window, scale, normalised, 0, numerator, 0, 0, 0, 0, 0, 0)
+    zeros = "  0.0000000E+00" * 5
+    lines = [first, "".join(f"{word:6d}" for word in second), zeros, zeros, zeros, "X+    X+", "NONE"]
+    return "\n".join(["    -1", "  1858", *lines, "    -1", ""])
+
+
+SPECTRUM = {"function": 12, "denominator": (0, "NONE")}
+
+
+@pytest.mark.parametrize("before", [True, False])
+@pytest.mark.parametrize(("scale", "factor"), [(0, 1.0), (2, 1.0), (3, np.sqrt(2.0))])
+def test_amplitudes_of_a_spectrum_may_be_rms(read, scale, factor, before):
+    """A sine of the amplitude 1 has the RMS value 0.707: each was fitted as 0.707."""
+    parts = [qualifier(scale), uff(**SPECTRUM)]
+    one, said = read("".join(parts if before else parts[::-1]))
+    assert complex_of(one) == pytest.approx(factor * np.array(VALUES))
+    assert len(said) == (scale != 2) and isinstance((said or [""])[0], Question) is (scale == 0)
+    assert scale != 3 or said == [
+        "fit: a.unv has RMS amplitudes (dataset 1858), multiplied by the square root of 2"
+    ]
+
+
+def test_a_spectrum_without_qualifiers_is_asked_about_and_a_ratio_is_not(read):
+    _, (said,) = read(uff(**SPECTRUM))
+    assert "does not say whether its amplitudes are peak values or RMS (dataset 1858): taken for peak" in said
+    for text in (uff(), uff() + qualifier(3), qualifier(1) + uff()):
+        one, said = read(text)
+        assert complex_of(one) == pytest.approx(np.array(VALUES)) and not said
+
+
+@pytest.mark.parametrize(
+    ("qualifiers", "said"),
+    [
+        ({"scale": 1}, "has half-peak amplitudes (dataset 1858), which are not defined: export peak values"),
+        ({"scale": 7}, "has amplitudes on a scale 7 (dataset 1858): export peak values (2) or RMS (3)"),
+        ({"octave": 3}, "is of bands of 1/3 octave (dataset 1858): export narrow bands"),
+        ({"weighting": 1}, "is weighted by frequency, A (dataset 1858): export it without weighting"),
+        ({"normalised": 2}, "is in units squared per Hz (dataset 1858): export a spectrum of amplitudes"),
+        ({"numerator": 2}, "is in units squared (dataset 1858): export a spectrum of amplitudes"),
+    ],
+)
+def test_what_is_no_amplitude_of_a_narrow_band_is_refused(read, tmp_path, qualifiers, said):
+    text = uff(**SPECTRUM) + qualifier(**qualifiers)
+    with pytest.raises(SceneError) as caught:
+        read(text)
+    assert f'"a.unv" {said}' in str(caught.value)
+    with pytest.raises(PlotError) as of_plot:
+        read_measured_points(tmp_path / "a.unv", "Hz", "mm")
+    assert said in str(of_plot.value)
+
+
+def test_an_exponential_window_is_told(read):
+    for window, told in ((0, False), (1, False), (4, True), (6, True)):
+        _, said = read(uff() + qualifier(window=window))
+        assert any("an exponential window (dataset 1858), which adds damping" in one for one in said) is told
+
+
+def test_of_several_functions_each_has_the_qualifiers_beside_it(read):
+    """By order where the two alternate; where all say the same by that; else it is not known."""
+    other = uff([9.0 * y for y in VALUES], response=("NONE", 1, 1), **SPECTRUM)
+    own, rms, peak = uff(**SPECTRUM), qualifier(3), qualifier(2)
+    for text, factor in (
+        (other + peak + own + rms, np.sqrt(2.0)),
+        (peak + other + rms + own, np.sqrt(2.0)),
+        (other + rms + own + peak, 1.0),
+        (other + own + rms + rms, np.sqrt(2.0)),
+        (rms + own + other, np.sqrt(2.0)),
+    ):
+        assert complex_of(read(text)[0]) == pytest.approx(factor * np.array(VALUES))
+    for text in (other + own + rms + peak, other + rms + peak + own, rms + other + own + peak):
+        with pytest.raises(
+            SceneError, match="has 2 datasets 1858 that differ, and their order does not tell"
+        ):
+            read(text)
+
+
+@pytest.mark.parametrize("damage", [("         0", "      0.x"), ("     0     0     3", "     0")])
+def test_damaged_qualifiers_are_refused(read, damage):
+    text = qualifier(3).replace(*damage, 1) if damage[0].endswith("0") else qualifier(3)[:120]
+    text = text if text.endswith("-1\n") else text + "\n    -1\n"
+    with pytest.raises(SceneError, match="a dataset 1858 begins with a line of 6 whole numbers"):
+        read(uff(**SPECTRUM) + text)
+
+
+def test_drawn_points_of_rms_are_amplitudes(tmp_path):
+    (tmp_path / "a.unv").write_text(uff(ordinate=(8, "mm"), **SPECTRUM) + qualifier(3))
+    found = read_measured_points(tmp_path / "a.unv", "Hz", "mm")
+    assert found.amplitude == pytest.approx(np.sqrt(2.0) * np.abs(VALUES))

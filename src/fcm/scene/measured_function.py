@@ -22,6 +22,7 @@ from fcm.scene.files import DataFileError
 from fcm.scene.measured_units import force_unit, length_unit, motion_unit, ratio_of
 from fcm.scene.names import motion_of
 from fcm.scene.uff_functions import Axis, Function, Place
+from fcm.scene.uff_qualifiers import UNKNOWN, Qualifiers
 from fcm.units import PER_TIME, QUANTITIES
 
 FORCES = ("force", "reaction force")
@@ -125,11 +126,36 @@ def compare(
         told.ask(f"has frequencies in {quoted(function.unknown_unit)}, taken for Hz. Are they?")
     found = _quantity(told, ordinate, dof, quantity)
     factor = _factor(told, ordinate, dof, found, units, function.system)
+    if not function.of_table:
+        factor *= _of_qualifiers(told, function)
     if function.per_reference:
         factor /= _reference_factor(told, function, lower, excitation, units)
     if not function.phased and not function.of_table:
         told.note("has no phase: a displacement is taken as half the peak-to-peak value")
     return Scale(found, factor)
+
+
+def _of_qualifiers(told: _Told, function: Function) -> float:
+    """By what amplitudes are multiplied to be half of peak to peak, as dataset 1858 says."""
+    known, spectrum = function.qualifiers or Qualifiers(), not function.per_reference
+    if fault := known.fault(spectrum):
+        told.mistake(fault)
+        return 1.0
+    if known.damps:
+        told.note(
+            "was measured with an exponential window (dataset 1858), which adds damping: a fit takes it for "
+            "that of the structure"
+        )
+    if not spectrum:
+        return 1.0
+    if known.scale == UNKNOWN:
+        told.ask(
+            "does not say whether its amplitudes are peak values or RMS (dataset 1858): taken for peak "
+            "values. Are they? RMS are 0.707 of these: export peak values, or that dataset, too"
+        )
+    elif known.factor() != 1.0:
+        told.note("has RMS amplitudes (dataset 1858), multiplied by the square root of 2")
+    return known.factor()
 
 
 def force_factor(
@@ -277,7 +303,10 @@ def displacements(function: Function, length: str) -> FloatArray:
         raise DataFileError("its amplitudes are per unit of force: they are no displacements")
     if what not in QUANTITIES:
         raise DataFileError(f"its values are of {what}: they are no displacements")
-    factor = unit.size / own if unit and own and not unit.angular else 1.0
+    known = function.qualifiers or Qualifiers()
+    if fault := known.fault(spectrum=True):
+        raise DataFileError(f"it {fault}")
+    factor = known.factor() * (unit.size / own if unit and own and not unit.angular else 1.0)
     omega = 2.0 * np.pi * function.hertz
     found: FloatArray = factor * np.abs(function.value) / omega ** QUANTITIES[what]
     return found

@@ -25,6 +25,7 @@ from fcm.scene.measured_units import hertz_of
 from fcm.scene.names import DIRECTIONS, motion_of
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.uff_datasets import Dataset, read_datasets
+from fcm.scene.uff_qualifiers import Qualifiers, qualifiers_of
 
 ComplexArray = npt.NDArray[np.complex128]
 HEAD = 11  # lines before the values
@@ -90,6 +91,7 @@ class Function(Frozen):
     denominator: Axis
     system: tuple[float, float] | None  # unit of length [m] and of force [N] of the whole file
     unknown_unit: str = ""  # of the frequencies, then taken for Hz
+    qualifiers: Qualifiers | None = None  # where the file has a dataset 1858
     of_table: bool = False  # whether it is made of columns, not of a universal file
 
 
@@ -116,10 +118,12 @@ def read_function(path: Path, dof: str = "", forced: str = "") -> Function:
         what = f"has {counted(len(chosen), 'response')} over the frequency among its functions ({others})"
         which = f" at {dof}" if dof and len(chosen) > 1 else ""
         raise DataFileError(f"{quoted(path.name)} {what}; one{which} is right. The file holds {held}")
-    return _function(chosen[0], path, _system(every))
+    return _function(chosen[0], path, _system(every), qualifiers_of(every, chosen[0], path))
 
 
-def _function(one: Dataset, path: Path, system: tuple[float, float] | None) -> Function:
+def _function(
+    one: Dataset, path: Path, system: tuple[float, float] | None, qualifiers: Qualifiers | None
+) -> Function:
     abscissa, ordinate, denominator = (_axis(one, line) for line in (ABSCISSA, ORDINATE, DENOMINATOR))
     if abscissa.what not in FREQUENCIES:
         where = f"{quoted(path.name)}, line {one.first + ABSCISSA}"
@@ -139,6 +143,7 @@ def _function(one: Dataset, path: Path, system: tuple[float, float] | None) -> F
         denominator=denominator,
         system=system,
         unknown_unit="" if unit else abscissa.unit,
+        qualifiers=qualifiers,
     )
 
 
