@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray
 
+from fcm.cli.fit import as_table
 from fcm.fit.solve import SearchResult
 from fcm.response import trace
 from fcm.response.fit import is_search_result
@@ -94,7 +95,10 @@ def test_numbers_of_which_a_product_alone_matters_are_indistinguishable(measured
     path = measured(vary=("contact.shroud.mu", "contact.shroud.n_0"), points=12, k_v=0.0)
     done = called("respond", path, "--json")
     assert done.code == 0, done.err
-    ((one, other, power),) = json.loads(done.out)["fitted"]["not_told_apart"]
+    found = json.loads(done.out)["fitted"]
+    ((one, other, power),) = found["not_told_apart"]
+    assert [found["numbers"][key]["interval"] for key in (one, other)] == [[None, None]] * 2
+    assert sum(line.count("not determined") for line in as_table({"fitted": found}).splitlines()[1:3]) == 2
     assert {one, other} == {"contact.shroud.mu", "contact.shroud.n_0"} and power == pytest.approx(
         1.0, rel=1e-6
     )

@@ -1,5 +1,7 @@
 """Standard errors, intervals and what is not told, of rows that are known functions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -97,3 +99,20 @@ def test_a_pair_is_alike_by_its_correlation_and_not_by_its_columns():
     assert told.correlation == pytest.approx(correlation, rel=1e-9)
     ((i, j, power),) = told.alike
     assert (i, j) == (0, 2) and power == pytest.approx(0.996, rel=1e-9)
+
+
+@pytest.mark.parametrize("log", [0.0, 1.0])
+def test_an_end_of_an_interval_beyond_the_bounds_is_not_determined(log):
+    """Intervals such as 1e-255 to 1e252 were printed; numbers were compared with the data from 0.5 to 4."""
+    x = np.linspace(0.5, 1.0, POINTS)
+    free = parameters(1)
+    known = estimated(replace(free, log=np.array([log])), np.ones(1), rows_with([x]))
+    ((low, high),) = known.interval
+    assert 0.9 < low < 1.0 < high < 1.1
+    reach = max(1.0 - low, high - 1.0)
+    for weak, beyond in ((1.0, (False, False)), (0.8 / reach, (True, False)), (1e3 / reach, (True, True))):
+        bounded = replace(free, log=np.array([log]), low=np.array([0.5]), high=np.array([4.0]))
+        ((*ends,),) = estimated(bounded, np.ones(1), rows_with([x / weak])).interval.tolist()
+        assert tuple(np.isnan(ends)) == beyond
+        wide = estimated(replace(free, log=np.array([log])), np.ones(1), rows_with([x / weak])).interval[0]
+        assert all(np.isnan(one) or one == other for one, other in zip(ends, wide.tolist(), strict=True))

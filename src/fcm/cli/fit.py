@@ -55,8 +55,7 @@ def as_table(result: Mapping[str, Any]) -> str:
     rows = [["value", "standard error", percent, "began at", "fitted"]]
     for key, one in found["numbers"].items():
         told = one["standard_error"] is not None
-        low, high = one["interval"]
-        within = f"{low:.5g} to {high:.5g}" if None not in (low, high) else "-"
+        within = _interval(*one["interval"])
         error = f"{one['standard_error']:.2g}" if told else "-"
         rows.append([f"{one['value']:.6g}", error, within, f"{one['start']:.6g}", plain(with_mode(key))])
     data = [["points", "misfit", "of damping", "level", "data"]]
@@ -82,6 +81,19 @@ def as_table(result: Mapping[str, Any]) -> str:
         note += f"\nerrors of the points, estimated, as such a share: {', '.join(dict.fromkeys(scales))}"
     said = f"harmonics of the fit: {ranges(found['harmonics'])}"
     return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}\n\n{_searches(found)}\n{said}"
+
+
+def _interval(low: float | None, high: float | None) -> str:
+    """An interval; None for an end that the data do not determine within the number's bounds.
+
+    >>> _interval(0.36992, 0.37045), _interval(None, 0.5), _interval(2.0, None), _interval(None, None)
+    ('0.36992 to 0.37045', 'up to 0.5', 'from 2', 'not determined')
+    """
+    if low is None and high is None:
+        return "not determined"
+    if low is None or high is None:
+        return f"up to {high:.5g}" if low is None else f"from {low:.5g}"
+    return f"{low:.5g} to {high:.5g}"
 
 
 def _scale(data: Mapping[str, Any]) -> str:

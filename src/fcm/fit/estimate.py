@@ -6,7 +6,8 @@ covariance of the unknowns is
     C = s^2 (J^T J)^-1,    s^2 = r^T r / (N - k)
 
 It holds where the errors of the points are independent, and as large as stated or estimated but for one
-common factor. Intervals are those of Student's distribution with N - k degrees of freedom.
+common factor. Intervals are those of Student's distribution with N - k degrees of freedom. No number beyond
+its bounds was compared with the data, so that an end of an interval there is not determined by them.
 Source: Seber and Wild, "Nonlinear Regression" (1989), section 2.1.
 """
 
@@ -25,9 +26,10 @@ from fcm.model.scene import FloatArray
 class Estimate(Frozen):
     """The numbers with which the residuals are least.
 
-    values, error: (number,), the standard error in the number's unit; interval: (number, 2); correlation:
-    (number, number), NaN beside one without effect; without_effect, undetermined: (number,) whether; alike:
-    pairs that are not distinguished, with the exponents of the combination that is.
+    values, error: (number,), the standard error in the number's unit; interval: (number, 2), NaN for an end
+    beyond the bounds; correlation: (number, number), NaN beside one without effect; without_effect,
+    undetermined: (number,) whether; alike: pairs that are not distinguished, with the exponents of the
+    combination that is.
     """
 
     values: FloatArray
@@ -60,6 +62,8 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     x = parameters.unknowns(values)
     with np.errstate(over="ignore", invalid="ignore"):
         ends = np.column_stack((parameters.values(x - reach), parameters.values(x + reach)))
+        ends[ends[:, 0] < parameters.low, 0] = np.nan
+        ends[ends[:, 1] > parameters.high, 1] = np.nan
     without = np.ones(count)
     without[told] = 0.0
     relative = np.where(

@@ -289,7 +289,12 @@ def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:
     add("fitted_value", of, fitted.values, "its value")
     add("fitted_error", of, fitted.error, "standard error of the value")
     percent = f"{100.0 * fitted.confidence:g} %"
-    add("fitted_interval", (*of, "end"), fitted.interval, f"ends of the interval of {percent} confidence")
+    add(
+        "fitted_interval",
+        (*of, "end"),
+        fitted.interval,
+        f"ends of the interval of {percent} confidence; none beyond bounds",
+    )
     add("fitted_start", of, fitted.begin, "its value in the scene")
     add(
         "fitted_correlation",

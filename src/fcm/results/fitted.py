@@ -158,7 +158,7 @@ class Fitted:
     begin: FloatArray  # (number,) in the scene
     values: FloatArray
     error: FloatArray  # (number,) standard error, infinite where it has none
-    interval: FloatArray  # (number, 2)
+    interval: FloatArray  # (number, 2), NaN for an end that the data do not determine
     confidence: float
     poor: float  # misfit of data, relative, from which the model does not meet them
     correlation: FloatArray  # (number, number)
