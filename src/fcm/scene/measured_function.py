@@ -60,8 +60,8 @@ def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit
     upper, lower = ratio_of(unit)
     if motion_unit(upper) is None:
         raise DataFileError(
-            f"its amplitude is in {quoted(unit)}, no unit of a motion that is known: m, mm, in and others, "
-            "rad, deg, each also by s or s^2, and g; and each of these by a unit of force as N"
+            f"its amplitude is in {quoted(unit)}, no unit of a motion that is known. Units are of length or "
+            "angle, as mm or deg, each also by s or s^2, and g. Each may be by a unit of force, as mm/N"
         )
     phase = columns.get("phase")
     return Function(
