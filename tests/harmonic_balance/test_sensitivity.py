@@ -12,6 +12,7 @@ from fcm.response.optimum import optimise
 from fcm.response.sensitivity import add_sensitivities, remarks
 from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict
+from fcm.sensitivity.parameter_derivatives import Rates, rates_of
 from fcm.sensitivity.peak import Kind
 from fcm.sensitivity.peaks import numbers_of, settled
 
@@ -315,3 +316,24 @@ def test_a_condensed_balance_has_the_jacobian_of_its_differences():
         size.append(balance.output[2])
     assert found @ direction == pytest.approx((ahead[0] - ahead[1]) / 2e-6, rel=1e-6, abs=1e-6)
     assert amplitude.slopes @ direction == pytest.approx((size[0] - size[1]) / 2e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3, 5)])
+@pytest.mark.parametrize("key", ["contact.c.mu", "contact.c.k_u", "contact.c.n_0"])
+def test_rates_by_a_number_of_contacts_are_those_of_the_whole_system(key, harmonics, monkeypatch):
+    """They leave out the structure, of which nothing changes; w is a displacement of no contact."""
+    shapes = [[0.7, 0.7, 0.3], [1.0, -0.5, 0.8], [0.2, 0.4, -0.9]]
+    modal = {"dofs": ["u", "v", "w"], "frequency": [1.0, 3.0, 10.0], "damping": 0.01, "shapes": shapes}
+    contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.2, "k_u": 1.0, "k_v": 1.0, "n_0": 3.0}
+    force, response = [{"dof": "w", "amplitude": 1.0}], {"frequency": [0.7, 1.7]}
+    scene = settled(
+        scene_from_dict({"modal": modal, "contact": [contact], "force": force, "response": response})
+    )
+    system = System(scene, harmonics)
+    balance = system.new_balance()
+    z = np.append(np.random.default_rng(3).normal(size=balance.unknowns), 1.3)
+    short = rates_of(system, key).at(balance, z)
+    monkeypatch.setattr(Rates, "_of_laws", False)
+    whole = rates_of(system, key).at(balance, z)
+    for one, other in zip(short, whole, strict=True):
+        assert np.abs(other).max() > 1e-3 and one == pytest.approx(other, rel=1e-12, abs=1e-14)

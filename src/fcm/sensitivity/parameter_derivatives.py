@@ -54,6 +54,8 @@ class Rates(Frozen):
 
     def here(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
         """Rates of residual and displacements as of `at`, where the balance was evaluated last."""
+        if self._of_laws:
+            return self._at_laws(balance, z)
         if self._of_forces:
             return self._at_forces(balance, z[-1])
         layout = balance.layout
@@ -84,6 +86,24 @@ class Rates(Frozen):
             apart = np.asarray(balance.displacements.without_modes) > 0
             displacements[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
         return layout.flat(rows), displacements
+
+    @cached_property
+    def _of_laws(self) -> bool:
+        """Whether nothing of the structure changes, only how contacts answer."""
+        return not any(getattr(self.linear, name).any() for name in ARRAYS)
+
+    def _at_laws(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
+        """Rates as of `at` for a number of contacts alone: response to the rates of their forces."""
+        structure, receptance, layout = self.system.linear, balance.receptance, balance.layout
+        apart = np.asarray(balance.displacements.without_modes) > 0
+        displacements = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
+        if not balance.contacts:
+            return np.zeros(balance.unknowns), displacements
+        push = structure.ports @ layout.complex_ports(self._forces(balance, z))
+        c = np.asarray(receptance.c_re) + 1j * np.asarray(receptance.c_im)
+        a = np.column_stack((structure.flexibility @ push[:, 0], c.T * push[:, 1:]))
+        displacements[:, apart] = -(a[:, 1:].T @ structure.dofs[:, apart])
+        return layout.flat(structure.ports.T @ a), displacements
 
     @cached_property
     def _of_forces(self) -> bool:
