@@ -33,6 +33,10 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, but for rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
+_NO_PEAK = (
+    "at an end of the range, and no peak: of the worst blade the amplification may be greater than this, of "
+    "the tuned ring less"
+)
 _ISOLATED = "^"  # beside that of a peak on an isolated branch
 _OF_ISOLATED = (
     f"{_ISOLATED} on an isolated branch: closed, and crossed by no other. A sweep comes to it by a jump, or "
@@ -165,8 +169,12 @@ def _blades(curves: Sequence[Curve], names: list[str], unit: str, length: str) -
         for name, one in curve["blades"].items():
             keys = ("amplitude", "frequency", "tuned_amplitude", "tuned_frequency", "amplification")
             cells = [number(one[key]) for key in keys]
+            cells[1] += _EDGE * one["at_edge"]
+            cells[3] += _EDGE * one["tuned_at_edge"]
             rows.append([*swept(curve), f"{_with_unit(name, length)} of sector {one['sector']}", *cells])
-    return aligned([[*names, *head], *rows], left=0)
+    every = [one for curve in curves for one in curve["blades"].values()]
+    ends = any(one["at_edge"] or one["tuned_at_edge"] for one in every)
+    return aligned([[*names, *head], *rows], left=0) + (f"\n{_EDGE} {_NO_PEAK}" if ends else "")
 
 
 def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:

@@ -49,7 +49,7 @@ def plot() -> None:
 @draws_file(".png", page=True)
 @click.option(
     "--dof", metavar="NAME",
-    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
+    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak; of a mistuned ring the envelope over its sectors]",
 )  # fmt: skip
 @click.option(
     "--log/--linear", default=None,

@@ -10,11 +10,10 @@ import numpy as np
 
 from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import frequency_label, with_unit
+from fcm.plot.labels import frequency_label
 from fcm.plot.read import LEVEL, DrawnResponse, wide
 from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.plot.unfinished import say_unfinished
-from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,8 +51,7 @@ def draw_bands(
             )
             axes.plot(band.frequency, band.median, color=colour, linewidth=1.1)
         axes.set_xlabel(frequency_label(response.frequency_unit))
-        name = response.dofs[column]
-        axes.set_ylabel(with_unit(f"Amplitude of {name}", unit_of(name, response.length)), parse_math=False)
+        axes.set_ylabel(response.amplitude_label(column), parse_math=False)
         axes.margins(x=0.0)
         axes.minorticks_on()
         if wide(response.curves):

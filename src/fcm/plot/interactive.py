@@ -55,7 +55,7 @@ def response_page(response: DrawnResponse, dof: str | None, log: bool | None, pa
     along = "log" if wide(curves) and response.frequency_unit != LEVEL else "linear"
     up = "log" if (has_decades(heights) if log is None else log) else "linear"
     figure.update_xaxes(title=_frequency(response.frequency_unit), type=along)
-    figure.update_yaxes(title=_amplitude(response, column), type=up)
+    figure.update_yaxes(title=response.amplitude_label(column), type=up)
     said = [f"{dash}: {state}" for state, dash in DASHES.items() if any(state == part[1] for part in parts)]
     said += filter(None, [html.escape(sentence(response.unfinished))])
     title = {"text": "; ".join(said), "font": {"size": 13}, "x": 0.5}
@@ -240,10 +240,6 @@ def _frequency(unit: str) -> str:
     return "Level of the forces" if unit == LEVEL else f"Frequency ({unit})"
 
 
-def _amplitude(response: DrawnResponse, column: int) -> str:
-    return with_unit(f"Amplitude of {response.dofs[column]}", response.length)
-
-
 def _menu(response: DrawnResponse, parts: Sequence[Any], column: int) -> list[Mapping[str, Any]]:
     """A menu of the degrees of freedom; none where there is one."""
     if len(response.dofs) < 2:
@@ -251,7 +247,7 @@ def _menu(response: DrawnResponse, parts: Sequence[Any], column: int) -> list[Ma
     buttons = []
     for number, name in enumerate(response.dofs):
         change = {"y": [_masked(curve, rows, number) for curve, _, rows, _ in parts]}
-        title = {"yaxis.title.text": _amplitude(response, number)}
+        title = {"yaxis.title.text": response.amplitude_label(number)}
         buttons.append({"label": name, "method": "update", "args": [change, title]})
     place = {"x": 0.0, "xanchor": "left", "y": 1.12, "yanchor": "top"}
     return [{"buttons": buttons, "active": column, "direction": "down", **place}]

@@ -7,6 +7,7 @@ from typing import Any
 
 _CURVE, _POINT, _CYCLE, _PHASE = ("curve",), ("curve", "point"), ("cycle",), ("schedule_phase",)
 _DOF, _CONTACT, _PEAK = (*_POINT, "dof"), (*_POINT, "contact"), ("curve", "dof")
+_WORST = ("curve", "sector_dof")
 _TRACKED, _OF_CYCLE = ("track", "tracked"), ("curve", "cycle", "dof")
 _LAYOUT = {
     "dof": ("dof",),
@@ -45,6 +46,12 @@ _LAYOUT = {
     "optimum_number": ("optimum", "varied"),
     **dict.fromkeys(("optimum_peak", "optimum_higher_peak", "optimum_kind"), ("optimum",)),
     **dict.fromkeys(("optimum_frequency", "optimum_stable"), ("optimum", "equal")),
+    "sector_dof": ("sector_dof",),
+    "stiffness_factor": ("curve", "sector"),
+    "envelope": (*_POINT, "sector_dof"),
+    **dict.fromkeys(("worst_amplitude", "worst_frequency", "worst_sector"), _WORST),
+    **dict.fromkeys(("tuned_amplitude", "tuned_frequency", "amplification"), _WORST),
+    **dict.fromkeys(("worst_at_end", "tuned_at_end"), _WORST),
 }
 _TEXTS = {
     "dof",
@@ -57,6 +64,7 @@ _TEXTS = {
     "optimum_kind",
     "data_dof",
     "data_quantity",
+    "sector_dof",
 }
 
 

@@ -178,7 +178,8 @@ def read_loops(path: Path) -> LoopFile:
             raise ValueError("its harmonics are not 1 and others above, one after the other")
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
         motions, amplitude = _motions(data), floats(data["amplitude"])
-    column = greatest_column(response.dofs, amplitude.reshape(-1, len(response.dofs)), response.asked)
+    dofs = response.own_dofs
+    column = greatest_column(dofs, amplitude.reshape(-1, len(dofs)), response.asked)
     shape = (*frequency.shape, len(contacts))
     swept = tuple(curve.parameters for curve in response.curves)
     if states is None:
@@ -187,7 +188,7 @@ def read_loops(path: Path) -> LoopFile:
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
         _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
-        response.dofs, amplitude, column, motions, modal, steady,
+        dofs, amplitude, column, motions, modal, steady,
     )  # fmt: skip
 
 

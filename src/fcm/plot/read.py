@@ -14,8 +14,11 @@ import numpy.typing as npt
 
 from fcm.files import NETCDF, no_file
 from fcm.frozen import Frozen
-from fcm.plot.dof import asked_for, leading_column
+from fcm.plot.blades import ALSO as OF_BLADES
+from fcm.plot.blades import ENVELOPE, Blades, blades_of
+from fcm.plot.dof import asked_for, column_of, greatest_column, leading_column
 from fcm.plot.errors import PlotError
+from fcm.plot.labels import with_unit
 from fcm.plot.layout import check_layout, is_text
 from fcm.plot.measured import NEEDED as MEASURED
 from fcm.plot.measured import OWN as OF_MEASURED
@@ -24,6 +27,7 @@ from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
 from fcm.plot.unfinished import NO_SPAN, Unfinished, unfinished_of
+from fcm.rotational_dofs import unit_of
 from fcm.units import CF_UNIT
 from fcm.unknown_stability import unknown_stability
 
@@ -45,6 +49,7 @@ _ALSO = (
     "fundamental",
     *MEASURED,
     *OF_MEASURED,
+    *OF_BLADES,
 )
 NO_NETCDF = "Unknown file format"  # what the library says of other files
 UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
@@ -80,12 +85,38 @@ class DrawnResponse(Frozen):
         default_factory=Unfinished
     )  # of all curves, those without a point among them
     fitted: tuple[FittedNumber, ...] = ()  # that a fit found
+    blades: Blades | None = None  # of a mistuned ring, whose envelopes are the last columns
 
-    def column(self, dof: str | None) -> int:
-        """The place of a degree of freedom; by default that of `leading_column`."""
+    def column(self, dof: str | None, envelope: bool = True) -> int:
+        """The place of a degree of freedom; by default that of `leading_column`.
+
+        envelope: whether that of a mistuned ring is an envelope over its sectors.
+        """
+        if dof is not None:
+            return column_of(self.dofs, dof)
         none = np.empty((0, len(self.dofs)))
         amplitudes = np.concatenate([none, *(c.amplitude for c in self.curves)])
-        return leading_column(self.dofs, dof, amplitudes, self.asked)
+        own = len(self.own_dofs)
+        if self.blades is None or not envelope:
+            return leading_column(self.own_dofs, None, amplitudes[:, :own], self.asked)
+        return own + greatest_column(self.blades.names, amplitudes[:, own:], self.blades.asked(self.asked))
+
+    def amplitude_label(self, column: int) -> str:
+        """What the amplitudes of a column are, with their unit."""
+        dof, place = self.dofs[column], self.envelope(column)
+        name = f"Amplitude of {dof}"
+        if place is not None and self.blades is not None:
+            name = self.blades.amplitude_label(place)
+        return with_unit(name, unit_of(dof, self.length))
+
+    @property
+    def own_dofs(self) -> tuple[str, ...]:
+        """Degrees of freedom without the envelopes."""
+        return self.dofs if self.blades is None else self.dofs[: -len(self.blades.names)]
+
+    def envelope(self, column: int) -> int | None:
+        """The number of the envelope over sectors that a column has; None where it has none."""
+        return None if self.blades is None else self.blades.place(self.dofs, column)
 
 
 def curves_there(count: int) -> str:
@@ -219,6 +250,9 @@ def _response(dataset: Any) -> DrawnResponse:
     if not dofs:
         raise ValueError("it has no degree of freedom")
     frequency, amplitude = floats(variables["frequency"]), floats(variables["amplitude"])
+    blades = blades_of(variables) if ENVELOPE in variables else None
+    if blades is not None:
+        dofs, amplitude = (*dofs, *blades.names), np.append(amplitude, floats(variables[ENVELOPE]), axis=2)
     free = "modal_amplitude" in variables  # motion, which is neither stable nor a response over a range
     stable, *errors = (
         floats(variables[name]) if name in variables and not free else None
@@ -249,7 +283,7 @@ def _response(dataset: Any) -> DrawnResponse:
     if level is not None or free:  # the range is of frequencies
         unfinished = replace(unfinished, span=NO_SPAN)
     return DrawnResponse(
-        dofs, unit, curves, length, drawn, units, measured, asked, unfinished, fitted_of(dataset)
+        dofs, unit, curves, length, drawn, units, measured, asked, unfinished, fitted_of(dataset), blades
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
@@ -10,10 +10,11 @@ import numpy as np
 
 from fcm.plot.backbone import NAME as BACKBONE
 from fcm.plot.backbone import draw_backbone
+from fcm.plot.blades import draw_blades
 from fcm.plot.curve_names import label_at_peaks, varying
 from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label, with_unit
+from fcm.plot.labels import curve_label, frequency_label
 from fcm.plot.measured import as_measured, draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, names_of_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, wide
@@ -30,7 +31,6 @@ from fcm.plot.style import (
 )
 from fcm.plot.unfinished import mark_unfinished, say_unfinished
 from fcm.plot.window import Window, within
-from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,19 +65,23 @@ def draw_response(
 
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
     motion are drawn over the curves, and a backbone: nonlinear modes. A window is the part of the axis drawn.
+    Of a mistuned ring it is the envelope over its sectors, unless dof is that of one.
     """
-    column = (response if window is None else within(response, window)).column(dof)
+    alone = points is None and backbone is None
+    column = (response if window is None else within(response, window)).column(dof, alone)
     called = ""
-    if points is None and backbone is None:  # which are half peak-to-peak
+    if alone:  # the others are half peak-to-peak
         response, called = as_measured(response, column)
     response = response if window is None else within(response, window)
-    curves = _drawable(response, column, bool(log))
+    numbers, curves = _drawable(response, column, bool(log))
+    envelope, blades = response.envelope(column), response.blades
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
         colours = sequence_colours(len(curves))
         width = _WIDTH if len(curves) <= LAYOUT.bar_names else _THIN
         axes.set_prop_cycle(color=colours)
         lines = [_draw_curve(axes, curve, column, width) for curve in curves]
+        of_blades = {} if envelope is None else draw_blades(axes, response, envelope, numbers, colours)
         others: dict[str, Line2D] = {}
         if points is not None:
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
@@ -100,7 +104,7 @@ def draw_response(
             draw_errors(below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        notes = _notes(axes, curves, column, colours[0], width)
+        notes = of_blades | _notes(axes, curves, column, colours[0], width)
         if backbone is not None:
             notes[BACKBONE] = draw_backbone(axes, backbone, response, column, curves, colours)
         if below is not None:
@@ -108,22 +112,24 @@ def draw_response(
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
         # last: whether there is room at the peaks hangs on how high the axes have become
-        beside = _name_curves(figure, axes, curves, lines, column, response.units)
+        more = [""] * len(curves) if blades is None else blades.labels(envelope, numbers)
+        beside = _name_curves(figure, axes, curves, lines, column, response.units, more)
         if above is not None and beside is not None:
             above.remove()
             name_measured(figure, response.fitted, others, beside)
     return figure
 
 
-def _drawable(response: DrawnResponse, column: int, log: bool) -> list[DrawnCurve]:
-    """The curves that have points of a degree of freedom."""
-    curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
+def _drawable(response: DrawnResponse, column: int, log: bool) -> tuple[list[int], list[DrawnCurve]]:
+    """The curves that have points of a degree of freedom, with their numbers."""
+    numbers = [i for i, one in enumerate(response.curves) if np.isfinite(one.amplitude[:, column]).any()]
+    curves = [response.curves[i] for i in numbers]
     if not curves:
         raise PlotError("the file holds no point of any curve")
     if log and not any((curve.amplitude[:, column] > 0.0).any() for curve in curves):
         name = response.dofs[column]
         raise PlotError(f"{name} does not move, so that its amplitude has no logarithmic axis; try --linear")
-    return curves
+    return numbers, curves
 
 
 def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
@@ -240,15 +246,14 @@ def doubtful(curve: DrawnCurve) -> BoolArray:
     return found
 
 
-def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True) -> str:
+def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True, more: str = "") -> str:
     state = {frozenset({"E"}): " (stuck)", frozenset({"S"}): " (open)"}.get(curve.regimes, "")
-    return (curve_label(curve.parameters, names, units) + state).strip()
+    return f"{curve_label(curve.parameters, names, units)}{state}\n{more}".strip()
 
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
     axes.set_xlabel(frequency_label(response.frequency_unit))
-    dof = response.dofs[column]
-    axes.set_ylabel(with_unit(f"Amplitude of {dof}", unit_of(dof, response.length)), parse_math=False)
+    axes.set_ylabel(response.amplitude_label(column), parse_math=False)
     axes.margins(x=0.0, y=0.07)
     axes.minorticks_on()
     if log:
@@ -264,17 +269,26 @@ def _name_curves(
     drawn: list[Line2D],
     column: int,
     units: Mapping[str, str],
+    more: Sequence[str],
 ) -> Legend | None:
-    """Writes the curves' names at the peaks if there is room, otherwise in a legend beside the axes."""
-    names = [_named(curve, units, names=i == 0) for i, curve in enumerate(curves)]
+    """Writes the curves' names at the peaks if there is room, otherwise in a legend beside the axes.
+
+    more: further text of each
+    """
+    named = enumerate(zip(curves, more, strict=True))
+    names = [_named(curve, units, i == 0, text) for i, (curve, text) in named]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= LAYOUT.bar_names and label_at_peaks(figure, axes, lines, names):
         return None
-    return _legend(figure, curves, drawn, units) if any(names) else None
+    return _legend(figure, curves, drawn, units, more) if any(names) else None
 
 
 def _legend(
-    figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]
+    figure: Figure,
+    curves: list[DrawnCurve],
+    lines: list[Line2D],
+    units: Mapping[str, str],
+    more: Sequence[str],
 ) -> Legend | None:
     """Draws a legend beside the axes; several swept quantities are named once, above their values."""
     several = len(curves[0].parameters) > 1
@@ -286,7 +300,7 @@ def _legend(
         return None
     return figure.legend(
         lines,
-        [_named(curve, units, names=not several) for curve in curves],
+        [_named(curve, units, not several, text) for curve, text in zip(curves, more, strict=True)],
         title=",\n".join(title) if several else None,
         loc="outside right upper",
     )

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fcm.model.scene import Scene
+from fcm.results.condensed_curves import condense
+from fcm.results.curve_summary import at_edge
 from fcm.results.result import Blades, Response
 from fcm.scene.mistuning import factors_of
 
@@ -20,14 +22,17 @@ def with_blades(response: Response, scene: Scene, trace: Callable[[Scene], Respo
     tuned = scene.tuned.in_use()
     names = tuned.reported
     found = trace(tuned)
-    known = {tuple(one.parameters.values()): one.peaks for one in found.curves if one.complete}
+    known = {tuple(one.parameters.values()): one for one in found.curves if one.complete}
     keys = list(found.curves[0].parameters)
     peaks = np.full((len(response.curves), len(names), 2), np.nan)
-    for row, curve in zip(peaks, response.curves, strict=True):
+    at_end = np.zeros(peaks.shape[:2], np.bool_)
+    for row, ends, curve in zip(peaks, at_end, response.curves, strict=True):
         own = known.get(tuple(curve.parameters[key] for key in keys))
         if own is not None:
-            row[:] = [own[name][:2] for name in names]
-    response.blades = Blades(names, _factors(scene), peaks[..., 0], peaks[..., 1])
+            condensed = own.condensed or condense(own)
+            row[:] = [own.peaks[name][:2] for name in names]
+            ends[:] = [at_edge(own, own.peaks[name], condensed) for name in names]
+    response.blades = Blades(names, _factors(scene), peaks[..., 0], peaks[..., 1], at_end)
     return response
 
 

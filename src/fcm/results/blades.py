@@ -11,6 +11,8 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.frozen import Frozen
+from fcm.results.condensed_curves import condense
+from fcm.results.curve_summary import at_edge
 from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, groups, percentiles
@@ -25,6 +27,8 @@ class Worst(Frozen):
     sector: npt.NDArray[np.intp]
     tuned: FloatArray  # peak of the tuned ring; NaN where that is not known
     tuned_frequency: FloatArray
+    at_end: npt.NDArray[np.bool_]  # whether the amplitude is at an end of the range, and no peak
+    tuned_at_end: npt.NDArray[np.bool_]
 
     @property
     def amplification(self) -> FloatArray:
@@ -45,7 +49,12 @@ def worst_of(response: Response) -> Worst:
     amplitude, frequency = (
         np.take_along_axis(each[..., i], sector[..., None], axis=2)[..., 0] for i in range(2)
     )
-    return Worst(amplitude, frequency, sector, blades.tuned, blades.tuned_frequency)
+    every = [(curve, curve.condensed or condense(curve)) for curve in response.curves]
+    ends = np.array([[at_edge(curve, one, brief) for one in curve.peaks.values()] for curve, brief in every])
+    at_end = np.take_along_axis(ends[:, columns], sector[..., None], axis=2)[..., 0]
+    return Worst(
+        amplitude, frequency, sector, blades.tuned, blades.tuned_frequency, at_end, blades.tuned_at_end
+    )
 
 
 def envelope(curve: Curve, columns: npt.NDArray[np.intp]) -> FloatArray:
@@ -80,6 +89,13 @@ def blade_fields(response: Response) -> dict[str, Field]:
         "tuned_frequency": Field(
             of, in_unit(worst.tuned_frequency, unit), {"long_name": "its frequency in the tuned ring"} | at
         ),
+        **{
+            name: Field(of, ends.astype(np.int8), {"long_name": said, "units": "1"})
+            for name, ends, said in (
+                ("worst_at_end", worst.at_end, "1 where worst_amplitude is at an end of the range"),
+                ("tuned_at_end", worst.tuned_at_end, "1 where tuned_amplitude is at an end of the range"),
+            )
+        },
         "amplification": Field(
             of, worst.amplification, {"long_name": "worst_amplitude over tuned_amplitude", "units": "1"}
         ),
@@ -118,6 +134,8 @@ def add_to_summary(response: Response, data: dict[str, Any]) -> None:
                 "tuned_amplitude": float(worst.tuned[i, d]),
                 "tuned_frequency": float(before[i, d]),
                 "amplification": float(worst.amplification[i, d]),
+                "at_edge": bool(worst.at_end[i, d]),
+                "tuned_at_edge": bool(worst.tuned_at_end[i, d]),
             }
             for d, name in enumerate(blades.names)
         }

@@ -150,6 +150,7 @@ class Blades(Frozen):
     factors: FloatArray  # (curve, sector) of the stiffness
     tuned: FloatArray  # (curve, dof) greatest amplitude of the tuned ring; NaN where that is not known
     tuned_frequency: FloatArray  # (curve, dof)
+    tuned_at_end: npt.NDArray[np.bool_]  # (curve, dof) whether that is at an end of the range, and no peak
 
     @property
     def sectors(self) -> int:

@@ -1,0 +1,139 @@
+"""A mistuned ring in pictures: the envelope over its sectors, and the amplification of its worst blade."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.frozen import Frozen
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from fcm.plot.read import DrawnResponse
+
+FloatArray = npt.NDArray[np.float64]
+ENVELOPE = "envelope"
+_OF_CURVE = (
+    "worst_amplitude",
+    "worst_frequency",
+    "worst_sector",
+    "tuned_amplitude",
+    "tuned_frequency",
+    "amplification",
+)
+_ENDS = ("worst_at_end", "tuned_at_end")
+NEEDED = ("sector_dof", "stiffness_factor", *_OF_CURVE, *_ENDS)
+ALSO = (ENVELOPE, *NEEDED)  # read where they are there
+TUNED = "peak of the tuned ring"
+RATIO = "amplification: greatest peak over that"
+EACH = "each sector"
+TUNED_LOOK: dict[str, Any] = {
+    "marker": "D",
+    "markersize": 4.5,
+    "markerfacecolor": "white",
+    "linestyle": "none",
+}
+_GREY = "0.7"
+
+
+class Blades(Frozen):
+    """What a file says of a mistuned ring beside its curves, in its units. All (curve, dof) of a sector."""
+
+    names: tuple[str, ...]  # degrees of freedom of a sector
+    sectors: int
+    amplitude: FloatArray  # greatest of all sectors and points
+    frequency: FloatArray
+    sector: FloatArray  # counted from 0
+    tuned: FloatArray  # peak of the tuned ring, NaN where that is not known
+    tuned_frequency: FloatArray
+    amplification: FloatArray  # NaN where it is not known
+    at_end: FloatArray  # 1 where the amplitude is at an end of the range, and no peak
+    tuned_at_end: FloatArray
+
+    def place(self, dofs: Sequence[str], column: int) -> int | None:
+        """Number among `names` of a column, None of that of one sector; all names are the last columns."""
+        place = column - (len(dofs) - len(self.names))
+        return place if place >= 0 else None
+
+    def asked(self, dofs: Sequence[str]) -> tuple[str, ...]:
+        """Names of which the scene asks for any sector, by all that it asks for."""
+        return tuple(name for name in self.names if any(self._is_of(name, dof) for dof in dofs))
+
+    def _is_of(self, name: str, dof: str) -> bool:
+        from fcm.model.ring import of_sector
+
+        return any(dof == of_sector(name, k) for k in range(self.sectors))
+
+    def columns(self, dofs: Sequence[str], place: int) -> npt.NDArray[np.intp]:
+        """Columns of a degree of freedom in each sector that the file has."""
+        from fcm.model.ring import of_sector
+
+        each = [of_sector(self.names[place], k) for k in range(self.sectors)]
+        return np.array([dofs.index(name) for name in each if name in dofs], dtype=np.intp)
+
+    def label(self, curve: int, place: int) -> str:
+        """The amplification of a curve and the sector it is in; empty where it is not known.
+
+        A greatest amplitude at an end of the range is no peak: of one the amplification is a bound.
+        """
+        ratio = float(self.amplification[curve, place])
+        ends = bool(self.at_end[curve, place]), bool(self.tuned_at_end[curve, place])
+        if not np.isfinite(ratio) or all(ends):
+            return ""
+        bound = "at least " * ends[0] + "at most " * ends[1]
+        return f"amplification {bound}{ratio:.3f}, sector {self.sector[curve, place]:.0f}"
+
+    def amplitude_label(self, place: int) -> str:
+        return f"Greatest amplitude of {self.names[place]} in {self.sectors} sectors"
+
+    def labels(self, place: int | None, curves: Sequence[int]) -> list[str]:
+        """That of each curve, empty of a column that is no envelope."""
+        return ["" if place is None else self.label(curve, place) for curve in curves]
+
+
+def blades_of(variables: Mapping[str, Any]) -> Blades | None:
+    """The blades of the variables of an open file; None of one that is of no mistuned ring."""
+    if not all(name in variables for name in NEEDED):
+        return None
+    from fcm.plot.read import floats
+
+    names = tuple(str(name) for name in np.atleast_1d(variables["sector_dof"][:]))
+    sectors = int(variables["stiffness_factor"].shape[1])
+    return Blades(names, sectors, *(floats(variables[name]) for name in (*_OF_CURVE, *_ENDS)))
+
+
+def draw_blades(
+    axes: Axes, response: DrawnResponse, place: int, numbers: Sequence[int], colours: Sequence[str]
+) -> dict[str, Line2D]:
+    """A diamond at the peak of the tuned ring for each curve; of one curve alone thin lines of its sectors.
+
+    Returned is what stands for them in a legend.
+    """
+    from matplotlib.lines import Line2D
+
+    blades, notes = response.blades, dict[str, Line2D]()
+    assert blades is not None
+    if len(numbers) == 1:
+        curve = response.curves[numbers[0]]
+        for column in blades.columns(response.own_dofs, place).tolist():
+            axes.plot(
+                curve.frequency, curve.amplitude[:, column], color=_GREY, linewidth=0.5, zorder=1,
+                label=f"_{EACH}",
+            )  # fmt: skip
+        notes[EACH] = Line2D([], [], color=_GREY, linewidth=0.5)
+    peaks = {
+        (float(blades.tuned_frequency[number, place]), float(blades.tuned[number, place])): colour
+        for number, colour in zip(numbers, colours, strict=True)
+    }
+    for (at, height), colour in peaks.items():
+        if np.isfinite(at) and np.isfinite(height):
+            own = "black" if len(peaks) == 1 else colour
+            axes.plot([at], [height], color=own, zorder=4, label=f"_{TUNED}", **TUNED_LOOK)
+            notes[TUNED] = Line2D([], [], color="black", **TUNED_LOOK)
+            notes[RATIO] = Line2D([], [], linestyle="none")
+    return notes
