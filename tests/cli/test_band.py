@@ -1,5 +1,6 @@
 """``fcm plot response --band``, and what a run says of random draws."""
 
+import numpy as np
 import pytest
 
 from fcm.plot.band import draw_bands
@@ -46,7 +47,9 @@ def test_without_draws_there_is_no_band(fcm, scene):
 @pytest.mark.parametrize(
     ("span", "said"),
     [
-        ((5.0, 95.0), "median, and 5 to 95 % of 4 draws: too few to bound these, 59 are needed"),
+        ((5.0, 95.0), "median, and least to greatest of 4 draws: too few for 5 and 95 %, which take 20"),
+        ((25.0, 95.0), "median, and 25 % to greatest of 4 draws: too few for 95 %, which take 20"),
+        ((25.0, 75.0), "median, and 25 to 75 % of 4 draws: too few to bound these, 11 are needed"),
         ((50.0, 50.0), "median, and 50 to 50 % of 4 draws: too few to bound these, 5 are needed"),
         ((0.0, 100.0), "median, and 0 to 100 % of 4 draws"),
     ],
@@ -56,3 +59,12 @@ def test_a_band_says_of_how_many_draws_it_is(result, span, said):
     bands = bands_of(drawn.curves, drawn.drawn, 0, span)
     figure = draw_bands(drawn, 0, bands, span, None)
     assert figure.axes[0].get_title(loc="right") == said
+
+
+def test_a_band_of_few_draws_is_their_range(result):
+    """Of four draws 5 and 95 % would be no more than a little less."""
+    drawn = read_response(result)
+    few, whole = (bands_of(drawn.curves, drawn.drawn, 0, span) for span in ((5.0, 95.0), (0.0, 100.0)))
+    for one, other in zip(few, whole, strict=True):
+        assert np.array_equal(one.low, other.low, equal_nan=True)
+        assert np.array_equal(one.high, other.high, equal_nan=True)

@@ -156,15 +156,18 @@ OF_DRAWS = """## Percentiles of random draws with `--json`
 | `curves` | how many draws are complete, and count |
 | `confidence` | of the intervals, 0.9 |
 | `left_out` | the number of draws without a complete curve: the bounds count their peaks as unknown |
+| `curves_beyond` | the least number of draws of which one is beyond a percentile: of fewer that is null |
 | `curves_needed` | the least number of draws with which both ends of the interval of a percentile are known |
 | `peak.DOF.amplitude` | percentiles of the greatest amplitude, by their percentage |
+| `peak.DOF.amplitude_range` | the least and the greatest amplitude |
 | `peak.DOF.interval` | ends of the interval of each; null where draws are too few, or an error is unknown |
 | `peak.DOF.greatest_error` | the greatest of the draws' errors of the peak, relative |
 | `peak.DOF.error_unknown` | the number of draws whose error is unknown |
 | `peak.DOF.frequency` | percentiles of the peak's frequency |
+| `peak.DOF.frequency_range` | the least and the greatest frequency |
 | `peak.DOF.unstable` | share of the draws whose peak is not stable |
 | `peak.DOF.untold` | share of the draws of which that is unknown |
-| `jumps.up`, `jumps.down` | of the first jump: `share`, `untold`, percentiles of its `frequency` |
+| `jumps.up`, `jumps.down` | of the first jump: `share`, `untold`, `frequency`, `frequency_range` |
 | `blades.DOF` | of mistuned rings: percentiles of `amplitude` and `amplification` of the worst blade |
 
 Intervals are of order statistics: [random draws](../howto/sweeps.md#random-draws).

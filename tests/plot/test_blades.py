@@ -65,7 +65,7 @@ def test_the_amplification_and_its_sector_are_named_beside_the_peak_of_the_tuned
     ((at, height),) = diamonds(axes)  # one of both: the tuned ring is the same
     assert height == tuned and at == pytest.approx(221.4, abs=0.1)
     notes = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert notes[:2] == ["peak of the tuned ring", "amplification: greatest peak over that"]
+    assert notes[:2] == ["peak of the tuned ring", "amplification: greatest peak over the tuned ring's"]
 
 
 def test_tuned_rings_that_differ_have_a_diamond_each_and_a_ring_alone_its_sectors(tmp_path_factory):

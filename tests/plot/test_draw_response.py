@@ -251,7 +251,7 @@ def test_the_area_holds_the_largest_error_of_the_table():
     assert set(values[edges[1:] < 1.19]) == {1e-7} and set(values[edges[:-1] > 1.2]) == {1e-5}
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "below: error by harmonics left out",
-        "below: error by the table (largest)",
+        "below: error by the table (greatest)",
     ]  # fmt: skip
 
 
@@ -434,3 +434,40 @@ def test_a_backbone_is_drawn_within_the_axes_of_the_curves():
         )
     with pytest.raises(PlotError, match='the modes have "v", "w"'):
         draw_response(drawn, backbone=replace(modes, dofs=("v", "w")))
+
+
+@pytest.mark.parametrize(("count", "lines"), [(6, 6), (7, 0)])
+def test_the_errors_of_many_curves_are_one_line_the_greatest_of_all(count, lines):
+    """Lines of all were a tangle."""
+    error = 1e-6 * np.linspace(1.0, 5.0, 201)
+    curves = [resonance(9.0, 1.2, float(n), truncation_error=(n + 1) * error) for n in range(count)]
+    figure = draw_response(response(*curves))
+    below = next(axes for axes in figure.axes if axes.get_ylabel() == "Relative error")
+    assert len(below.lines) == lines
+    named = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    together = "below: error by harmonics left out (greatest)"
+    assert (together in named) == (not lines)
+    if not lines:
+        greatest, edges, _ = below.patches[-1].get_data()
+        middle = np.interp(0.5 * (edges[1:] + edges[:-1]), FREQUENCY, count * error)
+        assert (greatest >= middle * (1.0 - 1e-12)).all() and greatest == pytest.approx(middle, rel=0.05)
+        assert below.get_ylim()[1] >= greatest.max()
+
+
+def test_many_random_draws_are_told_apart_by_what_else_was_swept_alone():
+    """A bar had their values, in the order of drawing, as if colours were a scale."""
+    mu = np.random.default_rng(0).normal(0.4, 0.05, 15)
+    curves = [
+        replace(one, parameters={**one.parameters, "contact.shroud.mu": value})
+        for n_0 in (5.0, 8.0)
+        for value in mu.tolist()
+        for one in [resonance(9.0 + value, 1.2, n_0)]
+    ]
+    both = ("contact.shroud.n_0", "contact.shroud.mu")
+    for drawn, colours, names in ((both, 1, []), (both[1:], 2, ["$n_{0}$ = 5", "$n_{0}$ = 8"])):
+        figure = draw_response(replace(response(*curves), drawn=drawn))
+        (axes,) = figure.axes
+        assert len({line.get_color() for line in axes.lines}) == colours
+        assert [text.get_text() for legend in figure.legends for text in legend.get_texts()] == names
+        said = ", ".join({both[0]: "$n_{0}$", both[1]: "$\\mu$"}[key] for key in drawn)
+        assert axes.get_title(loc="right") == f"30 curves, random draws of {said}"

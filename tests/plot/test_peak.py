@@ -242,14 +242,58 @@ def test_a_least_peak_at_an_end_of_the_sweep_is_no_minimum():
 
 def test_random_draws_have_no_best_one():
     """Nobody chooses a draw: the middle of the peaks and their scatter are told, and no ring is drawn."""
-    random = np.random.default_rng(0)
-    some = replace(peaks(n_0=random.normal(10, 3, 50)), drawn=(N_0,))
+    some = draws(50)
     upper, _ = draw_peak(some).axes
     low, middle, high = np.percentile(some.amplitude[:, 0], (5, 50, 95))
     assert title(upper) == (
-        f"random draws of $n_{{0}}$: median {middle:.4g}, 5 to 95 % are {low:.4g} to {high:.4g}"
+        f"50 random draws of $n_{{0}}$:\nmedian {middle:.4g}, 5 to 95 % are {low:.4g} to {high:.4g}"
     )
     assert not any(line.get_markersize() == 7 for line in upper.lines)
+
+
+def draws(count, **others):
+    random = np.random.default_rng(0)
+    return replace(peaks(n_0=random.normal(10, 3, count), **others), drawn=(N_0,))
+
+
+def test_random_draws_of_one_number_are_points_that_no_line_joins():
+    for axes in draw_peak(draws(50)).axes:
+        points = axes.lines[0]
+        assert (points.get_linestyle(), points.get_marker(), len(points.get_xdata())) == ("None", "o", 50)
+
+
+@pytest.mark.parametrize(("count", "percents"), [(20, True), (19, False)])
+def test_of_few_draws_the_extremes_are_told_as_such(count, percents):
+    """With fewer than 20 draws 5 and 95 % are no more than these: none is beyond."""
+    some = draws(count)
+    upper, _ = draw_peak(some).axes
+    own = some.amplitude[:, 0]
+    low, high = np.percentile(own, (5, 95)) if percents else (own.min(), own.max())
+    words = f"5 to 95 % are {low:.4g} to {high:.4g}"
+    if not percents:
+        words = f"all are {low:.4g} to {high:.4g} (5 to 95 % take 20)"
+    assert title(upper).endswith(words)
+    across = [line.get_ydata()[0] for line in upper.lines if line.get_linestyle() == "--"]
+    assert across == pytest.approx([low, high])
+
+
+def test_draws_at_each_value_of_a_sweep_have_a_median_and_a_bar_there():
+    """Their scatter was told over all values of the sweep together, and each draw had a line."""
+    mu = np.tile(np.random.default_rng(0).normal(0.4, 0.05, 30), 2)
+    some = replace(peaks(n_0=np.repeat([10, 50], 30), mu=mu), drawn=(MU,))
+    figure = draw_peak(some)
+    upper = figure.axes[0]
+    assert upper.lines[0].get_linestyle() == "None" and not figure.legends
+    assert title(upper) == "random draws of $\\mu$: medians, and bars of 5 to 95 %"
+    (bars,) = upper.collections
+    for n_0, segment in zip((10, 50), bars.get_segments(), strict=True):
+        own = some.amplitude[some.parameters[N_0] == n_0, 0]
+        assert segment[:, 0].tolist() == [n_0, n_0]
+        assert segment[:, 1] == pytest.approx(np.percentile(own, (5, 95)))
+    figure = draw_peak(some, against=MU)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["$n_{0}$ = 10", "$n_{0}$ = 50"]
+    assert [len(line.get_xdata()) for line in figure.axes[0].lines[:2]] == [30, 30]
+    assert title(figure.axes[0]) == "random draws of $\\mu$"
 
 
 def test_the_least_peak_has_its_unit():

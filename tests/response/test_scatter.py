@@ -82,7 +82,7 @@ def test_percentiles_are_over_the_draws_of_each_given_value(scene, response):
             c.folds[0] for c in curves if c.folds
         ]  # of these curves the first fold is that of an upward sweep
         assert one["jumps"]["up"]["share"] == len(up) / COUNT
-        assert one["jumps"]["up"]["frequency"]["95"] == pytest.approx(np.percentile(up, 95.0))
+        assert one["jumps"]["up"]["frequency"]["75"] == pytest.approx(np.percentile(up, 75.0))
 
 
 def test_the_dataset_holds_them(response):
@@ -91,8 +91,9 @@ def test_the_dataset_holds_them(response):
     data = to_dataset(response)
     assert data.peak_percentile.dims == ("scatter", "percent", "dof")
     one = summary(response)["scatter"][1]
-    assert data.peak_percentile.sel(percent=5.0, dof="u").values[1] == one["peak"]["u"]["amplitude"]["5"]
-    assert data.jump_percentile.values[1, 0, 0] == one["jumps"]["up"]["frequency"]["5"]
+    assert data.peak_percentile.sel(percent=25.0, dof="u").values[1] == one["peak"]["u"]["amplitude"]["25"]
+    assert data.jump_percentile.values[1, 1, 0] == one["jumps"]["up"]["frequency"]["25"]
+    assert np.isnan(data.peak_percentile.sel(percent=5.0, dof="u").values[1])  # of 12 draws
 
 
 def curve_with(stable, tail=()):
@@ -131,14 +132,14 @@ def test_a_first_jump_that_is_not_known_is_none_of_the_percentiles(scatter_of):
     up = scatter_of([curve_with(stable) for stable in given])["jumps"]["up"]
     assert (up["share"], up["untold"]) == (pytest.approx(2 / 6), pytest.approx(2 / 6))
     assert up["frequency"]["50"] == pytest.approx(2.75)
-    assert up["frequency"]["5"] == pytest.approx(2.525)
+    assert up["frequency_range"] == pytest.approx([2.5, 3.0]) and np.isnan(up["frequency"]["25"])
 
 
 def test_a_jump_before_stability_is_unknown_is_no_jump_before(scatter_of):
     """Downwards from 4 the motion is lost at 3, and is not told to be stable from 2 down."""
     (one, other) = ([1, nan_, nan_, 0, 1, 1, 1] for nan_ in (np.nan, 1.0))
     down = scatter_of([curve_with(one), curve_with(other)])["jumps"]["down"]
-    assert (down["share"], down["untold"], down["frequency"]["5"]) == (1.0, 0.0, 3.0)
+    assert (down["share"], down["untold"], down["frequency"]["50"]) == (1.0, 0.0, 3.0)
 
 
 def test_a_jump_that_may_be_a_little_earlier_is_known(scatter_of):
@@ -203,6 +204,11 @@ def test_percentiles_of_peaks_have_bounds_by_errors_and_by_the_number_of_draws(s
     printed = without_nan(summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", peak)}]})
     *_, table = as_table(printed, "rad/s").partition("percentiles of 11 curves")
     rows = [line.split() for line in table.splitlines()]
+    assert ["peak", "u", "1.00000", "-", "3.50000", "6.00000", "8.50000", "-", "11.0000"] in rows
+    assert (
+        "\n- a percentile of too few curves, the least or the greatest of them. It takes 20 for 5 and 95"
+        in table
+    )
     assert ["from", "-", "0.875", "2.62", "5.25", "7.87"] in rows
     assert ["to", "3.38", "6.75", "10.2", "12.4", "-"] in rows
     assert "with 90 % confidence. They count the errors of peaks, 1.2e-01 at most\n" in table

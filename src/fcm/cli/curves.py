@@ -189,25 +189,33 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
         for name, kind in ((f"peak {dof}", "amplitude"), (f"at {unit}", "frequency")):
             peak = found["peak"][dof]
             stays = _of_stable(peak) if kind == "amplitude" else ""
-            rows.append([name, *map(number, peak[kind].values()), stays])
+            rows.append([name, *_spread(peak, kind), stays])
             ends = list(zip(*peak["interval"].values(), strict=True)) if kind == "amplitude" else []
             if any(end is not None for both in ends for end in both):
                 words = zip(("from", "to"), ends, strict=True)
-                rows += [[f"  {word}", *(_outwards(end, word) for end in each), ""] for word, each in words]
-    rows += [
-        [name, *map(number, one["frequency"].values()), _of_how_many(one)] for name, one in jumps.items()
-    ]
+                rows += [
+                    [f"  {word}", "", *(_outwards(end, word) for end in each), "", ""] for word, each in words
+                ]
+    rows += [[name, *_spread(one, "frequency"), _of_how_many(one)] for name, one in jumps.items()]
     for dof, one in found.get("blades", {}).items():
         rows += [
-            [f"worst {dof}", *map(number, one["amplitude"].values()), ""],
-            [f"amplification {dof}", *map(number, one["amplification"].values()), ""],
+            [f"worst {dof}", *_spread(one, "amplitude"), ""],
+            [f"amplification {dof}", *_spread(one, "amplification"), ""],
         ]
     given = ", ".join(f"{key} = {value:.6g}" for key, value in found["parameters"].items())
     head = f"percentiles of {found['curves']} curves{f' with {given}' if given else ''}"
     if not rows:
         return head
-    percents = next(iter(found["jumps"].values()))["frequency"]
-    lines = [head, aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)]
+    beyond = found["curves_beyond"]
+    heads = ["", "least", *(f"{percent} %" for percent in beyond), "greatest", ""]
+    lines = [head, aligned([heads, *rows], left=1)]
+    if any("-" in row[1:-1] for row in rows if not row[0].startswith(" ")):
+        needs = ", ".join(
+            f"{needed} for {low} and {high} %" if low != high else f"{needed} for {low} %"
+            for (low, needed), high in zip(beyond.items(), reversed(beyond), strict=True)
+            if float(low) <= float(high)
+        )
+        lines.append(f"- a percentile of too few curves, the least or the greatest of them. It takes {needs}")
     if found["peak"] and dofs:
         lines.append(
             "each line is in its own order: a peak and a frequency of one column are not of one draw"
@@ -216,6 +224,12 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     if any(one["untold"] for one in jumps.values()):
         lines.append("unknown: stability is not known, and a sweep may jump")
     return "\n".join(lines)
+
+
+def _spread(found: Mapping[str, Any], what: str) -> list[str]:
+    """Cells of a quantity's least, percentiles and greatest."""
+    least, greatest = found[f"{what}_range"]
+    return [number(least), *map(number, found[what].values()), number(greatest)]
 
 
 def _outwards(end: float | None, word: str) -> str:

@@ -49,7 +49,7 @@ def plot() -> None:
 @draws_file(".png", page=True)
 @click.option(
     "--dof", metavar="NAME",
-    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak; of a mistuned ring the envelope over its sectors]",
+    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
 )  # fmt: skip
 @click.option(
     "--log/--linear", default=None,
@@ -91,7 +91,8 @@ def response(
 
     Unstable parts are dashed. Parts of unknown stability are dotted. A cross is where a curve that is not
     complete ends; above the axes stands why. The errors of the curves are drawn below
-    them, where the file has them. A page (.html) has every degree of freedom, and the numbers of the
+    them, where the file has them. Of a mistuned ring the envelope over its sectors is drawn, unless --dof is
+    of one, as tip@3. A page (.html) has every degree of freedom, and the numbers of the
     point under the mouse.
     """
     from fcm.plot import draw_response, read_points, read_response

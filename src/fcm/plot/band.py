@@ -65,13 +65,22 @@ def draw_bands(
 
 def _said(response: DrawnResponse, span: tuple[float, float]) -> str:
     """What the band is, of how many draws, and how many its ends take."""
+    from fcm.results.bands import reached_by
     from fcm.results.quantile_interval import draws_needed
+    from fcm.results.scatter import draws_beyond
 
     draws = Counter(
         tuple((key, value) for key, value in curve.parameters.items() if key not in response.drawn)
         for curve in response.curves
     )
-    count, needed = min(draws.values()), max(map(draws_needed, span))
+    count = min(draws.values())
+    if (reached := reached_by(count, span)) != span:
+        own = " and ".join(f"{end:g}" for end, other in zip(span, reached, strict=True) if end != other)
+        takes = max(draws_beyond(end) for end, other in zip(span, reached, strict=True) if end != other)
+        ends = (f"{reached[0]:g} %" if reached[0] else "least", f"{reached[1]:g} %")
+        to = f"{ends[0]} to {'greatest' if reached[1] == 100.0 else ends[1]}"
+        return f"median, and {to} of {count} draws: too few for {own} %, which take {takes}"
+    needed = max(map(draws_needed, span))
     few = f": too few to bound these, {needed:g} are needed" if count < needed < np.inf else ""
     return f"median, and {span[0]:g} to {span[1]:g} % of {count} draws{few}"
 

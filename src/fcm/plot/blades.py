@@ -9,9 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.frozen import Frozen
+from fcm.plot.style import DOTS, LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
     from fcm.plot.read import DrawnResponse
@@ -30,7 +32,7 @@ _ENDS = ("worst_at_end", "tuned_at_end")
 NEEDED = ("sector_dof", "stiffness_factor", *_OF_CURVE, *_ENDS)
 ALSO = (ENVELOPE, *NEEDED)  # read where they are there
 TUNED = "peak of the tuned ring"
-RATIO = "amplification: greatest peak over that"
+RATIO = "amplification: greatest peak over the tuned ring's"
 EACH = "each sector"
 TUNED_LOOK: dict[str, Any] = {
     "marker": "D",
@@ -38,7 +40,7 @@ TUNED_LOOK: dict[str, Any] = {
     "markerfacecolor": "white",
     "linestyle": "none",
 }
-_GREY = "0.7"
+_GREY, _NOTE = "0.7", "#c03020"
 
 
 class Blades(Frozen):
@@ -76,6 +78,13 @@ class Blades(Frozen):
         each = [of_sector(self.names[place], k) for k in range(self.sectors)]
         return np.array([dofs.index(name) for name in each if name in dofs], dtype=np.intp)
 
+    def tuned_peaks(self, place: int) -> tuple[FloatArray, FloatArray]:
+        """Frequencies and amplitudes (curve,) of the tuned ring's peaks; NaN where the range has none."""
+        peak = self.tuned_at_end[:, place] != 1.0
+        of = (self.tuned_frequency, self.tuned)
+        at, height = (np.where(peak, values[:, place], np.nan) for values in of)
+        return at, height
+
     def label(self, curve: int, place: int) -> str:
         """The amplification of a curve and the sector it is in; empty where it is not known.
 
@@ -110,7 +119,7 @@ def blades_of(variables: Mapping[str, Any]) -> Blades | None:
 def draw_blades(
     axes: Axes, response: DrawnResponse, place: int, numbers: Sequence[int], colours: Sequence[str]
 ) -> dict[str, Line2D]:
-    """A diamond at the peak of the tuned ring for each curve; of one curve alone thin lines of its sectors.
+    """A diamond at the peak of the tuned ring for each curve, and of one curve alone lines of its sectors.
 
     Returned is what stands for them in a legend.
     """
@@ -126,14 +135,41 @@ def draw_blades(
                 label=f"_{EACH}",
             )  # fmt: skip
         notes[EACH] = Line2D([], [], color=_GREY, linewidth=0.5)
+    tuned = np.transpose(blades.tuned_peaks(place))
     peaks = {
-        (float(blades.tuned_frequency[number, place]), float(blades.tuned[number, place])): colour
+        tuple(tuned[number].tolist()): colour
         for number, colour in zip(numbers, colours, strict=True)
+        if np.isfinite(tuned[number]).all()
     }
     for (at, height), colour in peaks.items():
-        if np.isfinite(at) and np.isfinite(height):
-            own = "black" if len(peaks) == 1 else colour
-            axes.plot([at], [height], color=own, zorder=4, label=f"_{TUNED}", **TUNED_LOOK)
-            notes[TUNED] = Line2D([], [], color="black", **TUNED_LOOK)
-            notes[RATIO] = Line2D([], [], linestyle="none")
+        own = "black" if len(peaks) == 1 else colour
+        axes.plot([at], [height], color=own, zorder=4, label=f"_{TUNED}", **TUNED_LOOK)
+    if peaks:
+        notes[TUNED] = Line2D([], [], color="black", **TUNED_LOOK)
+    if any(blades.labels(place, numbers)):
+        notes[RATIO] = Line2D([], [], linestyle="none")
     return notes
+
+
+def draw_tuned_peaks(figure: Figure, axes: Axes, blades: Blades, place: int, swept: FloatArray) -> None:
+    """Beside the peaks of the worst blades those of the tuned ring: diamonds, or a line if it is one ring."""
+    heights = blades.tuned_peaks(place)[1]
+    known = np.isfinite(heights)
+    if not known.any():
+        return
+    if np.unique(heights[known]).size == 1:
+        line = axes.axhline(float(heights[known][0]), color="black", linewidth=0.7, linestyle=DOTS)
+    else:
+        (line,) = axes.plot(swept[known], heights[known], color="black", **TUNED_LOOK)
+    axes.set_ylim(top=max(axes.get_ylim()[1], LAYOUT.headroom * float(heights[known].max())))
+    figure.legend([line], [TUNED], loc="outside lower center")
+
+
+def name_amplification(axes: Axes, blades: Blades, place: int) -> FloatArray:
+    """The amplifications (curve,) for a panel, and its labels; NaN where they are bounds alone."""
+    axes.set_ylabel("Amplification (–)")
+    bound = (blades.at_end[:, place] == 1.0) | (blades.tuned_at_end[:, place] == 1.0)
+    if bound.any():
+        said = f"left out: {int(bound.sum())} of {bound.size}, of greatest amplitudes at an end of the range"
+        axes.set_title(said, loc="right", fontsize=8, color=_NOTE)
+    return np.where(bound, np.nan, blades.amplification[:, place])

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SHARES = (3.1, 1.0)  # heights of the curves and of the panel
 RANGE = (1e-8, 1.0)  # of errors; the same in every picture, so that pictures can be compared
-_GREY = "0.8"
+_GREY, _WIDTH = "0.8", 1.0
 
 
 def has_errors(curves: Sequence[DrawnCurve]) -> bool:
@@ -27,16 +27,31 @@ def has_errors(curves: Sequence[DrawnCurve]) -> bool:
 
 
 def draw_errors(axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float) -> None:
-    """Lines for what the single harmonic leaves out of each curve; an area for the table, of all together."""
-    edges, table = _largest(curves)
+    """Lines for what is left out of each curve by harmonics; an area for the table, of all together.
+
+    Of many curves there is one line: the greatest error of any.
+    """
+    edges, table = _largest(curves, [curve.table_error for curve in curves])
     axes.stairs(
         np.maximum(table, LAYOUT.least_error), edges, baseline=LAYOUT.least_error, fill=True, color=_GREY
     )
+    if _together(curves):
+        greatest = _largest(curves, [curve.truncation_error for curve in curves])[1]
+        axes.stairs(
+            np.maximum(greatest, LAYOUT.least_error), edges, baseline=None, color="black", linewidth=_WIDTH
+        )
+        _finish(axes, float(greatest.max()))
+        return
     for curve, colour in zip(curves, colours, strict=True):
         if curve.truncation_error is not None:
             error = np.maximum(curve.truncation_error, LAYOUT.least_error)
             axes.plot(curve.frequency, error, color=colour, linewidth=width)
     _finish(axes)
+
+
+def _together(curves: Sequence[DrawnCurve]) -> bool:
+    """Whether lines of all curves would be a tangle."""
+    return len(curves) > LAYOUT.error_lines
 
 
 def name_errors(
@@ -51,17 +66,23 @@ def name_errors(
     from matplotlib.patches import Patch
 
     names: dict[str, Line2D | Patch] = {**notes}
-    names["below: error by harmonics left out"] = Line2D([], [], color=colours[0], linewidth=width)
-    if (_largest(curves)[1] > 0.0).any():
-        of_all = " (largest)" if len(curves) > 1 else ""
+    together = " (greatest)" if _together(curves) else ""
+    names[f"below: error by harmonics left out{together}"] = Line2D(
+        [], [], color="black" if together else colours[0], linewidth=_WIDTH if together else width
+    )
+    if (_largest(curves, [curve.table_error for curve in curves])[1] > 0.0).any():
+        of_all = " (greatest)" if len(curves) > 1 else ""
         names[f"below: error by the table{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
 
 
-def _finish(axes: Axes) -> None:
+def _finish(axes: Axes, highest: float = 0.0) -> None:
+    """highest: of what is no line."""
     from matplotlib.ticker import LogLocator, NullLocator
 
-    top = max([RANGE[1], *(float(np.nanmax(line.get_ydata(), initial=0.0)) for line in axes.get_lines())])
+    top = max(
+        [RANGE[1], highest, *(float(np.nanmax(line.get_ydata(), initial=0.0)) for line in axes.get_lines())]
+    )
     axes.margins(x=0.0)
     axes.set_yscale("log")
     axes.set_ylim(RANGE[0], top)
@@ -70,15 +91,17 @@ def _finish(axes: Axes) -> None:
     axes.set_ylabel("Relative error")
 
 
-def _largest(curves: Sequence[DrawnCurve]) -> tuple[FloatArray, FloatArray]:
-    """Edges of equal bins over the frequencies, and the largest error by the table in each, of any curve."""
+def _largest(
+    curves: Sequence[DrawnCurve], errors: Sequence[FloatArray | None]
+) -> tuple[FloatArray, FloatArray]:
+    """Edges of equal bins over the frequencies, and the greatest error in each, of any curve."""
     edges = (np.geomspace if wide(curves) else np.linspace)(*ends(curves), LAYOUT.error_bins + 1)
     largest = np.zeros(LAYOUT.error_bins)
-    for curve in curves:
-        if curve.table_error is None:
+    for curve, own in zip(curves, errors, strict=True):
+        if own is None:
             continue
         # 0 * frequency: a piece that leads to another branch has none
-        known = curve.table_error + 0.0 * curve.frequency
+        known = own + 0.0 * curve.frequency
         error = np.nan_to_num(np.maximum(known[:-1], known[1:]))
         # the bins that each piece of the curve passes through
         bins = np.clip(np.searchsorted(edges, curve.frequency, side="right") - 1, 0, LAYOUT.error_bins - 1)

@@ -11,7 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.frozen import Frozen
-from fcm.plot.dof import asked_for, leading_column
+from fcm.plot.blades import ALSO as OF_BLADES
+from fcm.plot.blades import Blades, blades_of, draw_tuned_peaks, name_amplification
+from fcm.plot.dof import asked_for, greatest_column, leading_column
+from fcm.plot.draws import draw_scatter, say_scatter
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
 from fcm.plot.mode import Resonance, resonances_of
@@ -30,7 +33,8 @@ IntArray = npt.NDArray[np.intp]
 
 _NEEDED = ("dof", "peak_amplitude", "peak_frequency", "complete")
 _MARK = "#c03020"
-_WHOLE = ("cyclic.engine_order",)  # whole numbers, between which there is nothing
+# whole numbers, between which there is nothing
+_WHOLE = ("cyclic.engine_order", "cyclic.mistuning.draw")
 
 
 class Peaks(Frozen):
@@ -49,29 +53,71 @@ class Peaks(Frozen):
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     damping: FloatArray | None = None  # (curve,) ratio, of the resonances of nonlinear modes
     at_end: BoolArray | None = None  # (curve, dof) whether it is at an end of the range; None: none is
+    blades: Blades | None = None  # of a mistuned ring, whose worst sectors are the last columns
+
+    @property
+    def random(self) -> tuple[str, ...]:
+        """Swept keys whose values are random draws."""
+        return tuple(key for key in self.parameters if key in self.drawn)
+
+    def column(self, dof: str | None) -> int:
+        """The place of a degree of freedom; by default that of `leading_column`, or of the worst blade."""
+        heights = self.amplitude[self.complete]
+        if dof is not None or self.blades is None:
+            return leading_column(self.dofs, dof, heights, self.asked)
+        own = len(self.dofs) - len(self.blades.names)
+        return own + greatest_column(self.blades.names, heights[:, own:], self.blades.asked(self.asked))
+
+    def worst(self, column: int) -> int | None:
+        """The number of the blades' degree of freedom that a column is of; None of that of one sector."""
+        return None if self.blades is None else self.blades.place(self.dofs, column)
 
 
 @apart
 def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED, ("peak_stable", "peak_at_end")) as data:
+    with opened(path, "a response file", _NEEDED, ("peak_stable", "peak_at_end", *OF_BLADES)) as data:
         variables = data.variables
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
         swept, asked = swept_values(variables), asked_for(getattr(data, "output", ""), dofs)
         units, drawn = swept_units(variables, swept), drawn_keys(variables, swept)
         if "damping_ratio" in variables:
-            found = resonances_of(data)
+            resonances = resonances_of(data)
             none = np.zeros((0, len(dofs)))
             whole = np.zeros(0, np.bool_)
             told = Peaks(dofs, str(unit), swept, none, none, whole, str(length), None, units, asked, drawn)
-            return _of_modes(told, found, path)
+            return _of_modes(told, resonances, path)
         amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
         stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
         at_end = floats(variables["peak_at_end"]) == 1 if "peak_at_end" in variables else None
-    return Peaks(
+        blades = blades_of(variables)
+    found = Peaks(
         dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked, drawn,
         at_end=at_end,
+    )  # fmt: skip
+    return found if blades is None else _with_worst(found, blades)
+
+
+def _with_worst(peaks: Peaks, blades: Blades) -> Peaks:
+    """The peaks with those of the worst blade of each curve as further columns."""
+    from fcm.model.ring import of_sector
+
+    place = {dof: column for column, dof in enumerate(peaks.dofs)}
+    columns = np.array(
+        [
+            [place[of_sector(name, int(k))] for name, k in zip(blades.names, row, strict=True)]
+            for row in np.nan_to_num(blades.sector)
+        ]
+    )
+
+    def more(values: FloatArray) -> FloatArray:
+        return np.append(values, np.take_along_axis(values, columns, axis=1), axis=1)
+
+    return replace(
+        peaks, dofs=(*peaks.dofs, *blades.names), amplitude=more(peaks.amplitude), blades=blades,
+        frequency=more(peaks.frequency), stable=None if peaks.stable is None else more(peaks.stable),
+        at_end=None if peaks.at_end is None else more(peaks.at_end.astype(float)) == 1.0,
     )  # fmt: skip
 
 
@@ -103,27 +149,36 @@ def _of_modes(told: Peaks, found: Sequence[Sequence[Resonance]], path: Path) -> 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
     """The figure of one degree of freedom (by default see `leading_column`) against one swept quantity, by
     default the first."""
-    column = leading_column(peaks.dofs, dof, peaks.amplitude[peaks.complete], peaks.asked)
+    column = peaks.column(dof)
     key = _key(peaks, against)
     known = np.isfinite(peaks.amplitude[:, column]) & peaks.complete
     if not known.any():
         raise PlotError("the file holds no complete curve")
     lines = _lines(peaks, key, known)
     with house_style():
-        figure = new_figure(LAYOUT.width, (1.3 if peaks.damping is None else 1.6) * LAYOUT.height)
-        shares = (3, 2) if peaks.damping is None else (3, 2, 2)
+        worst = peaks.worst(column)
+        further = peaks.damping is not None or worst is not None
+        figure = new_figure(LAYOUT.width, (1.6 if further else 1.3) * LAYOUT.height)
+        shares = (3, 2, 2) if further else (3, 2)
         panels = figure.subplots(len(shares), 1, sharex=True, height_ratios=shares)
         upper, lower = panels[:2]
-        for axes, values in ((upper, peaks.amplitude), (lower, peaks.frequency)):
-            _draw(axes, peaks.parameters[key], values[:, column], known, lines, key not in _WHOLE)
+        joined = key not in _WHOLE and not peaks.random
+        drawn = [(upper, peaks.amplitude[:, column]), (lower, peaks.frequency[:, column])]
         if peaks.damping is not None:
-            _draw(panels[2], peaks.parameters[key], 100.0 * peaks.damping, known, lines, key not in _WHOLE)
+            drawn.append((panels[2], 100.0 * peaks.damping))
             panels[2].set_ylabel("Damping ratio (%)")
+        elif worst is not None and peaks.blades is not None:
+            drawn.append((panels[2], name_amplification(panels[2], peaks.blades, worst)))
+        for axes, values in drawn:
+            _draw(axes, peaks.parameters[key], values, known, lines, joined)
         _finish_axes(panels, peaks, key, column, known)
         if len(lines) > 1:
             _name_lines(figure, upper, peaks, _others(peaks, key, known), lines)
-        if set(peaks.drawn) & set(peaks.parameters):
-            _say_scatter(upper, peaks, column, known)
+        if worst is not None and peaks.blades is not None:
+            draw_tuned_peaks(figure, upper, peaks.blades, worst, peaks.parameters[key])
+        if peaks.random:
+            draw_scatter(drawn, peaks, key, known)
+            say_scatter(upper, peaks, key, column, known)
         else:
             _mark_least(panels, peaks, key, column, known)
         _mark_unstable((upper, lower), peaks, key, column, known)
@@ -159,7 +214,8 @@ def _lines(peaks: Peaks, key: str, known: BoolArray) -> list[IntArray]:
 
 
 def _others(peaks: Peaks, key: str, known: BoolArray) -> list[str]:
-    """The other swept keys, without those that rise or fall with this one, as paired ones do."""
+    """The other swept keys, without those that rise or fall with this one, as paired ones do, and without
+    random draws, between which nothing is joined."""
     x = peaks.parameters[key][known]
     order = np.argsort(x, kind="stable")
 
@@ -167,7 +223,8 @@ def _others(peaks: Peaks, key: str, known: BoolArray) -> list[str]:
         rises = np.sign(np.diff(values[known][order]))
         return bool(rises.size and np.diff(x[order]).all() and rises[0] and (rises == rises[0]).all())
 
-    return [name for name, values in peaks.parameters.items() if name != key and not in_step(values)]
+    given = {name: values for name, values in peaks.parameters.items() if name not in peaks.random}
+    return [name for name, values in given.items() if name != key and not in_step(values)]
 
 
 def _draw(
@@ -182,7 +239,8 @@ def _draw(
             mark = "o" if line.size <= LAYOUT.marked_points else ""
             axes.plot(x[line], y[line], color=colour, linewidth=1.1, marker=mark, markersize=2.5)
         else:
-            axes.plot(x[line], y[line], "o", color=colour, markersize=4.0)
+            size = 4.0 if line.size <= LAYOUT.marked_points else 2.0
+            axes.plot(x[line], y[line], "o", color=colour, markersize=size, markeredgewidth=0.0)
 
 
 def _finish_axes(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
@@ -195,7 +253,11 @@ def _finish_axes(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kn
     (upper, lower), last = panels[:2], panels[-1]
     last.set_xlabel(name, parse_math=symbol != key)
     dof, what = peaks.dofs[column], "Peak" if peaks.damping is None else "Resonance"
-    upper.set_ylabel(with_unit(f"{what} amplitude of {dof}", unit_of(dof, peaks.length)), parse_math=False)
+    called = f"{what} amplitude of {dof}"
+    if peaks.worst(column) is not None and peaks.blades is not None:
+        called = f"Greatest peak of {dof} in {peaks.blades.sectors} sectors"
+    called = with_unit(called, unit_of(dof, peaks.length))
+    upper.set_ylabel(called, parse_math=False)
     lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", f"{what} frequency"))
     if peaks.damping is not None:
         top = float(np.nanmax(100.0 * peaks.damping[known]))
@@ -255,22 +317,6 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
         (symbol,) = symbols([key])
         said += f"\nan end of the sweep of {symbol}: less may be beyond, or before the next value"
     panels[0].set_title(said, loc="right", fontsize=8, color=_MARK)
-
-
-def _say_scatter(axes: Axes, peaks: Peaks, column: int, known: BoolArray) -> None:
-    """Writes the median and the scatter of random draws, which nobody chooses."""
-    from fcm.results.scatter import PERCENTS, percentiles  # and all that makes results
-
-    each = dict(zip(PERCENTS, percentiles(peaks.amplitude[known, column : column + 1])[:, 0], strict=True))
-    low, middle, high = (each[percent] for percent in (5.0, 50.0, 95.0))
-    own = unit_of(peaks.dofs[column], peaks.length)
-    names = ", ".join(symbols(key for key in peaks.parameters if key in peaks.drawn))
-    said = (
-        f"random draws of {names}: median {middle:.4g}, 5 to 95 % are {low:.4g} to {high:.4g} {own}".rstrip()
-    )
-    axes.set_title(said, loc="right", fontsize=8, color=_MARK)
-    for value, style in ((middle, "-"), (low, "--"), (high, "--")):
-        axes.axhline(float(value), color=_MARK, linewidth=0.6, linestyle=style, zorder=0)
 
 
 def _say_left_out(axes: Axes, peaks: Peaks) -> None:

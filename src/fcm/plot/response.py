@@ -14,7 +14,7 @@ from fcm.plot.blades import draw_blades
 from fcm.plot.curve_names import label_at_peaks, varying
 from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label
+from fcm.plot.labels import curve_label, frequency_label, symbols
 from fcm.plot.measured import as_measured, draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, names_of_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, wide
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
 
+DRAWS = "#31688e"  # of random draws, which need no names
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
 _LINE: LineStyle = "-"
@@ -77,7 +78,8 @@ def draw_response(
     envelope, blades = response.envelope(column), response.blades
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
-        colours = sequence_colours(len(curves))
+        draws = _draws(response, curves)
+        colours = _colours_of_draws(draws) if draws else sequence_colours(len(curves))
         width = _WIDTH if len(curves) <= LAYOUT.bar_names else _THIN
         axes.set_prop_cycle(color=colours)
         lines = [_draw_curve(axes, curve, column, width) for curve in curves]
@@ -112,6 +114,9 @@ def draw_response(
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
         # last: whether there is room at the peaks hangs on how high the axes have become
+        if draws:
+            _name_draws(figure, axes, response, draws, lines)
+            return figure
         more = [""] * len(curves) if blades is None else blades.labels(envelope, numbers)
         beside = _name_curves(figure, axes, curves, lines, column, response.units, more)
         if above is not None and beside is not None:
@@ -130,6 +135,36 @@ def _drawable(response: DrawnResponse, column: int, log: bool) -> tuple[list[int
         name = response.dofs[column]
         raise PlotError(f"{name} does not move, so that its amplitude has no logarithmic axis; try --linear")
     return numbers, curves
+
+
+def _draws(response: DrawnResponse, curves: list[DrawnCurve]) -> list[DrawnCurve]:
+    """The curves without what was drawn at random, if they are so many that names of each would tell nothing;
+    else none."""
+    if len(curves) <= LAYOUT.bar_names or not set(curves[0].parameters) & set(response.drawn):
+        return []
+    kept = [{k: v for k, v in one.parameters.items() if k not in response.drawn} for one in curves]
+    return [replace(curve, parameters=one) for curve, one in zip(curves, kept, strict=True)]
+
+
+def _colours_of_draws(draws: Sequence[DrawnCurve]) -> list[str]:
+    """A colour for all draws with the same other values."""
+    groups = list(dict.fromkeys(tuple(one.parameters.values()) for one in draws))
+    colours = [DRAWS] if len(groups) == 1 else sequence_colours(len(groups))
+    return [colours[groups.index(tuple(one.parameters.values()))] for one in draws]
+
+
+def _name_draws(
+    figure: Figure, axes: Axes, response: DrawnResponse, draws: Sequence[DrawnCurve], lines: Sequence[Line2D]
+) -> None:
+    """Says what was drawn, above the axes, and names the other values that were swept beside them."""
+    first = {tuple(one.parameters.values()): i for i, one in reversed(list(enumerate(draws)))}
+    places = sorted(first.values())
+    names = ", ".join(symbols(key for key in response.curves[0].parameters if key in response.drawn))
+    each = f"{len(draws)} curves, random draws of {names}"
+    axes.set_title(each, loc="right", fontsize=8)
+    if len(places) > 1:
+        more = [""] * len(places)
+        _legend(figure, [draws[i] for i in places], [lines[i] for i in places], response.units, more)
 
 
 def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:

@@ -76,6 +76,7 @@ class Layout(Frozen):
     mark_steep: float = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
     tick: float = 3.5  # [point] length of the ticks inside the frame
     error_bins: int = 120  # over the frequencies
+    error_lines: int = 6  # errors of more curves than this are one line, the greatest of all
     least_error: float = 1e-30  # drawn in the place of 0, far below the panel
     history_panels: int = 6  # one for each curve: more do not fit a page
     history_cycles: int = 60  # drawn as a line; more would be a solid area

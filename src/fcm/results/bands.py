@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.results.options import RESULTS
+from fcm.results.scatter import draws_beyond
 
 
 class ReadCurve(Protocol):
@@ -30,7 +31,10 @@ class ReadCurve(Protocol):
 
 
 class Band(Frozen):
-    """Percentile band of the curves that differ only in drawn numbers; NaN where none of them reaches."""
+    """Percentile band of the curves that differ only in drawn numbers; NaN where none of them reaches.
+
+    Of too few draws for a percentage it goes to their least, or to their greatest.
+    """
 
     parameters: dict[str, float]  # the swept values that are not drawn
     frequency: FloatArray  # (place,)
@@ -97,5 +101,19 @@ def _band(
     stack = np.array(values)
     known = np.isfinite(stack).any(axis=0)
     found = np.full((3, places.size), np.nan)
-    found[:, known] = np.nanpercentile(stack[:, known], (span[0], 50.0, span[1]), axis=0)
+    reached = reached_by(len(values), span)
+    found[:, known] = np.nanpercentile(stack[:, known], (reached[0], 50.0, reached[1]), axis=0)
     return Band(parameters, places, *found)
+
+
+def reached_by(count: int, span: tuple[float, float]) -> tuple[float, float]:
+    """The percentages that a band of so many draws has: 0 or 100 where they are too few for one.
+
+    >>> reached_by(19, (5.0, 95.0)), reached_by(20, (5.0, 95.0)), reached_by(3, (0.0, 60.0))
+    ((0.0, 100.0), (5.0, 95.0), (0.0, 60.0))
+    """
+    low, high = (
+        end if 0.0 < end < 100.0 and count >= draws_beyond(end) else (0.0 if end <= 50.0 else 100.0)
+        for end in span
+    )
+    return low, high

@@ -15,7 +15,7 @@ from fcm.results.condensed_curves import condense
 from fcm.results.curve_summary import at_edge
 from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve, Response
-from fcm.results.scatter import PERCENTS, groups, percentiles
+from fcm.results.scatter import PERCENTS, groups, percentiles, ranges
 from fcm.units import CF_UNIT, in_unit
 
 
@@ -141,13 +141,13 @@ def add_to_summary(response: Response, data: dict[str, Any]) -> None:
         }
     for one, (_, places) in zip(data.get("scatter", ()), groups(response), strict=True):
         counted = _counted(response, places)
-        each = [percentiles(values[counted]) for values in (worst.amplitude, worst.amplification)]
+        both = {"amplitude": worst.amplitude[counted], "amplification": worst.amplification[counted]}
+        each = {key: (percentiles(values), ranges(values)) for key, values in both.items()}
         one["blades"] = {
             name: {
-                key: {
-                    f"{percent:g}": float(value) for percent, value in zip(PERCENTS, rows[:, d], strict=True)
-                }
-                for key, rows in zip(("amplitude", "amplification"), each, strict=True)
+                key: {f"{percent:g}": float(x) for percent, x in zip(PERCENTS, rows[:, d], strict=True)}
+                for key, (rows, _) in each.items()
             }
+            | {f"{key}_range": ends[:, d].tolist() for key, (_, ends) in each.items()}
             for d, name in enumerate(blades.names)
         }

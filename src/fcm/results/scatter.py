@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,6 +19,7 @@ from fcm.results.result import Curve, Response
 from fcm.units import in_unit
 
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
+OUTER = (PERCENTS[0], PERCENTS[-1])
 SWEEPS = ("up", "down")  # directions of a slow sweep of the frequency
 NONE = np.inf  # the frequency of a jump that does not occur
 
@@ -27,7 +29,8 @@ class Scatter(Frozen):
 
     Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves
     that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is unknown,
-    that is not known: the share of such curves, too. The interval of a percentile of peaks is that of all
+    that is not known: the share of such curves, too. A percentile is NaN of fewer curves than
+    `draws_beyond` says: it would be an extreme. The interval of a percentile of peaks is that of all
     possible draws, see `fcm.results.quantile_interval`.
     """
 
@@ -40,6 +43,9 @@ class Scatter(Frozen):
     error_unknown: npt.NDArray[np.intp]  # (dof,) number of the curves whose peak has an unknown error
     frequency: FloatArray  # (percent, dof)
     jump: FloatArray  # (percent, sweep); NaN where no curve jumps
+    peak_range: FloatArray  # (end, dof): the least and the greatest
+    frequency_range: FloatArray  # (end, dof)
+    jump_range: FloatArray  # (end, sweep)
     jumping: FloatArray  # (sweep,)
     unknown: FloatArray  # (sweep,)
     peak_unstable: FloatArray  # (dof,) share of the curves whose peak is not stable
@@ -86,7 +92,8 @@ def _of(parameters: dict[str, float], curves: Sequence[Curve], draws: int, dofs:
         parameters, len(curves), left_out, percentiles(heights),
         np.stack(bounds, axis=1), np.fmax.reduce(np.where(moving, errors, np.nan), axis=0),
         (moving & np.isnan(errors)).sum(axis=0), percentiles(frequencies),
-        percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
+        percentiles(jumps), ranges(heights), ranges(frequencies), ranges(jumps),
+        np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
         (stable == 0.0).mean(axis=0), np.isnan(stable).mean(axis=0),
     )  # fmt: skip
 
@@ -112,14 +119,57 @@ def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_toler
     return ahead * first if known else np.nan
 
 
+def draws_beyond(percent: float) -> int:
+    """Least number of draws of which one lies beyond a percentile; of fewer it is no more than an extreme.
+
+    >>> [draws_beyond(percent) for percent in PERCENTS]
+    [20, 4, 2, 4, 20]
+    """
+    return math.ceil(100.0 / min(percent, 100.0 - percent))
+
+
 def percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
-    """Percentiles (percent, column) of each column, ignoring NaN."""
+    """Percentiles (percent, column) of each column, ignoring NaN; NaN where there are too few values.
+
+    >>> percentiles(np.arange(5.0)[:, None]).T.tolist()
+    [[nan, 1.0, 2.0, 3.0, nan]]
+    """
     out = np.full((len(PERCENTS), values.shape[1]), np.nan)
     for column, own in enumerate(values.T):
         known = own[np.isfinite(own)]
-        if known.size:
-            out[:, column] = np.percentile(known, PERCENTS)
+        enough = [known.size >= draws_beyond(percent) for percent in PERCENTS]
+        if any(enough):
+            out[enough, column] = np.percentile(known, np.array(PERCENTS)[enough])
     return out
+
+
+def ranges(values: npt.NDArray[np.float64]) -> FloatArray:
+    """The least and the greatest (2, column) of each column, ignoring NaN and infinity."""
+    known = np.where(np.isfinite(values), values, np.nan)
+    return np.stack((np.fmin.reduce(known, axis=0), np.fmax.reduce(known, axis=0)))
+
+
+class Spread(Frozen):
+    """The middle of some draws, and how far they scatter."""
+
+    count: int
+    low: float
+    median: float
+    high: float
+    percents: bool  # whether the ends are the outer of `PERCENTS`; else they are the extremes
+
+
+def spread_of(values: FloatArray) -> Spread:
+    """The spread of values (draw,), ignoring NaN: by percentiles, or of few draws from end to end.
+
+    >>> spread_of(np.arange(3.0))
+    Spread(count=3, low=0.0, median=1.0, high=2.0, percents=False)
+    """
+    known = values[np.isfinite(values)]
+    enough = known.size >= max(map(draws_beyond, OUTER))
+    low, high = OUTER if enough else (0.0, 100.0)
+    ends = np.percentile(known, (low, 50.0, high)) if known.size else np.full(3, np.nan)
+    return Spread(known.size, float(ends[0]), float(ends[1]), float(ends[2]), enough)
 
 
 def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
@@ -132,19 +182,23 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
         return {f"{percent:g}": pair.tolist() for percent, pair in zip(PERCENTS, values, strict=True)}
 
     frequency, jump = in_unit(one.frequency, unit), in_unit(one.jump, unit)
+    reach, jumped = in_unit(one.frequency_range, unit), in_unit(one.jump_range, unit)
     return {
         "parameters": one.parameters,
         "curves": one.curves,
         "left_out": one.left_out,
         "confidence": RESULTS.draws.confidence,
+        "curves_beyond": {f"{percent:g}": draws_beyond(percent) for percent in PERCENTS},
         "curves_needed": {f"{percent:g}": draws_needed(percent) for percent in PERCENTS},
         "peak": {
             dof: {
                 "amplitude": by_percent(one.peak[:, d]),
+                "amplitude_range": one.peak_range[:, d].tolist(),
                 "interval": ends(one.interval[:, d]),
                 "greatest_error": float(one.greatest_error[d]),
                 "error_unknown": int(one.error_unknown[d]),
                 "frequency": by_percent(frequency[:, d]),
+                "frequency_range": reach[:, d].tolist(),
                 "unstable": float(one.peak_unstable[d]),
                 "untold": float(one.peak_unknown[d]),
             }
@@ -156,6 +210,7 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
                 "share": float(one.jumping[i]),
                 "untold": float(one.unknown[i]),
                 "frequency": by_percent(jump[:, i]),
+                "frequency_range": jumped[:, i].tolist(),
             }
             for i, sweep in enumerate(SWEEPS)
         },
