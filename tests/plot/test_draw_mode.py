@@ -1,6 +1,7 @@
 """Pictures of nonlinear modes: how many lines are named, and where the greatest damping is marked."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from matplotlib.text import Text
 from tests.program import called
 
 from fcm.plot import draw_response, read_response
+from fcm.plot.error_panel import RANGE
 from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes, read_modes
 from fcm.plot.unfinished import Unfinished
 
@@ -179,3 +181,50 @@ def test_a_mode_that_stopped_early_says_so_and_where():
     (cross,) = (line for line in upper.lines if line.get_marker() == "x")
     assert cross.get_xdata().tolist() == [AMPLITUDE[-1]]
     assert upper.get_title(loc="left") == "NOT COMPLETE: stopped at 10"
+
+
+def legend_of(figure):
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def test_marks_of_a_mode_are_named_and_resonances_are_said_to_be_estimates():
+    """Diamonds and rings had no names, and the errors drawn are not those of the diamonds."""
+    damping, error = 0.3 - 0.01 * np.abs(np.arange(41) - 20.0), np.full(41, 0.02)
+    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, damping, error, ((4.0, 2.0, 9.06),))
+    marks = ["greatest damping", "below: error by harmonics left out"]
+    assert legend_of(draw_modes(DrawnModes("", "Hz", (one,)))) == [
+        "resonance with the scene's forces, an estimate as if the mode alone answered",
+        *marks,
+    ]
+    assert legend_of(draw_modes(DrawnModes("", "Hz", (replace(one, resonances=()),)))) == marks
+    flat = replace(one, resonances=(), damping=np.full(41, 0.3), error=np.zeros(0))
+    assert legend_of(draw_modes(DrawnModes("", "Hz", (flat,)))) == []
+
+
+def test_the_axis_says_what_a_modal_amplitude_means(tmp_path):
+    path = tmp_path / "beam.nc"
+    done = called("respond", "beam", "--mode", 1, "--level", "1e-6:1e-5", "--harmonics", 1, "-o", path)
+    read = read_modes(path)
+    told = re.search(r"w15 ([\d.]+) m", done.out)[1]
+    of_w15 = f"(1 means {float(told):.3g} m of w15, at the least amplitude)"
+    assert draw_modes(read).axes[-1].get_xlabel() == f"Modal amplitude, of the mode of mass 1\n{of_w15}"
+    several = replace(read, modes=read.modes * 2)
+    assert draw_modes(several).axes[-1].get_xlabel() == "Modal amplitude, of the mode of mass 1"
+
+
+@pytest.mark.parametrize(("count", "lines"), [(6, 6), (7, 0)])
+def test_the_errors_of_many_modes_are_one_line_the_greatest_of_all(count, lines):
+    error = np.full(41, np.nan)
+    error[[3, 4, 9]] = 0.01  # the last without a neighbour
+    many = [
+        DrawnMode({"contact.a.n_0": n}, np.full(41, 10.0), AMPLITUDE, np.full(41, 0.3), (n + 1) * error)
+        for n in range(count)
+    ]
+    figure = draw_modes(DrawnModes("", "Hz", tuple(many)))
+    below = figure.axes[2]
+    assert len(below.lines) == lines
+    if not lines:
+        greatest, edges, _ = below.patches[-1].get_data()
+        for k in (3, 4, 9):
+            assert greatest[np.searchsorted(edges, AMPLITUDE[k], side="right") - 1] == pytest.approx(0.07)
+        assert greatest[-1] < RANGE[0]

@@ -35,11 +35,9 @@ def draw_errors(axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str]
     axes.stairs(
         np.maximum(table, LAYOUT.least_error), edges, baseline=LAYOUT.least_error, fill=True, color=_GREY
     )
-    if _together(curves):
+    if together(len(curves)):
         greatest = _largest(curves, [curve.truncation_error for curve in curves])[1]
-        axes.stairs(
-            np.maximum(greatest, LAYOUT.least_error), edges, baseline=None, color="black", linewidth=_WIDTH
-        )
+        draw_greatest(axes, edges, greatest)
         _finish(axes, float(greatest.max()))
         return
     for curve, colour in zip(curves, colours, strict=True):
@@ -49,9 +47,9 @@ def draw_errors(axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str]
     _finish(axes)
 
 
-def _together(curves: Sequence[DrawnCurve]) -> bool:
-    """Whether lines of all curves would be a tangle."""
-    return len(curves) > LAYOUT.error_lines
+def together(count: int) -> bool:
+    """Whether lines of the errors of so many curves would be a tangle."""
+    return count > LAYOUT.error_lines
 
 
 def name_errors(
@@ -66,9 +64,9 @@ def name_errors(
     from matplotlib.patches import Patch
 
     names: dict[str, Line2D | Patch] = {**notes}
-    together = " (greatest)" if _together(curves) else ""
-    names[f"below: error by harmonics left out{together}"] = Line2D(
-        [], [], color="black" if together else colours[0], linewidth=_WIDTH if together else width
+    one = together(len(curves))
+    names["below: error by harmonics left out" + " (greatest)" * one] = Line2D(
+        [], [], color="black" if one else colours[0], linewidth=_WIDTH if one else width
     )
     if (_largest(curves, [curve.table_error for curve in curves])[1] > 0.0).any():
         of_all = " (greatest)" if len(curves) > 1 else ""
@@ -96,18 +94,34 @@ def _largest(
 ) -> tuple[FloatArray, FloatArray]:
     """Edges of equal bins over the frequencies, and the greatest error in each, of any curve."""
     edges = (np.geomspace if wide(curves) else np.linspace)(*ends(curves), LAYOUT.error_bins + 1)
-    largest = np.zeros(LAYOUT.error_bins)
-    for curve, own in zip(curves, errors, strict=True):
+    return edges, greatest_between(edges, [curve.frequency for curve in curves], errors)
+
+
+def greatest_between(
+    edges: FloatArray, places: Sequence[FloatArray], errors: Sequence[FloatArray | None]
+) -> FloatArray:
+    """The greatest error in each bin, of any curve that passes through it; 0 where none is known."""
+    bins = edges.size - 1
+    largest = np.zeros(bins)
+    for place, own in zip(places, errors, strict=True):
         if own is None:
             continue
-        # 0 * frequency: a piece that leads to another branch has none
-        known = own + 0.0 * curve.frequency
+        # 0 * place: a piece that leads to another branch has none
+        known = own + 0.0 * place
         error = np.nan_to_num(np.maximum(known[:-1], known[1:]))
         # the bins that each piece of the curve passes through
-        bins = np.clip(np.searchsorted(edges, curve.frequency, side="right") - 1, 0, LAYOUT.error_bins - 1)
-        first, last = np.minimum(bins[:-1], bins[1:]), np.maximum(bins[:-1], bins[1:])
+        at = np.clip(np.searchsorted(edges, place, side="right") - 1, 0, bins - 1)
+        np.maximum.at(largest, at, np.nan_to_num(known))  # of a point without neighbours, too
+        first, last = np.minimum(at[:-1], at[1:]), np.maximum(at[:-1], at[1:])
         count = last - first + 1
         before = np.cumsum(count) - count
-        at = np.repeat(first - before, count) + np.arange(count.sum())
-        np.maximum.at(largest, at, np.repeat(error, count))
-    return edges, largest
+        through = np.repeat(first - before, count) + np.arange(count.sum())
+        np.maximum.at(largest, through, np.repeat(error, count))
+    return largest
+
+
+def draw_greatest(axes: Axes, edges: FloatArray, largest: FloatArray) -> None:
+    """One line for the errors of many curves."""
+    axes.stairs(
+        np.maximum(largest, LAYOUT.least_error), edges, baseline=None, color="black", linewidth=_WIDTH
+    )

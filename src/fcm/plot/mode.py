@@ -11,7 +11,7 @@ import numpy as np
 
 from fcm.frozen import Frozen
 from fcm.plot.curve_names import name_at_side, write_beside
-from fcm.plot.error_panel import RANGE
+from fcm.plot.error_panel import RANGE, draw_greatest, greatest_between, together
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
 from fcm.plot.measured import (
@@ -29,6 +29,7 @@ from fcm.plot.reader_process import apart
 from fcm.plot.style import DOTS, LAYOUT, house_style, new_figure, sequence_colours, split
 from fcm.plot.summary import summary_of
 from fcm.plot.unfinished import NO_SPAN, Unfinished, mark_unfinished, say_unfinished, unfinished_of
+from fcm.rotational_dofs import greatest_first, unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,6 +40,11 @@ _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
 _ERROR, _STEADY = "truncation_error", "steady_state"
 _LOST = "no steady state"  # what is dotted
 _PERCENT = 100.0
+ESTIMATE = "resonance with the scene's forces, an estimate as if the mode alone answered"
+_GREATEST = "greatest damping"
+_DIAMOND: dict[str, Any] = {"marker": "D", "color": "black", "markersize": 4.0}
+_RING: dict[str, Any] = {"marker": "o", "markersize": 6, "markerfacecolor": "none", "markeredgewidth": 1.0}
+_DOT: dict[str, Any] = {"marker": ".", "markersize": 4.0}
 _NOTHING: FloatArray = np.zeros(0)
 
 
@@ -54,6 +60,8 @@ class DrawnMode(Frozen):
     )  # (point,) relative, NaN where unknown; or (0,)
     resonances: tuple[tuple[float, float, float], ...] = ()  # level of the forces, amplitude, frequency
     steady: BoolArray | None = None  # (point,) where there is a steady state; None: everywhere
+    # what a modal amplitude of 1 is at degrees of freedom, at the least amplitude, if the file says it
+    displacement: Mapping[str, float] = field(default_factory=dict)
 
     def smooth(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Amplitudes and a line through values of the points, which does not exceed them between two points.
@@ -99,6 +107,7 @@ class DrawnModes(Frozen):
         default_factory=Unfinished
     )  # of all curves, those without a point among them
     fitted: tuple[FittedNumber, ...] = ()  # that a fit found
+    length: str = ""  # unit of displacements, if the file says it
 
 
 @apart
@@ -111,6 +120,7 @@ def read_modes(path: Path) -> DrawnModes:
         error = floats(data.variables[_ERROR]) if told else np.full(frequency.shape, np.nan)
         held = floats(data.variables[_STEADY]) if _STEADY in data.variables else np.ones(frequency.shape)
         swept, resonances = swept_values(data.variables), resonances_of(data)
+        displacements = _displacements(data)
         found = [
             DrawnMode(
                 {key: float(values[i]) for key, values in swept.items()},
@@ -120,6 +130,7 @@ def read_modes(path: Path) -> DrawnModes:
                 error[i][known],
                 tuple(one[:3] for one in resonances[i]) if i < len(resonances) else (),
                 held[i][known] != 0.0,
+                displacements[i] if i < len(displacements) else {},
             )
             for i, one in enumerate(frequency)
             if (known := np.isfinite(one)).any()
@@ -135,7 +146,16 @@ def read_modes(path: Path) -> DrawnModes:
             backbones_of(data.variables),
             replace(unfinished_of(data), span=NO_SPAN),  # the range is of frequencies
             fitted_of(data),
+            str(summary_of(data).get("units", {}).get("length", "")),
         )
+
+
+def _displacements(data: Any) -> list[dict[str, float]]:
+    """What a modal amplitude of 1 is at degrees of freedom, of each curve, from the file's summary."""
+    return [
+        {str(dof): _number(value) for dof, value in curve.get("mode", {}).get("displacement", {}).items()}
+        for curve in summary_of(data).get("curves", ())
+    ]
 
 
 class Resonance(NamedTuple):
@@ -183,19 +203,23 @@ def draw_modes(drawn: DrawnModes) -> Figure:
     told = any(_is_line(mode.error) for mode in modes)
     with house_style():
         lines: list[Line2D] = []
-        figure = new_figure(LAYOUT.width, (1.6 if told else 1.3) * LAYOUT.height)
+        figure = new_figure(LAYOUT.width, (1.8 if told else 1.5) * LAYOUT.height)
         panels = figure.subplots(2 + told, 1, sharex=True, height_ratios=[1.0, 1.0, 0.5][: 2 + told])
         upper, lower = panels[:2]
         for mode, colour in zip(modes, sequence_colours(len(modes)), strict=True):
             lines.append(_draw_line(upper, mode, mode.frequency, colour))
             _draw_line(lower, mode, _PERCENT * mode.damping, colour)
-            if told:
+            if told and not together(len(modes)):
                 _draw_error(panels[2], mode, colour)
             _mark_greatest(lower, mode, colour, drawn.frequency_unit if len(modes) == 1 else "")
+        if told:
+            if together(len(modes)):
+                _draw_greatest_error(panels[2], modes)
+            _finish_errors(panels[2], modes)
         upper.set_xscale("log")
         upper.set_ylabel(frequency_label(drawn.frequency_unit))
         lower.set_ylabel("Damping ratio (%)")
-        panels[-1].set_xlabel("Modal amplitude (of a mode of mass 1)")
+        panels[-1].set_xlabel(_amplitude_label(drawn), parse_math=False)
         lower.set_ylim(bottom=0.0)
         for axes in panels:
             axes.margins(x=0.0)
@@ -211,9 +235,41 @@ def draw_modes(drawn: DrawnModes) -> Figure:
         beside = name_at_side(figure, lines, [one.parameters for one in modes], drawn.units)
         if drawn.measured:
             name_measured(figure, drawn.fitted, beside=beside)
+        notes = _notes(panels, modes)
+        if notes:
+            figure.legend(notes.values(), notes.keys(), loc="outside lower center")
         if len(modes) == 1:
             _mark_resonances(figure, upper, lower, modes[0])
     return figure
+
+
+def _amplitude_label(drawn: DrawnModes) -> str:
+    """What the modal amplitude is, with what 1 means at a degree of freedom where the file says it."""
+    said = "Modal amplitude, of the mode of mass 1"
+    if len(drawn.modes) != 1 or not (found := drawn.modes[0].displacement):
+        return said
+    dofs = list(found)
+    dof = dofs[greatest_first(dofs, list(found.values()))[0]]
+    size = f"{found[dof]:.3g} {unit_of(dof, drawn.length)}".rstrip()
+    return f"{said}\n(1 means {size} of {dof}, at the least amplitude)"
+
+
+def _notes(panels: Sequence[Axes], modes: Sequence[DrawnMode]) -> dict[str, Line2D]:
+    """What stands for the marks in a legend."""
+    from matplotlib.lines import Line2D
+
+    notes = {}
+    if len(modes) == 1 and any(np.isfinite(one[2]) for one in modes[0].resonances):
+        notes[ESTIMATE] = Line2D([], [], linestyle="none", **_DIAMOND)
+    if any(line.get_marker() == "o" for line in panels[1].get_lines()):
+        notes[_GREATEST] = Line2D([], [], linestyle="none", color="black", **_RING)
+    if len(panels) > 2:
+        one = " (greatest)" * together(len(modes))
+        mark = {} if one else _DOT
+        notes[f"below: error by harmonics left out{one}"] = Line2D(
+            [], [], color="black", linewidth=1.1, **mark
+        )
+    return notes
 
 
 def _draw_line(axes: Axes, mode: DrawnMode, values: FloatArray, colour: str) -> Line2D:
@@ -257,9 +313,20 @@ def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
 def _draw_error(axes: Axes, mode: DrawnMode, colour: str) -> None:
     """Dots where the error is known, joined where it is at neighbouring points."""
     error = np.where(mode.error > 0.0, mode.error, np.nan)
-    axes.plot(mode.amplitude, error, color=colour, linewidth=1.1, marker=".", markersize=4.0)
+    axes.plot(mode.amplitude, error, color=colour, linewidth=1.1, **_DOT)
+
+
+def _draw_greatest_error(axes: Axes, modes: Sequence[DrawnMode]) -> None:
+    """One line for the errors of many modes."""
+    amplitudes = [mode.amplitude for mode in modes]
+    every = np.concatenate(amplitudes)
+    edges = np.geomspace(every.min(), every.max(), LAYOUT.error_bins + 1)
+    draw_greatest(axes, edges, greatest_between(edges, amplitudes, [mode.error for mode in modes]))
+
+
+def _finish_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
     axes.set_yscale("log")
-    axes.set_ylim(RANGE[0], max(RANGE[1], float(np.nanmax(error, initial=0.0))))
+    axes.set_ylim(RANGE[0], max([RANGE[1], *(float(np.nanmax(mode.error, initial=0.0)) for mode in modes)]))
     axes.set_ylabel("Relative error")
 
 
@@ -271,10 +338,10 @@ def _mark_resonances(figure: Figure, upper: Axes, lower: Axes, mode: DrawnMode) 
     for level, amplitude, resonance in mode.resonances:
         if not np.isfinite(resonance):
             continue
-        upper.plot([amplitude], [resonance], "D", color="black", markersize=4.0)
+        upper.plot([amplitude], [resonance], **_DIAMOND)
         names.append((f"resonance, forces × {level:g}", (amplitude, resonance)))
         k = int(np.argmin(np.abs(np.log(along / amplitude)) + np.abs(frequency / resonance - 1.0)))
-        lower.plot([along[k]], [damping[k]], "D", color="black", markersize=4.0)
+        lower.plot([along[k]], [damping[k]], **_DIAMOND)
     write_beside(figure, upper, [(along, frequency)], names)
 
 
@@ -291,7 +358,7 @@ def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     ):  # at an end, or by rounding
         return
     x, y = float(mode.amplitude[top]), float(_PERCENT * mode.damping[top])
-    axes.plot([x], [y], "o", markersize=6, markerfacecolor="none", color=colour, markeredgewidth=1.0)
+    axes.plot([x], [y], color=colour, **_RING)
     if unit:
         text = f"{y:.3g} % at {mode.frequency[top]:.4g} {unit}"
         inwards = _inwards(mode, x)
