@@ -399,3 +399,11 @@ def test_phases_that_may_be_degrees_are_asked_about(written, head, asked):
     notes = load_scene(written(points=f"frequency,amplitude,{head}\n0.9,1,-20\n1.1,2,-170\n")).notes
     sentence = "fit: a.csv has a phase of 170 rad. Are they in degrees? Call the column phase [deg]"
     assert (sentence in notes) == asked
+
+
+def test_resonances_are_said_to_be_of_the_numbers_before_a_fit(written):
+    """They stood above the fitted numbers, whose peaks lay beside them, as if they were theirs."""
+    said = "resonances of the numbers before the fit with all contacts open"
+    assert said in called("plot", "modes", written()).err
+    plain = called("plot", "modes", written(fit="")).err
+    assert "first resonances with all contacts open" in plain and "before the fit" not in plain

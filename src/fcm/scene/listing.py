@@ -224,9 +224,10 @@ def notes_of_modes(scene: Scene) -> list[str]:
     if rigid and omega.size:  # by number they do not belong together
         alike = np.array([scene.modal.frequency[one.open_mode] for one in stuck_modes(scene)[:most]])
         of_stuck += f", by shape those at {_listed(alike / UNIT[unit])} {unit} open"
+    numbers = "" if scene.fit is None else " of the numbers before the fit"
     said = [
-        f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "
-        f"The main peak of a mode lies {'mostly ' if rigid else ''}between the two"
+        f"structure: first resonances{numbers} with all contacts open: {of_open}; with all stuck: {of_stuck}"
+        f"{damped}. The main peak of a mode lies {'mostly ' if rigid else ''}between the two"
     ]
     if scene.of_matrices and ratio.size and ratio.min() >= LIMITS.damping_ratio:
         said.append(
