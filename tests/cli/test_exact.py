@@ -121,6 +121,17 @@ def test_a_curve_without_points_is_a_header(fcm, scene, tmp_path):
 SCENES = Path(__file__).parents[1] / "shooting/scenes"
 
 
+def test_the_table_of_jumps_says_after_how_many_periods_motions_repeat(fcm):
+    visits = [x for at in (288, 292, 293, 301, 302) for x in ("--at", at)]
+    run = fcm("respond", SCENES / "two_beside_one.toml", "--method", "exact", *visits)
+    head, *rows = run.out[run.out.index("jump at rad/s") :].splitlines()
+    assert head.split()[:5] == ["jump", "at", "rad/s", "periods", "d0"]
+    told = [(row.split()[1:4], row.split()[-1]) for row in rows[:3]]
+    assert told == [(["2", "to", "2"], "up"), (["2", "to", "1"], "up"), (["1", "to", "2"], "down")]
+    alone = fcm("respond", "yang1998-n5", "--method", "exact", "--at", 1.235, "--at", 1.24)
+    assert "jump at rad/s  u before" in alone.out
+
+
 @pytest.mark.slow
 def test_points_that_are_one_of_many_or_do_not_repeat_are_named(fcm, tmp_path):
     """In words, in the summary, in the file and in the CSV."""

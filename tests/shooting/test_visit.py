@@ -11,7 +11,7 @@ import pytest
 
 from fcm import load_scene
 from fcm.response.exact import trace_exact
-from fcm.response.options import ExactOptions, ResponseOptions
+from fcm.response.options import STEPPED, ExactOptions, ResponseOptions
 from fcm.run import Execution
 from fcm.time_domain import State, simulate
 from fcm.time_domain.cycle_measures import measure
@@ -196,3 +196,24 @@ def test_a_long_motion_at_one_frequency_shows_that_it_goes_on():
     assert len(steps) > 10 and len(set(steps)) == len(steps)
     shares = [share for share, _ in said]
     assert shares == sorted(shares)
+
+
+def test_jumps_of_motions_of_several_periods_are_those_of_their_branches():
+    """They were in no table; and steps of 2 rad/s left the branch before its end."""
+    scene = load_scene(SCENES / "two_beside_one.toml")
+    curve, _ = visited(scene, list(range(286, 306, 2)))
+    (whole,) = trace_exact(replace(scene, frequency_range=(286.0, 304.0)), periods=2).curves
+    found, exact = curve.jumps(), whole.jumps()
+    assert [(one.sweep, one.periods) for one in found] == [(one.sweep, one.periods) for one in exact]
+    assert [one.periods for one in found] == [(2, 2), (2, 2), (2, 1), (1, 2)]
+    for one, other in zip(found, exact, strict=True):
+        assert one.frequency == pytest.approx(other.frequency, rel=2.0 * STEPPED.min_step_of_periods)
+        assert one.after == pytest.approx(other.after, rel=1e-3)
+        assert one.before == pytest.approx(other.before, rel=0.1)  # steep beside a fold
+
+
+def test_where_the_period_is_halved_nothing_jumps():
+    """Beside it the two halves of the period differ as the root of the distance, by more than 1 %."""
+    curve, _ = visited(yang(0.0), [0.72, 0.74, 0.76, 0.77])
+    assert curve.orbits.repeats.tolist() == [1, 2, 2, 1, 1, 2, 2, 1]
+    assert curve.jumps() == []

@@ -30,9 +30,12 @@ def jump_table(
     count = sum(map(bool, seen))
     shown = [[jumps[k] for k in greatest_of([_step(one, dofs) for one in jumps], count)] for jumps in seen]
 
+    repeats = any(_periods(one) for jumps in shown for one in jumps)
+
     def row(one: Mapping[str, Any]) -> Row:
         cells = [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs]
-        return one["sweep"], one["frequency"], [number(one["frequency"])], cells
+        where = [number(one["frequency"]), *([_periods(one) or "1"] if repeats else [])]
+        return one["sweep"], one["frequency"], where, cells
 
     found = _rows(curves, shown, row)
     small = sum(len(curve.get("jumps", ())) for curve in curves) - sum(map(len, seen))
@@ -47,10 +50,22 @@ def jump_table(
     if not found:
         return left_out
     lost = any("-" in cells for _, each, _ in found for cells in each)
-    table = DofTable([*names, f"jump at {unit}"], dofs, ["{} before", "{} after"], ["sweep"], found)
+    heads = [f"jump at {unit}", *(["periods"] if repeats else [])]
+    table = DofTable([*names, *heads], dofs, ["{} before", "{} after"], ["sweep"], found)
     more = f"\nand {others} more jump{'s' * (others > 1)}, by less: --json has all" if others else ""
     more += f"\nand {left_out}" if left_out else ""
     return table.text(last=1) + (_LOST if lost else "") + more
+
+
+def _periods(jump: Mapping[str, Any]) -> str:
+    """Periods of the force after which the motions before and after repeat; empty where both do after one.
+
+    >>> _periods({"periods": [1, 1]}), _periods({"periods": [2, 1]}), _periods({"periods": [2, 0]})
+    ('', '2 to 1', '2 to -')
+    """
+    before, after = jump.get("periods", (1, 1))
+    alone = before in (0, 1) and (after == 1 or any(one is None for one in jump.get("after", {}).values()))
+    return "" if alone else f"{before or '-'} to {after or '-'}"
 
 
 def resolution_of(summary: Mapping[str, Any]) -> float:

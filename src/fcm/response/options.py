@@ -172,6 +172,12 @@ class SteppedOptions(Frozen):
         Number of periods for which such a motion is simulated after each step.
     min_jump : float
         Relative change of an amplitude above which it is a jump.
+    max_change : float
+        Relative change of an amplitude in a step of a motion of several periods, above which the step is
+        divided.
+    min_step_of_periods : float
+        Step of such a motion, relative to the frequency, below which it is not divided: its jumps are known
+        to it.
     """
 
     max_distance: float = 0.5
@@ -182,6 +188,8 @@ class SteppedOptions(Frozen):
     irregular_step: float = 0.005
     irregular_cycles: int = 10
     min_jump: float = 0.01
+    max_change: float = 0.03
+    min_step_of_periods: float = 1e-4
 
 
 STEPPED = SteppedOptions()

@@ -7,6 +7,7 @@ steady again. So it jumps where a slow sweep of the structure itself does, and t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import takewhile
@@ -124,12 +125,18 @@ class SteppedSweep:
             lost, before = float(self._here.z[-1]), self._sample
             self._settle(self._here.state, lost + STEPPED.overshoot * (omega - lost))
             after = self._sample
-            if self._here is None:
+            if after is None:
                 self._settle(self._state, omega)
             self._note_jump(sweep, lost, before, after or self._sample)
+            self._follow(omega, sweep)
         if self._sample is None:
             self._begin(omega)
         elif self._sample.frequency != omega:
+            self._follow(omega, sweep)
+            if self._here is not None:
+                self._step_to(omega, sweep)
+                return
+        if self._sample is not None and self._sample.frequency != omega:
             self._simulate_sweep(self._sample.frequency, omega)
             self._settle(self._state, omega)
         if self._sample is None and with_unit(self.scene, omega) not in self.refused:
@@ -166,9 +173,11 @@ class SteppedSweep:
         self, sweep: str, at: float, before: OrbitRecord | None, after: OrbitRecord | None
     ) -> None:
         if before is not None and after is not None:
-            old, new = before.measure.amplitude, self._brought_back(after, at).measure.amplitude
-            if (np.abs(new - old) > STEPPED.min_jump * np.maximum(new, old)).any():
-                self.jumps.append(Jump(sweep, at, old, new))
+            there = self._brought_back(after, at)
+            doubles = before.repeats > 1 == there.repeats and there.frequency != at
+            if not doubles and self._change(before, there) > STEPPED.min_jump:
+                amplitudes = before.measure.amplitude, there.measure.amplitude
+                self.jumps.append(Jump(sweep, at, *amplitudes, (before.repeats, there.repeats)))
 
     def _brought_back(self, after: OrbitRecord, at: float) -> OrbitRecord:
         """The motion beyond the end of a branch at the frequency of the end itself, or as near as it goes.
@@ -219,6 +228,38 @@ class SteppedSweep:
         return astray <= max(STEPPED.max_deviation * length, STEPPED.min_deviation) and self._continue_with(
             np.array(self.newton.z)
         )
+
+    def _follow(self, omega: float, sweep: str) -> None:
+        """Bring a motion of several periods towards a frequency, by steps in which it changes little.
+
+        It ends where the motion does: at a jump, which is noted, where the period is one, or where no motion
+        is steady.
+        """
+        step = math.inf
+        while (here := self._sample) is not None and here.repeats > 1 and here.frequency != omega:
+            left = omega - here.frequency
+            step = min(step, abs(left))
+            to = omega if step == abs(left) else here.frequency + math.copysign(step, left)
+            self._state = here.state
+            self._simulate_sweep(here.frequency, to)
+            self._settle(self._state, to)
+            after, least = self._sample, STEPPED.min_step_of_periods * omega
+            changes = after is not None and (
+                after.repeats != here.repeats or self._change(here, after) > STEPPED.max_change
+            )
+            if changes and step > least:
+                step = max(0.25 * step, least)
+                self._here, self._sample, self._state = None, here, here.state
+                continue
+            if changes:
+                self._note_jump(sweep, here.frequency, here, after)
+            step *= 2.0
+
+    @staticmethod
+    def _change(before: OrbitRecord, after: OrbitRecord) -> float:
+        """The greatest relative change of an amplitude."""
+        old, new = before.measure.amplitude, after.measure.amplitude
+        return float((np.abs(new - old) / np.maximum(np.maximum(new, old), np.finfo(float).tiny)).max())
 
     def _simulate_sweep(self, begin: float, omega: float) -> None:
         """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""

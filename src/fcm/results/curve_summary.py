@@ -133,6 +133,7 @@ def _jump(jump: Jump, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
         "frequency": float(in_unit(jump.frequency, unit)),
         "before": dict(zip(dofs, jump.before.tolist(), strict=True)),
         "after": dict(zip(dofs, jump.after.tolist(), strict=True)),
+        "periods": list(jump.periods),
     }
 
 

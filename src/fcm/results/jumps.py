@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +25,8 @@ class Jump(Frozen):
     frequency: float  # [rad/s]
     before: FloatArray  # (dof,) amplitude
     after: FloatArray  # (dof,) amplitude; NaN where the curve has no stable part to land on
+    # of the force after which the motion repeats, before and after; 0 if it does not, or is not known
+    periods: tuple[int, int] = (1, 1)
 
 
 class UnknownStability(Frozen):
@@ -63,8 +66,11 @@ def swept(
     amplitude: FloatArray,
     stable: FloatArray,
     options: JumpOptions = RESULTS.jumps,
+    repeats: FloatArray | None = None,
 ) -> FrequencySweep:
     """Jumps of slow sweeps along a curve; amplitude (point, dof), stable 1, 0, or NaN where unknown.
+
+    repeats : (point,) periods of the force after which each motion repeats, by default 1
 
     A sweep begins at the first frequency with a motion that is not known to be unstable, stays on such
     motions, and says where it did not know.
@@ -83,37 +89,48 @@ def swept(
     >>> [(one.sweep, one.start, one.end) for one in found.unknown]
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
-    frequency, amplitude, stable = _once(frequency, amplitude, stable, options)
-    frequency, amplitude, stable = _with_branch_points(frequency, amplitude, stable, options)
+    points = _Points(frequency, amplitude, stable, np.ones(stable.size) if repeats is None else repeats)
+    points = _with_branch_points(_once(points, options), options)
     found = FrequencySweep([], [])
     for sweep in ("up", "down"):
-        _sweep(frequency, amplitude, stable, sweep, found, options.amplitude_tolerance)
+        _sweep(points, sweep, found, options.amplitude_tolerance)
     return found
 
 
-def _once(
-    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, options: JumpOptions
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+class _Points(NamedTuple):
+    """Points of a curve, as of `swept`."""
+
+    frequency: FloatArray
+    amplitude: FloatArray
+    stable: FloatArray
+    repeats: FloatArray
+
+    def periods(self, point: int) -> int:
+        """Periods after which the motion at a point repeats; 0 where that is not known."""
+        return int(np.nan_to_num(self.repeats[point]))
+
+
+def _once(points: _Points, options: JumpOptions) -> _Points:
     """The points without those that are there twice, as a peak at a corner is.
 
     Where stability changes there, one is stable and the other not: a way along the stable side leads to it.
     """
+    frequency, amplitude, stable, repeats = points
     again = np.abs(np.diff(frequency)) <= options.frequency_tolerance * frequency[1:]
     again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=options.amplitude_tolerance, atol=0.0).all(axis=1)
     if not again.any():
-        return frequency, amplitude, stable
+        return points
     kept = np.concatenate(([0], np.flatnonzero(~again) + 1))
     best = np.maximum.reduceat(np.where(np.isnan(stable), UNKNOWN, stable), kept)
-    return frequency[kept], amplitude[kept], np.where(best == UNKNOWN, np.nan, best)
+    return _Points(frequency[kept], amplitude[kept], np.where(best == UNKNOWN, np.nan, best), repeats[kept])
 
 
-def _with_branch_points(
-    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, options: JumpOptions
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _with_branch_points(points: _Points, options: JumpOptions) -> _Points:
     """The curve with a stable point inserted where a stable branch leaves another branch.
 
     That is between two points of the other branch, one of which is stable.
     """
+    frequency, amplitude, stable, repeats = points
     stays = stable == 1.0
     runs = np.diff(np.concatenate(([False], stays, [False])).astype(int))
     ends = distinct_values(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1)
@@ -128,27 +145,22 @@ def _with_branch_points(
                 if (np.abs(amplitude[end] - there) <= tolerance).all():
                     places.append((k + 1, end))
     if not places:
-        return frequency, amplitude, stable
+        return points
     at, what = np.array(places).T
-    return (
+    return _Points(
         np.insert(frequency, at, frequency[what]),
         np.insert(amplitude, at, amplitude[what], axis=0),
         np.insert(stable, at, 1.0),
+        np.insert(repeats, at, repeats[what]),
     )
 
 
-def _sweep(
-    frequency: FloatArray,
-    amplitude: FloatArray,
-    stable: FloatArray,
-    sweep: str,
-    found: FrequencySweep,
-    same: float,
-) -> None:
+def _sweep(points: _Points, sweep: str, found: FrequencySweep, same: float) -> None:
     """Walk along stable segments in the direction of the sweep, and jump where they end.
 
     same: relative difference of amplitudes that are one.
     """
+    frequency, amplitude, stable, _ = points
     sign = 1.0 if sweep == "up" else -1.0
     rises = np.diff(sign * frequency)
     bears = stable != 0.0
@@ -174,7 +186,8 @@ def _sweep(
             return
         there = _others(sign * frequency, usable, at)
         if not there.size:
-            found.jumps.append(Jump(sweep, here, before, np.full_like(before, np.nan)))
+            lost = np.full_like(before, np.nan)
+            found.jumps.append(Jump(sweep, here, before, lost, (points.periods(at), 0)))
             return
         share = (here - frequency[there]) / (frequency[there + 1] - frequency[there])
         landed = amplitude[there] + share[:, None] * (amplitude[there + 1] - amplitude[there])
@@ -182,7 +195,8 @@ def _sweep(
         which = int(meets.argmax())  # where the beginning of a closed curve is its end, it goes on
         onto, after = int(there[which]), landed[which]
         if not meets[which]:
-            found.jumps.append(Jump(sweep, here, before, after))
+            periods = points.periods(at), max(points.periods(onto), points.periods(onto + 1))
+            found.jumps.append(Jump(sweep, here, before, after, periods))
         start, told = (here, after), not unknown[onto : onto + 2].any()
         at = onto + 1 if rises[onto] > 0.0 else onto
 

@@ -118,10 +118,10 @@ class Curve:
             return self.orbits.swept
         if self.level is not None or self.mode is not None:
             return FrequencySweep([], [])
-        found = swept(self.frequency, self.amplitude, self.stable)
         if self.orbits is not None and (self.orbits.repeats > 1).any():
-            return found.without_flips()
-        return found
+            repeats = self.orbits.repeats
+            return swept(self.frequency, self.amplitude, self.stable, repeats=repeats).without_flips()
+        return swept(self.frequency, self.amplitude, self.stable)
 
     def jumps(self) -> list[Jump]:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
