@@ -103,6 +103,17 @@ def test_peaks_of_very_different_heights_are_all_to_be_seen_and_no_name_lies_on_
     assert [text.get_text() for text in legend.get_texts()] == ["peak of u", "peak of v"]
 
 
+def test_peaks_of_several_names_that_coincide_are_all_to_be_seen():
+    """The last lay over the others; now it is the thinnest."""
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    both = np.column_stack((number, number))
+    tracks = [DrawnTrack(f"peak of {dof}", number, number, both, none, none, none + 1.0) for dof in "uv"]
+    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u", "v"), "Hz", tuple(tracks)))
+    for axes in figure.axes[:2]:
+        under, over = axes.lines
+        assert under.get_linewidth() > 1.5 * over.get_linewidth()
+
+
 def test_peaks_of_one_name_have_one_colour_in_both_panels_each_its_own():
     """So that it is seen which height and which frequency belong together."""
     number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)

@@ -5,6 +5,7 @@ import pytest
 
 from fcm.cli.curves import as_table
 from fcm.plot import draw_response, read_response
+from fcm.plot.peak import draw_peak, read_peaks
 from fcm.response import trace
 from fcm.results.blades import worst_of
 from fcm.results.output import write_netcdf
@@ -95,3 +96,31 @@ def test_an_amplification_is_a_bound_where_a_greatest_amplitude_is_at_an_end_of_
     rows = [line.split() for line in table if "tip of sector" in line]
     assert [("*" in row[6], "*" in row[8]) for row in rows] == [(False, True), (True, True)]
     assert any(line.startswith("* at an end of the range, and no peak: of the worst blade") for line in table)
+
+
+def test_peaks_of_rings_are_those_of_the_worst_blades_with_the_amplification(swept):
+    """One blade was drawn, that of the greatest peak of all."""
+    found, path = swept
+    worst, place = worst_of(found), found.blades.names.index("tip")
+    upper, lower, last = draw_peak(read_peaks(path)).axes
+    assert upper.get_ylabel() == "Greatest peak of tip in 3 sectors"
+    assert last.get_ylabel() == "Amplification (–)"
+    for axes, values in (
+        (upper, worst.amplitude[:, place]),
+        (lower, worst.frequency[:, place] / (2.0 * np.pi)),
+        (last, worst.amplification[:, place]),
+    ):
+        assert axes.lines[0].get_ydata() == pytest.approx(values[[1, 0]])  # in the order of the scale
+    (tuned,) = upper.figure.legends
+    assert [text.get_text() for text in tuned.get_texts()] == ["peak of the tuned ring"]
+    across = [line for line in upper.lines if len(set(line.get_ydata())) == 1 and len(line.get_ydata()) == 2]
+    assert across[0].get_ydata()[0] == found.blades.tuned[0, place]
+    upper, lower = draw_peak(read_peaks(path), dof="tip@1").axes
+    assert upper.get_ylabel() == "Peak amplitude of tip@1"
+
+
+def test_an_amplification_that_is_a_bound_is_left_out_of_the_picture(tmp_path_factory):
+    _, path = ring(tmp_path_factory, {"cyclic.mistuning.scale": [1.0, 0.5]}, 220.0)
+    upper, _, last = draw_peak(read_peaks(path)).axes
+    assert np.isnan(last.lines[0].get_ydata()).all() and not upper.figure.legends
+    assert last.get_title(loc="right").startswith("left out: 2 of 2, of greatest amplitudes at an end")

@@ -116,6 +116,17 @@ def test_peaks_have_a_page(browser, file):
     assert np.array(json.loads(found)) == pytest.approx(np.stack((swept[order], peak[order]), axis=1))
 
 
+@pytest.mark.parametrize(("drawn", "mode"), [((), "lines+markers"), (("n",), "markers")])
+def test_random_draws_have_no_line_between_them_on_a_page(tmp_path, drawn, mode):
+    from fcm.plot.interactive import peak_page
+    from fcm.plot.peak import Peaks
+
+    two = np.array([[1.0], [2.0]])
+    peaks = Peaks(("u",), "Hz", {"n": two[:, 0]}, two, two, np.full(2, True), drawn=drawn)
+    peak_page(peaks, None, None, tmp_path / "a.html")
+    assert f'"mode":"{mode}"' in (tmp_path / "a.html").read_text(encoding="utf-8")
+
+
 def test_the_branch_of_a_point_is_told_where_there_are_several(tmp_path):
     """Points behind the gap between two branches are of the second."""
     from fcm.plot.interactive import response_page

@@ -42,7 +42,7 @@ def draw_scatter(panels: Sequence[tuple[Axes, FloatArray]], peaks: Peaks, key: s
         middle = np.array([one.median for one in each])
         reach = np.abs(np.array([[one.low, one.high] for one in each]).T - middle)
         axes.errorbar(
-            x, middle, reach, fmt="_", color=COLOUR, linewidth=_WIDTH, markersize=8.0, capsize=2.5, zorder=0
+            x, middle, reach, fmt="_", color=COLOUR, linewidth=_WIDTH, markersize=8.0, capsize=2.5, zorder=3
         )  # fmt: skip
 
 

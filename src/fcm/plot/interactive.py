@@ -79,7 +79,8 @@ def peak_page(peaks: Peaks, dof: str | None, against: str | None, path: Path) ->
     for number, name in enumerate(peaks.dofs):
         states = _states_of_peaks(peaks, number, order)
         figure.add_scatter(
-            x=peaks.parameters[key][order], y=peaks.amplitude[order, number], name=name, mode="lines+markers",
+            x=peaks.parameters[key][order], y=peaks.amplitude[order, number], name=name,
+            mode="markers" if peaks.random else "lines+markers",
             visible=True if number == shown else "legendonly",
             customdata=np.stack((peaks.frequency[order, number].astype(str), states), axis=1),
             hovertemplate="%{x:.6g}: <b>%{y:.6g}</b> at %{customdata[0]}, %{customdata[1]}",

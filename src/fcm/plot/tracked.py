@@ -45,6 +45,7 @@ _OPTIMUM = (
     "optimum_kind",
 )
 _MARK, _SHADE, _TRIED = "#c03020", "#c0d4ea", "0.4"
+_WIDTH, _BELOW = 1.1, 0.9  # [point] of a line; by which each is thicker than the next above it
 
 
 class DrawnTrack(Frozen):
@@ -214,6 +215,8 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
+        # thicker below thinner: peaks that are nearly equal would hide one another
+        widths = {name: _WIDTH + _BELOW * k for k, name in enumerate(reversed(names))}
         colours = (
             {id(track): of_sweep[track.swept] for track in wanted} if of_sweep else _colours(wanted, names)
         )
@@ -228,7 +231,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             label = track.what if track.what in names else None  # once for all its curves
             names = [one for one in names if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
-                _line(axes, track, values, colours[id(track)], text)
+                _line(axes, track, values, colours[id(track)], text, widths[track.what])
         tried = len(drawn.tried) > 0 and len(wanted) == len(peaks)  # of several peaks they are the greatest
         if tried:
             upper.plot(*drawn.tried.T, "x", color=_TRIED, markersize=4.0)
@@ -278,16 +281,23 @@ def _name_swept(figure: Figure, drawn: DrawnTracking, colours: Mapping[tuple[flo
         name_at_side(figure, lines, swept, drawn.swept)
 
 
-def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None) -> None:
+def _line(
+    axes: Axes,
+    track: DrawnTrack,
+    y: FloatArray,
+    colour: str,
+    label: str | None = None,
+    width: float = _WIDTH,
+) -> None:
     """Solid where the motion is stable, dashed where it is not, dotted where that is unknown."""
     stable = track.stable == 1.0
-    axes.plot(track.number, np.where(stable, y, np.nan), color=colour, linewidth=1.1, label=label)
+    axes.plot(track.number, np.where(stable, y, np.nan), color=colour, linewidth=width, label=label)
     for there, style in ((track.stable == 0.0, "--"), (np.isnan(track.stable), ":")):
         reach = there.copy()  # to the neighbours, so that no gap is left
         reach[1:] |= there[:-1]
         reach[:-1] |= there[1:]
         if there.any():
-            axes.plot(track.number, np.where(reach, y, np.nan), style, color=colour, linewidth=1.1)
+            axes.plot(track.number, np.where(reach, y, np.nan), style, color=colour, linewidth=width)
 
 
 def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack], tried: bool = False) -> None:
