@@ -128,17 +128,16 @@ class SteppedSweep:
             if after is None:
                 self._settle(self._state, omega)
             self._note_jump(sweep, lost, before, after or self._sample)
-            self._follow(omega, sweep)
         if self._sample is None:
             self._begin(omega)
         elif self._sample.frequency != omega:
-            self._follow(omega, sweep)
+            here = self._follow(self._sample, omega, sweep)
             if self._here is not None:
                 self._step_to(omega, sweep)
                 return
-        if self._sample is not None and self._sample.frequency != omega:
-            self._simulate_sweep(self._sample.frequency, omega)
-            self._settle(self._state, omega)
+            if here.frequency != omega:
+                self._simulate_sweep(here.frequency, omega)
+                self._settle(self._state, omega)
         if self._sample is None and with_unit(self.scene, omega) not in self.refused:
             self.irregular[with_unit(self.scene, omega)] = None
 
@@ -229,31 +228,32 @@ class SteppedSweep:
             np.array(self.newton.z)
         )
 
-    def _follow(self, omega: float, sweep: str) -> None:
+    def _follow(self, here: OrbitRecord, omega: float, sweep: str) -> OrbitRecord:
         """Bring a motion of several periods towards a frequency, by steps in which it changes little.
 
-        It ends where the motion does: at a jump, which is noted, where the period is one, or where no motion
-        is steady.
+        Returned is the last steady motion: the one there, or where such a motion ends. It ends at a jump,
+        which is noted, where the period is one, or where no motion is steady a step further.
         """
-        step = math.inf
-        while (here := self._sample) is not None and here.repeats > 1 and here.frequency != omega:
+        step, least = math.inf, STEPPED.min_step_of_periods * omega
+        while here.repeats > 1 and here.frequency != omega:
             left = omega - here.frequency
             step = min(step, abs(left))
             to = omega if step == abs(left) else here.frequency + math.copysign(step, left)
             self._state = here.state
             self._simulate_sweep(here.frequency, to)
             self._settle(self._state, to)
-            after, least = self._sample, STEPPED.min_step_of_periods * omega
-            changes = after is not None and (
-                after.repeats != here.repeats or self._change(here, after) > STEPPED.max_change
-            )
+            after = self._sample
+            if after is None:
+                self._sample, self._state = here, here.state
+                break
+            changes = after.repeats != here.repeats or self._change(here, after) > STEPPED.max_change
             if changes and step > least:
                 step = max(0.25 * step, least)
-                self._here, self._sample, self._state = None, here, here.state
                 continue
             if changes:
                 self._note_jump(sweep, here.frequency, here, after)
-            step *= 2.0
+            here, step = after, 2.0 * step
+        return here
 
     @staticmethod
     def _change(before: OrbitRecord, after: OrbitRecord) -> float:
