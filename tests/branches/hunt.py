@@ -86,7 +86,7 @@ def deflated(scene, curve, frequencies, tries, seed=0):
             known.append(x)
             z = np.append(x, omega)
             balance.evaluate(z)
-            balance.report(z, np.zeros(z.size))
+            balance.evaluate_outputs(z, np.zeros(z.size))
             amplitude = np.array(balance.output)
             if not on_branch(curve, omega, amplitude):
                 yield Miss(omega, amplitude, "deflation")

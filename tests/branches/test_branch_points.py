@@ -56,7 +56,7 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
     for point in points:
         one, other = point.starts
         (symmetry,) = broken_symmetries(system, point.z, one)
-        balance.measure(one)
+        balance.evaluate_scale(one)
         off = (symmetry.image(one) - other) / np.asarray(balance.scale)
         assert np.abs(off).max() < 1e-3 and np.allclose(symmetry.image(symmetry.image(one)), one)
         on = [

@@ -141,7 +141,7 @@ def test_another_extreme_of_a_limit_comes_to_hold_a_slider(side):
         contact.at(x, *law)
         assert contact.forces[0] == pytest.approx(side * (0.5 * 4.0 - 1.0 - abs(c)), abs=1e-12)
         assert contact.jacobian[0, 2] == pytest.approx(-np.sign(c), abs=1e-6)
-        bounds.bound(x, 0)
+        bounds.evaluate_margins(x, 0)
         kinds, angles, values = (np.asarray(one) for one in (bounds.kind, bounds.angle, bounds.margin))
         held = np.flatnonzero((kinds == 5) | (kinds == 6))
         margins.append({round(float(angles[i]) / np.pi) % 2: float(values[i]) for i in held})

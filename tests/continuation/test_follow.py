@@ -34,17 +34,17 @@ class Planar(Problem):
         self.jacobian[1, 0], self.jacobian[1, 1] = -1.0, 1.0
         return 0
 
-    def measure(self, z):
+    def evaluate_scale(self, z):
         self.scale[0] = self.scale[1] = 1.0
         self.scale[2] = 2.0
         return 0
 
-    def bound(self, z):
+    def evaluate_margins(self, z):
         if self.of_margin is not None:
             self.margin[0] = self.of_margin(z[0])
         return 0
 
-    def report(self, z, direction):
+    def evaluate_outputs(self, z, direction):
         self.output[0] = abs(z[0])
         self.growth[0] = direction[0] * np.sign(z[0])
         return 0
@@ -166,7 +166,7 @@ def test_a_piece_that_is_all_but_nothing_is_part_of_a_corner(step, wide):
                 return 2.0 - 30.0 * (x - 2.0) - p, -30.0, -1.0
             return 2.0 - 30.0 * wide - 0.1 * (x - 2.0 - wide) - p, -0.1, -1.0
 
-        def bound(self, z):
+        def evaluate_margins(self, z):
             self.margin[0], self.margin[1] = z[0] - 2.0, z[0] - 2.0 - wide
             return 0
 
@@ -228,7 +228,7 @@ def test_a_peak_in_a_corner(step):
                 self, lambda x, p: (x - p, 1.0, -1.0) if p < 2.0 else (x - 4.0 + p, 1.0, 1.0), abs
             )
 
-        def bound(self, z):
+        def evaluate_margins(self, z):
             self.margin[0] = z[2] - 2.0
             return 0
 
@@ -246,8 +246,8 @@ class OnSymmetry(Planar):
         Problem.__init__(self, 2, 0, 2)
         self.f, self.of_margin, self.rounding = f, None, rounding
 
-    def report(self, z, direction):
-        Planar.report(self, z, direction)
+    def evaluate_outputs(self, z, direction):
+        Planar.evaluate_outputs(self, z, direction)
         self.output[1] = self.rounding * (1.0 + 0.5 * np.sin(1e7 * z[0]))
         self.growth[1] = self.rounding * abs(np.cos(1e7 * z[0])) * direction[0]
         return 0
@@ -268,8 +268,8 @@ class NearSymmetry(OnSymmetry):
     It grows with x all the time, but for what the corrector leaves.
     """
 
-    def report(self, z, direction):
-        Planar.report(self, z, direction)
+    def evaluate_outputs(self, z, direction):
+        Planar.evaluate_outputs(self, z, direction)
         self.output[1] = 1e-9 + 1e-10 * z[0] + self.rounding * np.sin(1e7 * z[0])
         self.growth[1] = 1e-10 * direction[0]
         return 0
@@ -466,7 +466,7 @@ def test_a_resonance_without_damping_has_no_limit():
     """x = 1 / (2 - p), in units of its size as it grows."""
 
     class Pole(Planar):
-        def measure(self, z):
+        def evaluate_scale(self, z):
             self.scale[0] = self.scale[1] = abs(z[0])
             self.scale[2] = 2.0
             return 0
@@ -520,7 +520,7 @@ class Hook(Problem):
 
     def __init__(self, c, q):
         super().__init__(1, 1, 0)
-        self.rooted, self.c, self.q = True, c, q
+        self.has_root_margins, self.c, self.q = True, c, q
 
     def evaluate(self, z):
         r, w, rate = z[1] + 0.5 * z[0], 0.0, 0.0
@@ -532,7 +532,7 @@ class Hook(Problem):
         self.jacobian[0, 0], self.jacobian[0, 1] = 1.0 - 0.5 * self.c * rate, -self.c * rate
         return 0
 
-    def bound(self, z):
+    def evaluate_margins(self, z):
         r = z[1] + 0.5 * z[0]
         self.margin[0] = np.sign(r) * np.sqrt(abs(r))
         return 0
@@ -734,7 +734,7 @@ class Pieces(Labelled):
         Problem.__init__(self, 2, 1, 1)
         self.labelled = True
 
-    def bound(self, z):
+    def evaluate_margins(self, z):
         self.margin[0] = np.floor(z[2])
         return 0
 
@@ -769,11 +769,11 @@ class Touch(Problem):
         self.jacobian[1, 0], self.jacobian[1, 1], self.jacobian[1, 2] = rate, 1.0, -self.c
         return 0
 
-    def measure(self, z):
+    def evaluate_scale(self, z):
         self.scale[0] = self.scale[1] = self.scale[2] = 1.0
         return 0
 
-    def bound(self, z):
+    def evaluate_margins(self, z):
         self.margin[0] = float(z[0] > 0.0)
         return 0
 
@@ -901,15 +901,15 @@ class Many(Problem):
         self.residual[:] = np.append(value - z[-1], z[1:-1] - z[0])
         return 0
 
-    def measure(self, z):
+    def evaluate_scale(self, z):
         self.scale[:] = np.append(np.full(self.unknowns, np.sqrt(self.unknowns)), 2.0)
         return 0
 
-    def bound(self, z):
+    def evaluate_margins(self, z):
         self.margin[:] = z[0] - self.corners
         return 0
 
-    def report(self, z, direction):
+    def evaluate_outputs(self, z, direction):
         self.output[0] = 2.0 - (z[0] + 0.2) ** 2
         self.growth[0] = -2.0 * (z[0] + 0.2) * direction[0]
         return 0
@@ -992,15 +992,15 @@ class Widened(Problem):
         self.matrix[np.ix_([0, 1], [0, 1, -1])] = self.inner.jacobian
         return 0
 
-    def measure(self, z):
+    def evaluate_scale(self, z):
         self.scale[:] = np.append(np.ones(102), 2.0)
         return 0
 
-    def bound(self, z):
-        self.inner.bound(z)
+    def evaluate_margins(self, z):
+        self.inner.evaluate_margins(z)
         return 0
 
-    def report(self, z, direction):
+    def evaluate_outputs(self, z, direction):
         self.output[0], self.growth[0] = abs(z[0]), direction[0] * np.sign(z[0])
         return 0
 
@@ -1051,7 +1051,7 @@ class Counted(Planar):
         self.evaluated += 1
         return super().evaluate(z)
 
-    def probe(self, z):
+    def evaluate_residual(self, z):
         self.probed += 1
         return super().evaluate(z)
 

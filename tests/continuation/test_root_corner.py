@@ -20,13 +20,13 @@ class Root(Problem):
 
     def __init__(self, pull: float) -> None:
         Problem.__init__(self, 2, 1, 0)
-        self.rooted, self.pull = True, pull
+        self.has_root_margins, self.pull = True, pull
 
-    def square(self, kind: int, z: FloatArray) -> float:
+    def squared_margin(self, kind: int, z: FloatArray) -> float:
         x, y, p = z
         return float(p + self.pull * x - 0.3 * y + 0.5 * x * y)
 
-    def bound(self, z: FloatArray) -> int:
+    def evaluate_margins(self, z: FloatArray) -> int:
         g = self.square(0, z)
         self.margin[0] = np.sign(g) * np.sqrt(abs(g))
         return 0
@@ -63,16 +63,16 @@ class MirroredRoots(Problem):
 
     def __init__(self, unlike: float, shift: float) -> None:
         Problem.__init__(self, 4, 2, 0)
-        self.rooted, self.pull, self.unlike, self.shift = True, 0.01, unlike, shift
+        self.has_root_margins, self.pull, self.unlike, self.shift = True, 0.01, unlike, shift
 
-    def square(self, kind: int, z: FloatArray) -> float:
+    def squared_margin(self, kind: int, z: FloatArray) -> float:
         x, y, other, p = z[2 * kind], z[2 * kind + 1], z[2 - 2 * kind], z[4]
         apart = 0.5 * (self.unlike - self.pull)
         return float(p + self.pull * x + apart * (x - other) - 0.3 * y + 0.5 * x * y + kind * self.shift)
 
-    def bound(self, z: FloatArray) -> int:
+    def evaluate_margins(self, z: FloatArray) -> int:
         for kind in range(2):
-            g = self.square(kind, z)
+            g = self.squared_margin(kind, z)
             self.margin[kind] = np.sign(g) * np.sqrt(abs(g))
         return 0
 
@@ -80,7 +80,7 @@ class MirroredRoots(Problem):
         apart = 0.5 * (self.unlike - self.pull)
         for kind in range(2):
             i, k = 2 * kind, 2 - 2 * kind
-            x, y, g = z[i], z[i + 1], self.square(kind, z)
+            x, y, g = z[i], z[i + 1], self.squared_margin(kind, z)
             root = np.sqrt(abs(g))
             slope = np.zeros(5)
             slope[[i, i + 1, k, 4]] = self.pull + apart + 0.5 * y, 0.5 * x - 0.3, -apart, 1.0
@@ -105,7 +105,7 @@ def test_mirrored_corners_are_crossed_one_at_a_time(unlike: float, shift: float)
     assert path.status is Status.COMPLETE and path.z[-1, 4] == -1.0
     assert path.z[-1, :2] == pytest.approx(path.z[-1, 2:4], abs=10.0 * shift + 1e-12)
     corners = np.flatnonzero(path.mark & Mark.CORNER)
-    sides = np.sign([[problem.square(kind, z) for z in path.z] for kind in range(2)])
+    sides = np.sign([[problem.squared_margin(kind, z) for z in path.z] for kind in range(2)])
     assert (sides[:, : corners[0]] == 1.0).all()
     assert (sides[:, corners[-1] + 1 :] == -1.0).all()
     between = sides[:, corners[0] + 1 : corners[-1]]

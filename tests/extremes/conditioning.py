@@ -21,7 +21,7 @@ def condition_number(scene: Scene, curve: Curve) -> float:
     n, worst = problem.unknowns, float("nan")
     for z in unknowns(curve, scene, at, curve.harmonics):
         problem.evaluate(z)
-        problem.measure(z)
+        problem.evaluate_scale(z)
         scale = np.asarray(problem.scale)
         values = np.linalg.svd(np.asarray(problem.jacobian) * scale / scale[:n, None], compute_uv=False)
         worst = np.fmax(worst, values[0] / max(values[-1], np.finfo(np.float64).tiny))

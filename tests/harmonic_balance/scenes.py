@@ -90,6 +90,6 @@ def displacements(system, z):
     """Fundamental and half the peak-to-peak of each degree of freedom at a solution."""
     balance = system.new_balance()
     balance.evaluate(z)
-    balance.report(z, np.zeros(z.size))
+    balance.evaluate_outputs(z, np.zeros(z.size))
     j = system.harmonics.index(1)
     return np.hypot(balance.displacements.re[j], balance.displacements.im[j]), np.array(balance.output)

@@ -21,7 +21,7 @@ KEYS = (
 
 def solved(system, z):
     newton = Newton(system.new_balance())
-    newton.problem.measure(z)
+    newton.problem.evaluate_scale(z)
     newton.scale[:], newton.z[:] = newton.problem.scale, z
     newton.row[:] = np.eye(z.size)[-1]
     assert newton.correct(1.0)
@@ -30,7 +30,7 @@ def solved(system, z):
 
 def reported(problem, z, direction):
     problem.evaluate(z)
-    problem.report(z, direction)
+    problem.evaluate_outputs(z, direction)
     return np.array(problem.output), np.array(problem.growth)
 
 

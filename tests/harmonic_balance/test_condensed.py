@@ -105,7 +105,7 @@ def test_direction_and_orientation_are_those_of_the_whole_system(scene, options,
     rng = np.random.default_rng(2)
     z = np.append(rng.normal(size=problem.unknowns), 1.05)
     newton = Newton(problem)
-    problem.measure(z)
+    problem.evaluate_scale(z)
     scale = np.array(problem.scale)
     row = rng.normal(size=z.size)
     row /= np.linalg.norm(row)
@@ -127,7 +127,7 @@ def test_orientation_does_not_hang_on_what_is_left_out_of_the_condensed_system()
         row = rng.normal(size=z.size)
         row /= np.linalg.norm(row)
         for one, signs in ((problem, found), (whole, expected)):
-            one.measure(z)
+            one.evaluate_scale(z)
             newton = Newton(one)
             newton.scale[:], newton.row[:], newton.z[:] = one.scale, row, z
             assert newton.take_tangent()
@@ -163,7 +163,7 @@ def test_a_small_condensed_system_is_solved_as_it_is():
         problem = system.new_balance()
         assert (problem.unknowns, problem.rank) == (144, 18)
         newton, z = Newton(problem), np.append(np.zeros(problem.unknowns), 1.15)
-        problem.measure(z)
+        problem.evaluate_scale(z)
         newton.scale[:], newton.z[:], newton.row[:] = problem.scale, z, rows
         assert newton.correct(1.0)
         assert problem.condensed.by_contacts == by_contacts
@@ -180,7 +180,7 @@ def test_contacts_that_begin_to_slip_or_open_are_taken_back():
         z = np.append(size * rng.normal(size=problem.unknowns), 1.05)
         tangents = []
         for one in (problem, whole):
-            one.measure(z)
+            one.evaluate_scale(z)
             newton = Newton(one)
             newton.scale[:], newton.z[:] = one.scale, z
             newton.row[:] = np.append(np.zeros(problem.unknowns), 1.0)
@@ -195,7 +195,7 @@ def test_points_of_the_curve_balance():
     system = System(many_contacts(), (1,), condensation=CONDENSED)
     newton = Newton(system.new_balance())
     z = np.append(np.zeros(newton.problem.unknowns), 0.9)
-    newton.problem.measure(np.append(np.ones(newton.problem.unknowns), 0.9))
+    newton.problem.evaluate_scale(np.append(np.ones(newton.problem.unknowns), 0.9))
     newton.scale[:] = newton.problem.scale
     newton.row[:] = np.append(np.zeros(newton.problem.unknowns), 1.0)
     newton.z[:] = z
@@ -272,7 +272,7 @@ def test_a_kept_jacobian_is_that_of_the_frequency_where_it_was_factored():
     condensed.evaluate(z)
     condensed.factor(row, scale)
     assert condensed.condensed.modes < 6
-    condensed.probe(np.append(z[:-1], 1.1))
+    condensed.evaluate_residual(np.append(z[:-1], 1.1))
     condensed.condensed.solve(right, step=False)
     np.testing.assert_allclose(right, expected, atol=1e-7 * np.abs(expected).max())
 

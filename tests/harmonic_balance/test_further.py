@@ -49,7 +49,7 @@ def test_a_share_is_what_a_harmonic_then_has(response):
     highest = with_ninth.quantities[0].amplitude[:, 1].argmax()
     z = with_ninth.traced.branches.paths[0].z[highest]
     problem.evaluate(z)
-    problem.report(z, np.zeros_like(z))
+    problem.evaluate_outputs(z, np.zeros_like(z))
     ninth = np.hypot(problem.displacements.re, problem.displacements.im)[3] / amplitude[0]
     assert share[8] == pytest.approx(ninth.max(), rel=0.3)
 

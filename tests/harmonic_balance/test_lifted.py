@@ -72,7 +72,7 @@ def stiff():
 def newton(lifted, guess, along, begin, steps):
     """Newton's method as it is from a place, in the plane through a guess: where it comes to, or None."""
     balance, z = lifted.balance, begin.copy()
-    balance.measure(guess)
+    balance.evaluate_scale(guess)
     scale = np.array(balance.scale)
     row = along / scale
     for _ in range(steps):

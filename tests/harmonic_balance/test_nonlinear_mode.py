@@ -55,7 +55,7 @@ def test_jacobian_against_differences(loaded):
     problem = AutonomousProblem(system, linear_modes(system, 2)[0])
     rng = np.random.default_rng(1)
     z = problem.start(np.log(1.0 if loaded else 2e-4))
-    problem.measure(z)
+    problem.evaluate_scale(z)
     unit = np.array(problem.scale)
     z += 0.05 * unit * rng.uniform(-1.0, 1.0, z.size)
     problem.evaluate(z)

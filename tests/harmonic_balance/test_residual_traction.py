@@ -132,11 +132,11 @@ def test_systems_condensed_to_modes_tell_the_same():
         system = System(held, (1, 3), condensation=options)
         newton = Newton(system.new_balance())
         newton.z[-1], newton.row[-1] = omega, 1.0
-        newton.problem.measure(newton.z)
+        newton.problem.evaluate_scale(newton.z)
         newton.scale[:] = newton.problem.scale
         assert newton.correct(1.0) and (newton.problem.rank > 0) == (options.min_unknowns == 1)
         z, newton_row = np.array(newton.z), np.zeros(len(newton.z))
-        newton.problem.report(z, newton_row)
+        newton.problem.evaluate_outputs(z, newton_row)
         amplitude, stuck = np.array(newton.problem.output)[None], np.zeros((3, 2), dtype=bool)
         stuck[:, 1] = True
         told.append(peak_changes(system, z[None], amplitude, np.zeros(3, dtype=np.intp), stuck)[0])
@@ -149,11 +149,11 @@ def test_the_way_to_the_limits_ends_where_it_takes_too_many_members():
     system = System(held, (1, 3))
     newton = Newton(system.new_balance())
     newton.z[-1], newton.row[-1] = fcm.respond(held).peak_frequency.sel(dof="a").item(), 1.0
-    newton.problem.measure(newton.z)
+    newton.problem.evaluate_scale(newton.z)
     newton.scale[:] = newton.problem.scale
     assert newton.correct(1.0)
     z = np.array(newton.z)
-    newton.problem.report(z, np.zeros(len(z)))
+    newton.problem.evaluate_outputs(z, np.zeros(len(z)))
     amplitude, stuck = np.array(newton.problem.output)[None], np.zeros((3, 2), dtype=bool)
     stuck[:, 1] = True
     top = np.zeros(3, dtype=np.intp)

@@ -311,7 +311,7 @@ def test_a_condensed_balance_has_the_jacobian_of_its_differences():
     ahead, size = [], []
     for step in (1e-6, -1e-6):
         balance.evaluate(z + step * direction)
-        balance.report(z + step * direction, direction)
+        balance.evaluate_outputs(z + step * direction, direction)
         ahead.append(np.array(balance.residual))
         size.append(balance.output[2])
     assert found @ direction == pytest.approx((ahead[0] - ahead[1]) / 2e-6, rel=1e-6, abs=1e-6)

@@ -22,7 +22,7 @@ def test_the_error_is_the_distance_to_the_solution_by_the_table_alone_and_none_w
     for i, (z, direction) in enumerate(zip(points.z, points.tangent, strict=True)):
         if np.abs(i - corners).min() < BESIDE_CORNERS:
             continue
-        problem.measure(z)
+        problem.evaluate_scale(z)
         newton.z[:], newton.scale[:] = z, problem.scale
         row = direction / np.asarray(problem.scale)
         newton.row[:] = row / np.linalg.norm(row)

@@ -63,7 +63,7 @@ def test_both_directions_of_sliding_have_one_unit():
     """As they have in any other two directions of the same plane."""
     balance = System(plane(3)).new_balance()
     z = np.random.default_rng(1).normal(size=balance.unknowns + 1)
-    balance.measure(z)
+    balance.evaluate_scale(z)
     units = np.asarray(balance.scale)[:-1].reshape(3, 9)
     along, across, normal = units[:, [0, 3, 4]], units[:, [1, 5, 6]], units[:, [2, 7, 8]]
     moved = z[:-1].reshape(3, 9)

@@ -118,11 +118,11 @@ def test_derivatives_by_the_frequency_know_that_forces_grow():
     step = 1e-6 * np.eye(z.size)[-1]
     balance.evaluate(z)
     by_frequency, sides, shown = np.array(balance.jacobian)[:, -1], [], []
-    balance.report(z, np.eye(z.size)[-1])
+    balance.evaluate_outputs(z, np.eye(z.size)[-1])
     growth = np.array(balance.growth)
     for sign in (1.0, -1.0):
         balance.evaluate(z + sign * step)
-        balance.report(z + sign * step, 0.0 * z)
+        balance.evaluate_outputs(z + sign * step, 0.0 * z)
         sides.append(np.array(balance.residual))
         shown.append(np.array(balance.output))
     assert by_frequency == pytest.approx((sides[0] - sides[1]) / 2e-6, rel=1e-6, abs=1e-6)
@@ -421,6 +421,6 @@ def test_no_peaks_are_looked_for_where_only_loads_work():
         balance = System(one).new_balance()
         z = np.append(np.full(balance.unknowns, 0.1), 1.2)
         balance.evaluate(z)
-        balance.report(z, np.ones(z.size))
+        balance.evaluate_outputs(z, np.ones(z.size))
         assert (np.asarray(balance.growth) != 0.0).tolist() == grows
         assert (np.asarray(balance.output) > 0.0).all()

@@ -68,7 +68,7 @@ def test_loads_and_forces_of_any_harmonic_act_on_every_sector(harmonic):
     assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
     of_one.evaluate(z)
     for problem, at in ((balance, around), (of_one, z)):
-        problem.report(at, np.eye(at.size)[-1])
+        problem.evaluate_outputs(at, np.eye(at.size)[-1])
     for name in ("amplitude", "mean", "growth"):
         found, expected = (
             np.asarray(getattr(displacements, name))[:3]

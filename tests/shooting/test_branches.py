@@ -55,7 +55,7 @@ def test_the_derivatives_are_those_of_differences(scene, omega):
 
     def at(z):
         problem.evaluate(z)
-        problem.report(z, way)
+        problem.evaluate_outputs(z, way)
         return np.array(problem.residual), np.array(problem.output)
 
     at(z)

@@ -104,7 +104,7 @@ def test_a_place_beside_known_ones_is_the_same_and_takes_fewer_periods(crossed):
         by_itself = Segment(fresh, path, k)
         before = fresh.periods
         assert by_itself.find(parts[-1])
-        problem.measure(found)
+        problem.evaluate_scale(found)
         assert (np.abs(found - by_itself.z) < 1e-10 * np.asarray(problem.scale)).all()
         alone += fresh.periods - before
         before = again.periods

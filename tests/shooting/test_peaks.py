@@ -19,7 +19,7 @@ LOW, HIGH = 0.42, 0.44
 
 
 def amplitudes(problem, z, direction):
-    problem.report(z, direction)
+    problem.evaluate_outputs(z, direction)
     return np.array(problem.output)
 
 

@@ -59,7 +59,7 @@ def judged(scene, omega, highest):
     z = only(scene, omega, highest)
     orbit = periodic(scene, omega, state(of, z))
     balance = of.new_balance()
-    balance.report(z, np.zeros_like(z))
+    balance.evaluate_outputs(z, np.zeros_like(z))
     np.testing.assert_allclose(orbit.measure.amplitude, np.asarray(balance.output), rtol=0.02)
     return Multipliers(of, omega).classify(z), orbit.stable
 

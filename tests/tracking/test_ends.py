@@ -89,7 +89,7 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
         problem = setup.tracked(one.condition)
-        problem.measure(one.points[i].z)
+        problem.evaluate_scale(one.points[i].z)
         problem.evaluate(one.points[i].z)
         scale = np.array(problem.scale)[:-1]
         by_all = np.array(problem.jacobian)[:-1, :-1] * scale / scale[:-1, None]

@@ -211,7 +211,7 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
 def beside_fold(setup, z):
     """A point of the response next to a tracked fold."""
     problem = setup.tracked(Condition(Kind.FOLD))
-    problem.measure(z)
+    problem.evaluate_scale(z)
     direction = problem.along(z)[0] * np.asarray(problem.scale)[:-1]
     newton = Newton(problem.varied.balance)
     newton.scale[:], newton.z[:] = np.asarray(problem.scale)[:-1], z[:-1] + 1e-2 * direction

@@ -77,7 +77,7 @@ def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(setup, po
 def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(setup, point, monkeypatch):
     """Exactly: of its Jacobian one row is nothing, and no matrix closed by another can be solved."""
     problem = setup.tracked(PEAK)
-    problem.measure(point.z)
+    problem.evaluate_scale(point.z)
 
     def crossed(balance):
         found = jacobian_of(balance)
@@ -108,6 +108,6 @@ def test_a_peak_is_not_followed_along_a_corner_at_which_its_condition_jumps():
     assert Ending.CORNER in found.endings
     for point in found.points:
         problem = setup.tracked(condition)
-        problem.measure(point.z)
+        problem.evaluate_scale(point.z)
         problem.evaluate(point.z)
         assert abs(problem.residual[-1]) < 1e-6 * problem.scale[problem.n]

@@ -100,7 +100,7 @@ def _balanced(
         raised.begin(float(one[-1]))
         newton.z[:] = finer.extended(one, system.harmonics)
         newton.z[-1] = level[i]
-        raised.measure(newton.z)
+        raised.evaluate_scale(newton.z)
         newton.scale[:] = raised.scale
         newton.row[:] = 0.0
         newton.row[-1] = 1.0

@@ -56,7 +56,7 @@ def _moved(system: System, z: FloatArray, others: tuple[int, ...]) -> ComplexArr
     """Displacements (harmonic, dof) by the contact forces in harmonics that the balance leaves out."""
     motion, forces = np.ascontiguousarray(z), []
     for i, law in enumerate(system.exact_laws(others)):
-        law.probe(motion, i * law.width)
+        law.evaluate_forces(motion, i * law.width)
         forces.append(np.array(law.force))
     ports = system.layout_of(others).complex_ports(np.concatenate(forces))[:, 1:].T[None]
     found: ComplexArray = system.linear.displacements(np.array(others, dtype=np.float64), z[-1:], ports)[0]

@@ -85,7 +85,7 @@ def _leaving(
     """Solutions on both sides of a branch point that follows point i of a path, off the path, at the least
     distance at which there are any. The path's direction is that of its chord: it has no one tangent there.
     """
-    problem.measure(z)
+    problem.evaluate_scale(z)
     problem.evaluate(z)
     scale = np.array(problem.scale)
     t = (path.z[i + 1] - path.z[i]) / scale

@@ -353,7 +353,7 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
     row[-1] = 1.0
     for x in linear_responses(system, omega, 1.0):
         z = np.append(x, omega)
-        newton.problem.measure(z)
+        newton.problem.evaluate_scale(z)
         newton.scale[:] = newton.problem.scale
         newton.z[:], newton.row[:] = z, row
         if newton.correct(1.0):

@@ -37,7 +37,11 @@ class FrictionProblem(Problem):
         super().__init__(balance.unknowns, balance.margins, 0, balance.rank)
         self.group, self.residual, self.jacobian = balance.group, balance.residual, balance.jacobian
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
-        self.unbounded, self.rooted, self.costly = balance.unbounded, balance.rooted, balance.costly
+        self.unbounded, self.has_root_margins, self.costly = (
+            balance.unbounded,
+            balance.has_root_margins,
+            balance.costly,
+        )
         self.numbers = [(one.mu, one.k_u, one.k_v, one.n_0) for one in system.scene.contacts]
         self.z = np.append(np.zeros(balance.unknowns), omega)
 
@@ -49,26 +53,26 @@ class FrictionProblem(Problem):
         return self.z
 
     def evaluate(self, z: FloatArray) -> int:
-        self.balance.probe(self._with_friction(z, z[-1] + self.difference))
+        self.balance.evaluate_residual(self._with_friction(z, z[-1] + self.difference))
         further = np.array(self.balance.residual)
         self.balance.evaluate(self._with_friction(z, z[-1]))
         last = 0 if self.rank else self.unknowns
         np.asarray(self.jacobian)[:, last] = (further - np.asarray(self.residual)) / self.difference
         return 0
 
-    def probe(self, z: FloatArray) -> int:
-        return int(self.balance.probe(self._with_friction(z, z[-1])))
+    def evaluate_residual(self, z: FloatArray) -> int:
+        return int(self.balance.evaluate_residual(self._with_friction(z, z[-1])))
 
-    def measure(self, z: FloatArray) -> int:
-        self.balance.measure(self._with_friction(z, z[-1]))
+    def evaluate_scale(self, z: FloatArray) -> int:
+        self.balance.evaluate_scale(self._with_friction(z, z[-1]))
         self.scale[:-1] = self.balance.scale[:-1]
         return 0
 
-    def bound(self, z: FloatArray) -> int:
-        return int(self.balance.bound(self._with_friction(z, z[-1])))
+    def evaluate_margins(self, z: FloatArray) -> int:
+        return int(self.balance.evaluate_margins(self._with_friction(z, z[-1])))
 
-    def square(self, kind: int, z: FloatArray) -> float:
-        return float(self.balance.square(kind, self._with_friction(z, z[-1])))
+    def squared_margin(self, kind: int, z: FloatArray) -> float:
+        return float(self.balance.squared_margin(kind, self._with_friction(z, z[-1])))
 
     def factor(self, row: FloatArray, scale: FloatArray) -> float:
         return float(self.balance.factor(row, scale))

@@ -163,7 +163,7 @@ class _CurvesWith:
 def _passes_fold(curve: Folds, turn: LevelFold, surface: Surface, options: FoldOptions) -> bool:
     """Whether a curve passes a fold."""
     z = np.append(turn.z, turn.level)
-    surface.measure(z)
+    surface.evaluate_scale(z)
     points = (curve.z - z) / np.asarray(surface.scale)
     off = points[:, -2]
     for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0).tolist():
@@ -195,7 +195,7 @@ def _at_level_one(few: System, system: System, curve: Folds) -> tuple[list[Float
 def _corrected_in_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution near a guess, in the plane across a direction in the displacements."""
     balance, newton = system.reset_balance(), system.shared_stepper.newton
-    balance.measure(z)
+    balance.evaluate_scale(z)
     newton.scale[:], newton.z[:] = balance.scale, z
     row = way / np.asarray(balance.scale)
     newton.row[:] = row / np.linalg.norm(row)

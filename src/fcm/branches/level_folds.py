@@ -28,7 +28,7 @@ class ProblemAtLevel(Protocol):
     load: float
     scale: FloatArray
 
-    def measure(self, z: FloatArray) -> int:
+    def evaluate_scale(self, z: FloatArray) -> int:
         """Fill the units of lengths at z, see `Problem.measure`."""
 
 
@@ -93,7 +93,7 @@ def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) 
     newton belongs to that problem, and is then at the solution.
     """
     problem.load = turn.level
-    problem.measure(turn.z)
+    problem.evaluate_scale(turn.z)
     newton.z[:], newton.scale[:] = turn.z, problem.scale
     along = turn.direction / np.asarray(problem.scale)
     newton.row[:] = along / np.linalg.norm(along)

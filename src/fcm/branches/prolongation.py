@@ -80,7 +80,7 @@ def at_its_frequency(
     """The solution that Newton's method finds from z at its frequency, if that is not far."""
     balance, newton = system.reset_balance(), system.shared_stepper.newton
     newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
-    balance.measure(z)
+    balance.evaluate_scale(z)
     newton.scale[:] = balance.scale
     return np.array(newton.z) if newton.correct(1.0) and newton.moved < options.max_change else None
 

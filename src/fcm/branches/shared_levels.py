@@ -88,7 +88,7 @@ def _solution_between(system: System, omega: float, ends: FloatArray, part: floa
     newton, chord = stepper.newton, ends[1] - ends[0]
     newton.z[:] = np.append(ends[0] + part * chord, 1.0)
     newton.row[:] = np.append(np.zeros(chord.size), 1.0)
-    level.measure(newton.z)
+    level.evaluate_scale(newton.z)
     newton.scale[:] = level.scale
     unit = np.asarray(newton.scale)[:-1]
     way = chord / unit

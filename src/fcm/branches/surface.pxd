@@ -24,7 +24,7 @@ cdef class Surface:
     cdef double[::1] by_level
     cdef double[::1] at_level
     cpdef bint recentre(self, double[::1] along, double[::1] across) except -1
-    cpdef int measure(self, double[::1] z) except -1
+    cpdef int evaluate_scale(self, double[::1] z) except -1
     cdef bint orthonormalise(self) except -1
     cpdef bint find(self, double ahead, double aside) except -1
     cdef bint factor(self) except -1

@@ -78,19 +78,19 @@ class Surface:
         """Take the place that z is for the centre of other axes (n + 2,), in the units of z."""
         i: cython.Py_ssize_t
         self.centre[:] = self.z
-        self.measure(self.z)
+        self.evaluate_scale(self.z)
         for i in range(self.n + 2):
             self.axes[0, i], self.axes[1, i] = along[i] / self.scale[i], across[i] / self.scale[i]
         return self.orthonormalise()
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def measure(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
         """Units of lengths at a place: those of the balance, and the level by itself."""
         i: cython.Py_ssize_t
         for i in range(self.n + 1):
             self.balance_point[i] = z[i]
-        self.balance.measure(self.balance_point)
+        self.balance.evaluate_scale(self.balance_point)
         for i in range(self.n + 1):
             self.scale[i] = self.balance.scale[i]
         self.scale[self.n + 1] = max(fabs(z[self.n + 1]), self.level_floor)

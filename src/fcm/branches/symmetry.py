@@ -64,9 +64,9 @@ def broken_symmetries(
         if symmetry is None:
             continue
         image = symmetry.image(other)
-        balance.measure(image)
+        balance.evaluate_scale(image)
         scale = np.asarray(balance.scale)
-        balance.probe(image)
+        balance.evaluate_residual(image)
         off = np.abs(np.asarray(balance.residual) / scale[:-1]).max(initial=0.0)
         if (
             off < options.motion_tolerance

@@ -97,7 +97,7 @@ def _with_more(system: System, more: System, path: Path, options: BranchingOptio
     z, direction = (more.extended(one, system.harmonics) for one in (path.z, path.direction))
     newton, orientation = Newton(more.new_balance()), np.full(len(z), np.nan)
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):
-        newton.problem.measure(one)
+        newton.problem.evaluate_scale(one)
         newton.scale[:], newton.z[:] = newton.problem.scale, one
         row = way / np.asarray(newton.scale)
         newton.row[:] = row / np.linalg.norm(row)

@@ -167,7 +167,7 @@ def point_before(path: Path, z: FloatArray, problem: Problem, options: PathOptio
     other. There Newton's method starts from the nearest chord of the path, in the plane through the solution
     across that chord.
     """
-    problem.measure(z)
+    problem.evaluate_scale(z)
     scale = np.array(problem.scale)
     points = (path.z - z) / scale
     square = (points * points).sum(axis=1)

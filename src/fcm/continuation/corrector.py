@@ -176,7 +176,7 @@ class Newton(BorderedSystem):
             self.guess[i] = self.z[i]
         if self.converges(reach, most):
             return True
-        return self.problem.rooted and most == INFINITY and self.correct_by_half_steps(reach)
+        return self.problem.has_root_margins and most == INFINITY and self.correct_by_half_steps(reach)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -284,7 +284,7 @@ class Newton(BorderedSystem):
             return False
         most: cython.double = self.options.rounding_multiple
         stalled: cython.bint = count > 2 and step < self.options.stalled_rounding
-        if stalled and (self.problem.rank or not self.problem.rooted):
+        if stalled and (self.problem.rank or not self.problem.has_root_margins):
             return True
         if self.problem.rank:
             return step < most * most * EPS * sqrt(self.problem.unknowns + 1)
@@ -327,7 +327,7 @@ def _last_chord_step(newton: Newton, before: cython.double) -> cython.bint:
     before: the length of the step before. What the last one leaves is less by as much again; one that does
     not lead to the curve is not taken.
     """
-    newton.problem.probe(newton.z)
+    newton.problem.evaluate_residual(newton.z)
     step: cython.double = newton.step()
     if not step * step < newton.tolerance * before:
         return False
@@ -370,7 +370,7 @@ def _chord_steps(
     count: cython.int
     step: cython.double
     for count in range(most):  # noqa: B007
-        newton.problem.probe(newton.z)
+        newton.problem.evaluate_residual(newton.z)
         step = newton.step()
         if step < newton.options.negligible_step:
             return True
@@ -406,7 +406,7 @@ def _fill(
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for i in range(z.shape[0]):
-        newton.problem.measure(z[i])
+        newton.problem.evaluate_scale(z[i])
         total: cython.double = 0.0
         for k in range(z.shape[1]):
             newton.scale[k], newton.z[k] = newton.problem.scale[k], z[i, k]

@@ -115,7 +115,7 @@ class Follower:
             forward, direction = bool(direction[n] > 0.0), None
         row[n] = 1.0 if forward else -1.0
         if direction is not None:
-            self.problem.measure(start)
+            self.problem.evaluate_scale(start)
             row = direction / np.asarray(self.problem.scale)
             row /= np.linalg.norm(row)
         if not self.stepper.begin(np.array(start, dtype=np.float64), row):
@@ -179,7 +179,7 @@ class Follower:
             self.steps_over_corners(step) or self.steps_over_corners(control.retry_fraction * step)
         ):
             return self.accept_step()
-        if self.problem.rooted and is_met(stepper):
+        if self.problem.has_root_margins and is_met(stepper):
             return self.leave_corner(stepper.here, 0.0)
         while step > control.min_step:
             known: cython.bint = (
@@ -214,7 +214,7 @@ class Follower:
                         return self.accept_step()
                     step = hidden
                     continue
-            if self.problem.rooted:
+            if self.problem.has_root_margins:
                 status = self.pass_straight_corner(step, reach)
                 if status is not Status.STALLED:
                     return status

@@ -215,7 +215,9 @@ class LabelledSwitching:
             self.departures += 1
             follower.leave_corner(stepper.here, 0.0, past)
             new = np.array(stepper.here.tangent)
-            stepper.problem.bound(np.asarray(stepper.here.z) + past * np.asarray(stepper.newton.scale) * new)
+            stepper.problem.evaluate_margins(
+                np.asarray(stepper.here.z) + past * np.asarray(stepper.newton.scale) * new
+            )
             cosine = float(new @ self.incoming)
             turned = cosine < self.options.straight_cosine
             if self.is_new_direction(cosine) and (turned or self.departures == self.options.max_departures):
@@ -314,7 +316,7 @@ def _found(
         return False
     step = (np.asarray(newton.z) - here) / scale
     length = float(np.linalg.norm(step))
-    stepper.problem.bound(newton.z)
+    stepper.problem.evaluate_margins(newton.z)
     least = stepper.options.labels.min_way_cosine * length
     forward = bool(np.asarray(newton.tangent) @ step > least)
     return forward and is_new_direction(float(incoming @ step) / length)

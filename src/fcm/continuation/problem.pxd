@@ -7,7 +7,7 @@ cdef class Problem:
     cdef public int rank
     cdef public int group
     cdef public bint labelled
-    cdef public bint rooted
+    cdef public bint has_root_margins
     cdef public bint costly
     cdef public double unbounded
     cdef readonly int costly_size
@@ -21,11 +21,11 @@ cdef class Problem:
     cdef public double[::1] output
     cdef public double[::1] growth
     cpdef int evaluate(self, double[::1] z) except -1
-    cpdef int probe(self, double[::1] z) except -1
-    cpdef int measure(self, double[::1] z) except -1
-    cpdef int bound(self, double[::1] z) except -1
-    cpdef double square(self, int kind, double[::1] z) except? -1.0
-    cpdef int report(self, double[::1] z, double[::1] direction) except -1
+    cpdef int evaluate_residual(self, double[::1] z) except -1
+    cpdef int evaluate_scale(self, double[::1] z) except -1
+    cpdef int evaluate_margins(self, double[::1] z) except -1
+    cpdef double squared_margin(self, int kind, double[::1] z) except? -1.0
+    cpdef int evaluate_outputs(self, double[::1] z, double[::1] direction) except -1
     cpdef double factor(self, double[::1] row, double[::1] scale) except -2.0
     cpdef int solve(self, double[::1] right) except -1
     cpdef double solved_sign(self) except -2.0

@@ -29,16 +29,17 @@ class Problem:
     """Equations of a curve; see the methods for what each array holds.
 
     residual (n,), jacobian (n, n + 1): by `evaluate`, the derivative by the parameter in the last column; by
-    `probe` the residual alone.
-    scale (n + 1,): by `measure`. margin, kind, angle (margins,): by `bound`. output, growth (outputs,): by
-    `report`.
+    `evaluate_residual` the residual alone.
+    scale (n + 1,): by `evaluate_scale`. margin, kind, angle (margins,): by `evaluate_margins`. output, growth
+    (outputs,): by `evaluate_outputs`.
     rank: 0; or the size of a smaller system to which that of Newton's method is condensed, by the problem
     itself. Then jacobian is (n, 1), the derivative by the parameter alone; see `factor` and `solve`.
     group: margins of so many in a row belong together; one is never the same as one of another group.
     unbounded: growth of the solution, in units of its size at the start, that only an undamped resonance has.
     costly: whether there are so many unknowns that every point counts: slight corners are stepped over,
     peaks and folds sought between all points of a step that are known.
-    rooted: whether a margin may begin as a root of the distance from a corner, so that `Newton` halves steps.
+    has_root_margins: whether a margin may begin as a root of the distance from a corner, so that `Newton`
+    halves steps.
     labelled: whether the margins are labels: while they stay the problem is smooth; else it may not be.
     """
 
@@ -57,7 +58,7 @@ class Problem:
             options.difference_length,
             options.max_angle,
         )
-        self.rooted = False
+        self.has_root_margins = False
         self.group, self.costly = margins, unknowns >= self.costly_size
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
@@ -75,19 +76,19 @@ class Problem:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def probe(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_residual(self, z: cython.double[::1]) -> cython.int:
         """Fill the residual alone at z, where that costs less."""
         return self.evaluate(z)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def measure(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
         """Fill the units of length along the curve at z: of each unknown, and of the parameter."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_margins(self, z: cython.double[::1]) -> cython.int:
         """Fill the margins: functions of z of which each changes sign where the problem is not smooth.
 
         Which function each is its kind says, and of those of one kind the angle [rad], which varies with z;
@@ -97,14 +98,14 @@ class Problem:
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
-    def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
+    def squared_margin(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
         """The function of z, smooth and of the sign of the margin of a kind, whose root that margin is, and
         the equations have; NaN if it is no root."""
         return NAN
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
+    def evaluate_outputs(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
         """Fill the outputs at z, positive numbers, and their growth along a direction (n + 1,)."""
         return 0
 
@@ -238,7 +239,7 @@ class Point:
         length: cython.double = problem.difference_length
         for i in range(probe.shape[0]):
             probe[i] = self.z[i] + length * scale[i] * self.tangent[i]
-        problem.bound(probe)
+        problem.evaluate_margins(probe)
         for k in range(problem.margins):
             self.slope[k] = 0.0
             i = self.matching_margin(k, problem.kind, problem.angle)

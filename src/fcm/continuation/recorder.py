@@ -253,7 +253,7 @@ def step_back(stepper: Stepper, store: PointStore, points: int) -> bool:
     if not plain.size:
         return False
     i = int(plain[-1])
-    stepper.problem.measure(kept.z[i])
+    stepper.problem.evaluate_scale(kept.z[i])
     row = kept.direction[i] / np.asarray(stepper.problem.scale)
     if not stepper.begin(kept.z[i], row / np.linalg.norm(row)):
         return False
@@ -310,7 +310,7 @@ class NonsmoothPoints:
         if self.labelled:
             cross_label(stepper, past)
         else:
-            beyond = find_beyond(stepper, before) if stepper.problem.rooted else 0.0
+            beyond = find_beyond(stepper, before) if stepper.problem.has_root_margins else 0.0
             if beyond > 0.0:
                 turn_beyond(stepper, beyond)
             else:
@@ -375,7 +375,7 @@ def cross_corner(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     first: cython.double = 0.0  # the nearest, though another corner is as near
     for count in range(stepper.options.switching.departure_tries):  # noqa: B007
         if point_beyond(stepper, length):
-            if not stepper.problem.rooted or without_sign_change(stepper, 10.0 * length):
+            if not stepper.problem.has_root_margins or without_sign_change(stepper, 10.0 * length):
                 accept_beyond(stepper, length, not passes_user_point(stepper, stops))
                 return True
             first = first or length
@@ -409,14 +409,14 @@ def point_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
             return True
         # whole steps may have led to another part of the curve
         if (
-            stepper.problem.rooted
+            stepper.problem.has_root_margins
             and stepper.newton.correct_by_half_steps(length)
             and close_to_prediction(stepper, length)
         ):
             return True
         stepper.newton.z[:] = stepper.between.z
         # along the edge of a piece, as where a circle ceases to slip, only the equations lead across it
-        if stepper.problem.rooted and not stepper.newton.single_step():
+        if stepper.problem.has_root_margins and not stepper.newton.single_step():
             return False
     return False
 
@@ -444,7 +444,7 @@ def without_sign_change(stepper: Stepper, length: cython.double) -> cython.bint:
     stepper.record(there, True, False)
     for i in range(stepper.guess.shape[0]):
         stepper.guess[i] = there.z[i] + length * stepper.newton.scale[i] * there.tangent[i]
-    stepper.problem.bound(stepper.guess)
+    stepper.problem.evaluate_margins(stepper.guess)
     for k in range(stepper.problem.margins):
         if there.margin[k] * there.margin_of_problem(k, stepper.problem) < 0.0:
             return False
@@ -508,7 +508,7 @@ def cross_label(stepper: Stepper, past: cython.double) -> cython.bint:
     """
     i: cython.Py_ssize_t
     predict_past_label(stepper, past)
-    stepper.problem.bound(stepper.newton.z)
+    stepper.problem.evaluate_margins(stepper.newton.z)
     stepper.here.margin[:] = stepper.problem.margin
     stepper.offset[:] = 0.0
     if not predict_beyond(stepper, past):
@@ -519,7 +519,7 @@ def cross_label(stepper: Stepper, past: cython.double) -> cython.bint:
     for i in range(stepper.guess.shape[0]):
         stepper.guess[i] = stepper.newton.scale[i] * stepper.here.tangent[i]
     if stepper.problem.outputs:
-        stepper.problem.report(stepper.here.z, stepper.guess)
+        stepper.problem.evaluate_outputs(stepper.here.z, stepper.guess)
         stepper.here.growth[:] = stepper.problem.growth
     return True
 

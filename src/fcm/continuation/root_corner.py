@@ -1,4 +1,4 @@
-"""Corners at which the equations begin as the root of a smooth function of the unknowns, its `square`.
+"""Corners where the equations begin as the root of a smooth function of the unknowns, its `squared_margin`.
 
 Where discs that hold a slider come to have no place in common, their common places shrink to a point as the
 root of what is left. The forces do likewise: their derivatives have no limit, and the direction of the
@@ -96,7 +96,7 @@ def _crossings(corners: Sequence[RootCorner], options: SwitchingOptions) -> Iter
 
 def _side(stepper: Stepper, corner: RootCorner, z: FloatArray) -> float:
     """The side of the surface of a corner on which a point lies: -1 or 1."""
-    return float(np.sign(stepper.problem.square(corner.kind, z)))
+    return float(np.sign(stepper.problem.squared_margin(corner.kind, z)))
 
 
 def _beside(stepper: Stepper, corners: Sequence[RootCorner], lengths: FloatArray) -> FloatArray:
@@ -113,7 +113,7 @@ def _solve(stepper: Stepper, corner: RootCorner, wanted: float, at: FloatArray) 
     scale = np.array(newton.scale)
     newton.row[:] = np.sign(wanted) * corner.normal
     for _ in range(options.max_iterations):
-        off = problem.square(corner.kind, at) / corner.slope
+        off = problem.squared_margin(corner.kind, at) / corner.slope
         newton.z[:] = last = at + scale * corner.normal * (wanted - off)
         if not newton.single_step():
             return None
@@ -136,7 +136,7 @@ def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[
     margins, kinds = np.asarray(before.margin), np.asarray(before.kind)
     for k in np.flatnonzero((margins != 0.0) & (np.abs(margins) < options.max_root_margin) & (kinds >= 0)):
         kind = int(kinds[k])
-        value = stepper.problem.square(kind, z)
+        value = stepper.problem.squared_margin(kind, z)
         if not np.isfinite(value):
             continue
         slopes = _differences(stepper, kind, z, options.root_difference * scale) / options.root_difference
@@ -147,9 +147,9 @@ def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[
 
 def _differences(stepper: Stepper, kind: int, z: FloatArray, steps: FloatArray) -> FloatArray:
     """Differences (n + 1,) of the square of a kind by a step ahead of z in each unknown."""
-    value, ahead, found = stepper.problem.square(kind, z), z.copy(), np.empty(len(z))
+    value, ahead, found = stepper.problem.squared_margin(kind, z), z.copy(), np.empty(len(z))
     for i in range(len(z)):  # a matrix of all would be as large as that of the equations
         ahead[i] += steps[i]
-        found[i] = stepper.problem.square(kind, ahead) - value
+        found[i] = stepper.problem.squared_margin(kind, ahead) - value
         ahead[i] = z[i]
     return found

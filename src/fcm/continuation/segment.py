@@ -30,7 +30,7 @@ class Segment:
 
     def __init__(self, problem: Problem, path: Path, first: int, options: PathOptions = PATH) -> None:
         self.newton, self._flat = Newton(problem), options.min_cosine
-        problem.measure(np.ascontiguousarray(path.z[first]))
+        problem.evaluate_scale(np.ascontiguousarray(path.z[first]))
         self._scale = np.array(problem.scale)
         self._ends = path.z[first : first + 2] / self._scale
         self._chord = self._ends[1] - self._ends[0]

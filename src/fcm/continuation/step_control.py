@@ -71,13 +71,13 @@ class Stepper:
         """Start from near z, moved to the curve in the plane of row; 0 if there is no curve."""
         self.known_length = 0.0
         self.here.slope[:] = 0.0
-        self.problem.measure(z)
+        self.problem.evaluate_scale(z)
         self.newton.scale[:] = self.problem.scale
         self.newton.z[:] = z
         self.newton.row[:] = row
         if not self.newton.correct(1.0):
             return 0
-        self.problem.measure(self.newton.z)  # the guess may have been far larger than the solution
+        self.problem.evaluate_scale(self.newton.z)  # the guess may have been far larger than the solution
         self.newton.scale[:] = self.problem.scale
         if not self.newton.correct(1.0):
             return 0
@@ -160,7 +160,7 @@ class Stepper:
     @cython.exceptval(-1, check=False)
     def accept(self, point: Point, length: cython.double) -> cython.int:
         """Go on from a point at a length from here, 0 beyond a corner, in the scale that is right for it."""
-        self.problem.measure(point.z)
+        self.problem.evaluate_scale(point.z)
         scale: cython.double[::1] = self.newton.scale
         new: cython.double[::1] = self.problem.scale
         if self.problem.labelled:
@@ -266,12 +266,12 @@ class Stepper:
         for i in range(point.z.shape[0]):
             point.z[i], point.tangent[i] = self.newton.z[i], self.newton.tangent[i]
         if margins and self.problem.margins:
-            self.problem.bound(point.z)
+            self.problem.evaluate_margins(point.z)
             point.set_margins(self.problem)
         if outputs and self.problem.outputs:
             for i in range(point.z.shape[0]):
                 self.guess[i] = self.newton.scale[i] * point.tangent[i]
-            self.problem.report(point.z, self.guess)
+            self.problem.evaluate_outputs(point.z, self.guess)
             for i in range(self.problem.outputs):
                 point.output[i], point.growth[i] = self.problem.output[i], self.problem.growth[i]
         return 0
@@ -546,7 +546,7 @@ def prediction_changes_sign(stepper: Stepper, step: cython.double) -> cython.bin
     """
     k: cython.Py_ssize_t
     stepper.predictor.predict(stepper.here, stepper.newton.scale, step, stepper.guess)
-    stepper.problem.bound(stepper.guess)
+    stepper.problem.evaluate_margins(stepper.guess)
     for k in range(stepper.problem.margins):
         if stepper.problem.labelled:
             changed: cython.bint = stepper.problem.margin[k] != stepper.here.margin[k]
@@ -569,7 +569,9 @@ def acceptable(stepper: Stepper) -> cython.bint:
         if changed and not stepper.problem.labelled and not passes_branch_point(stepper):
             return False
         # beyond a corner that turns by more than a right angle the way back is as near
-        back: cython.bint = stepper.problem.rooted and changed and stepper.cosine < options.min_cosine
+        back: cython.bint = (
+            stepper.problem.has_root_margins and changed and stepper.cosine < options.min_cosine
+        )
         # of labelled curves `LabelledSwitching` tells what a short step may miss
         near: cython.bint = stepper.problem.labelled or within_turn(stepper)
         return stepper.cosine > 0.0 and not back and near

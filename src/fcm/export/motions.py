@@ -187,7 +187,7 @@ def contact_forces(system: System, z: FloatArray) -> ComplexArray:
     layout, z = system.layout, np.ascontiguousarray(z)
     flat = np.zeros(layout.unknowns)
     for i, law in enumerate(system.exact_laws(system.harmonics)):
-        law.probe(z, i * layout.width)
+        law.evaluate_forces(z, i * layout.width)
         flat[i * layout.width : (i + 1) * layout.width] = np.asarray(law.force)[: layout.width]
     force = layout.complex_ports(flat).reshape(layout.contacts, layout.directions, -1)
     force[..., 1:] *= 1j

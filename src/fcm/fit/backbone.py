@@ -158,7 +158,7 @@ class _Followed:
     def _solved(self, guess: FloatArray) -> FloatArray | None:
         """The point with the modal amplitude of a guess."""
         newton = self.newton
-        self.problem.measure(guess)
+        self.problem.evaluate_scale(guess)
         newton.scale[:], newton.z[:], newton.row[:] = self.problem.scale, guess, np.eye(guess.size)[-1]
         return np.array(newton.z) if newton.correct(1.0) else None
 

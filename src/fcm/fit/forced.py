@@ -78,7 +78,7 @@ class Observed:
 
     def along(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Observable of the last evaluated solution, and its rates along a direction (unknown + 1,)."""
-        self.balance.report(z, np.ascontiguousarray(direction))
+        self.balance.evaluate_outputs(z, np.ascontiguousarray(direction))
         displacements, d, j = self.balance.displacements, self.dof, self.first
         X, dX = (
             complex(displacements.re[j, d], displacements.im[j, d]),
@@ -89,7 +89,7 @@ class Observed:
 
     def by_number(self, z: FloatArray, direction: FloatArray, X: ComplexArray) -> FloatArray:
         """Rates of it where the solution moves in a direction, and displacements besides by X."""
-        self.balance.report(z, np.ascontiguousarray(direction))
+        self.balance.evaluate_outputs(z, np.ascontiguousarray(direction))
         displacements, d, j = self.balance.displacements, self.dof, self.first
         growth = self.balance.growth[d] + growth_of(self.balance, X)[d]
         dX = complex(displacements.d_re[j, d], displacements.d_im[j, d]) + X[j, d]
@@ -247,7 +247,7 @@ class Nearest:
         NoMotionError
             If the curve is not met again, not even at an end of the segment where it was.
         """
-        self.newton.problem.measure(start)
+        self.newton.problem.evaluate_scale(start)
         row = direction / np.asarray(self.newton.problem.scale)
         row /= np.linalg.norm(row)
         z = self._corrected(start, row)
@@ -284,7 +284,7 @@ class Nearest:
 
     def _corrected(self, z: FloatArray, row: FloatArray) -> FloatArray | None:
         newton = self.newton
-        newton.problem.measure(z)
+        newton.problem.evaluate_scale(z)
         newton.scale[:], newton.z[:], newton.row[:] = newton.problem.scale, z, row
         return np.array(newton.z) if newton.correct(1.0) else None
 

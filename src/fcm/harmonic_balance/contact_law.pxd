@@ -25,9 +25,9 @@ cdef class Law:
     cdef public int[::1] state
     cdef public double[::1] contact_loads
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
-    cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
-    cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1
-    cpdef double square(self, int kind, double[::1] x, Py_ssize_t first) except? -1.0
+    cpdef int evaluate_forces(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef int evaluate_margins(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef double squared_margin(self, int kind, double[::1] x, Py_ssize_t first) except? -1.0
     cpdef int compute_resistance(self) except -1
     cpdef int cycle(self, double[::1] x, Py_ssize_t first) except -1
 

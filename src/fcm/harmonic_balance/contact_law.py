@@ -63,7 +63,7 @@ class Law:
         By `evaluate`: whether it slips or separates within the cycle, so that its forces have harmonics that
         its motion has not.
     margin, kind, angle (margins,)
-        By `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1.
+        By `evaluate_margins`, as those of a `Problem`, with kinds from 0 to KINDS - 1.
     resistance (direction, direction)
         By `compute_resistance`: derivatives of the forces by the displacements, in the mean over the cycle.
     pieces, state (piece,)
@@ -107,19 +107,21 @@ class Law:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+    def evaluate_forces(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Compute the forces alone, where that costs less."""
         return self.evaluate(x, first)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Fill the margins: functions of the unknowns that change sign where the forces are not smooth."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
-    def square(self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.double:
+    def squared_margin(
+        self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t
+    ) -> cython.double:
         """The smooth function of the unknowns whose root the margin of a kind is; NaN if that is none."""
         return NAN
 
@@ -160,7 +162,7 @@ class KernelLaw(Law):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+    def evaluate_forces(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         return self.forces(x, first, False)
 
     @cython.cfunc
@@ -226,7 +228,7 @@ class LineLaw(KernelLaw):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
         return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
@@ -301,13 +303,15 @@ class PlanarLaw(KernelLaw):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
         return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
-    def square(self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.double:
+    def squared_margin(
+        self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t
+    ) -> cython.double:
         if kind != SLIPS:
             return NAN
         own: cython.double[::1] = x[first : first + self.width]
@@ -391,7 +395,7 @@ class SingleHarmonicLaw(Law):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Fill the margins of a contact.
 
         They are the forces by which it is closed at some time, and at all times; by which it is beyond the

@@ -46,7 +46,7 @@ def _friction(system: System, z: FloatArray) -> FloatArray:
     friction, j = np.zeros((len(z), layout.contacts, 2)), 1 + system.harmonics.index(1)
     for i, law in enumerate(system.exact_laws(system.harmonics)):
         for k, one in enumerate(z):
-            law.probe(one, i * layout.width)
+            law.evaluate_forces(one, i * layout.width)
             force = np.asarray(law.force)[3 * (2 * j - 1) :][:4]
             friction[k, i] = np.hypot(force[::2], force[1::2])
     return friction

@@ -76,7 +76,7 @@ class Amplitude:
         balance, d, n = self.balance, self.dof, self.balance.unknowns
         direction = np.zeros(n + 1)
         direction[-1] = 1.0
-        balance.report(z, direction)
+        balance.evaluate_outputs(z, direction)
         self.value, self.slopes[n] = balance.output[d], balance.growth[d]
         displacements, receptance, rows = (
             balance.displacements,

@@ -37,7 +37,11 @@ class ForceLevelProblem(Problem):
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
         self.unbounded *= self.unbounded  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
-        self.many, self.rooted, self.min_level_unit = self.costly, balance.rooted, units.min_level_unit
+        self.many, self.has_root_margins, self.min_level_unit = (
+            self.costly,
+            balance.has_root_margins,
+            units.min_level_unit,
+        )
         self.begin(omega)
 
     def begin(self, omega: float, lightly: bool = False) -> None:
@@ -73,30 +77,30 @@ class ForceLevelProblem(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def probe(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_residual(self, z: cython.double[::1]) -> cython.int:
         self.place(z)
-        return self.balance.probe(self.z)
+        return self.balance.evaluate_residual(self.z)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def measure(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
         self.place(z)
-        self.balance.measure(self.z)
+        self.balance.evaluate_scale(self.z)
         self.scale[:] = self.balance.scale
         self.scale[self.unknowns] = max(abs(z[self.unknowns]), self.min_level_unit)
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_margins(self, z: cython.double[::1]) -> cython.int:
         self.place(z)
-        return self.balance.bound(self.z)
+        return self.balance.evaluate_margins(self.z)
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
-    def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
+    def squared_margin(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
         self.place(z)
-        return self.balance.square(kind, self.z)
+        return self.balance.squared_margin(kind, self.z)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -130,7 +134,7 @@ class Homotopy(Problem):
 
     def __init__(self, inner: Problem) -> None:
         Problem.__init__(self, inner.unknowns, 0, 0, inner.rank)
-        self.rooted = inner.rooted
+        self.has_root_margins = inner.has_root_margins
         self.inner, self.subtracted_part, self.initial_residual = inner, 0.0, np.zeros(inner.unknowns)
         self.jacobian = inner.jacobian
 
@@ -145,9 +149,9 @@ class Homotopy(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def probe(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_residual(self, z: cython.double[::1]) -> cython.int:
         i: cython.Py_ssize_t
-        self.inner.probe(z)
+        self.inner.evaluate_residual(z)
         for i in range(self.unknowns):
             self.residual[i] = self.inner.residual[i] - self.subtracted_part * self.initial_residual[i]
         return 0
@@ -272,7 +276,7 @@ class Prolongation:
         self.brief = self.costly_size or (self.many and briefly)
         for i in range(self.place.shape[0]):
             self.guess[self.place[i]] = z[i]
-        self.balance.measure(self.guess)
+        self.balance.evaluate_scale(self.guess)
         for i in range(self.place.shape[0]):
             self.row[self.place[i]] = direction[i] / self.balance.scale[self.place[i]]
             total += self.row[self.place[i]] * self.row[self.place[i]]
@@ -309,7 +313,7 @@ class Prolongation:
         """Seek points at the frequency of z (unknown + 1,)."""
         i: cython.Py_ssize_t
         self.brief = self.costly_size
-        self.balance.measure(z)
+        self.balance.evaluate_scale(z)
         for i in range(z.shape[0]):
             self.newton.scale[i], self.newton.row[i] = self.balance.scale[i], 0.0
         self.newton.row[self.balance.unknowns] = 1.0
@@ -320,7 +324,7 @@ class Prolongation:
     def report(self) -> cython.bint:
         """Fill found with frequency and amplitudes of the point; returns true."""
         i: cython.Py_ssize_t
-        self.balance.report(self.newton.z, self.still)
+        self.balance.evaluate_outputs(self.newton.z, self.still)
         self.found[0] = self.newton.z[self.balance.unknowns]
         for i in range(self.balance.outputs):
             self.found[1 + i] = self.balance.output[i]
@@ -464,7 +468,7 @@ class Prolongation:
                     step < self.damped_final_step or step < self.tolerance * self.distance_from(newton.guess)
                 ):
                     return newton.compute_tangent()
-                newton.problem.probe(newton.z)
+                newton.problem.evaluate_residual(newton.z)
                 then = newton.step()
                 if then < (1.0 - 0.25 * part) * step:
                     break
@@ -495,7 +499,7 @@ class Prolongation:
         step: cython.double
         newton: Newton = self.newton
         for count in range(self.max_chord_steps):  # noqa: B007
-            newton.problem.probe(newton.z)
+            newton.problem.evaluate_residual(newton.z)
             step = newton.step()
             if not step < self.chord_contraction * before:
                 return False

@@ -187,7 +187,7 @@ class Balance(Problem):
         )
         self.layout, self.directions, self.ports = layout, layout.directions, layout.ports
         self.group = laws[0].margins if laws else 0  # all contacts have as many
-        self.rooted = layout.directions > 2  # in a plane a circle begins to slip all around at once
+        self.has_root_margins = layout.directions > 2  # in a plane a circle begins to slip all around at once
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
         self.rest, self.reported = np.zeros(layout.ports), np.ones(displacements.dofs)
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
@@ -223,7 +223,7 @@ class Balance(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def probe(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_residual(self, z: cython.double[::1]) -> cython.int:
         return self.evaluate_contacts(z, False)
 
     @cython.cfunc
@@ -280,7 +280,7 @@ class Balance(Problem):
             law: Law = self.laws[c]
             first = c * self.width
             if not tangents:
-                law.probe(z, first)
+                law.evaluate_forces(z, first)
             else:
                 law.evaluate(z, first)
                 for i in range(self.width):
@@ -294,7 +294,7 @@ class Balance(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def measure(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
         """Displacements by their present size, in each direction of a contact, or where contacts are many of
         all; both directions of sliding by that in the plane, normal ones by no less than the rounding of the
         preload leaves of them. The frequency by its range."""
@@ -349,14 +349,14 @@ class Balance(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def bound(self, z: cython.double[::1]) -> cython.int:
+    def evaluate_margins(self, z: cython.double[::1]) -> cython.int:
         """Fill the margins of the contacts, one after the other."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         at: cython.Py_ssize_t = 0
         for c in range(self.contacts):
             law: Law = self.laws[c]
-            law.bound(z, c * self.width)
+            law.evaluate_margins(z, c * self.width)
             for i in range(law.margins):
                 self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
                 self.kind[at] = law.kind[i] + c * KINDS if law.kind[i] != NONE else NONE
@@ -365,14 +365,14 @@ class Balance(Problem):
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
-    def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
+    def squared_margin(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
         """The square of the margin by which a contact in a plane begins to slip."""
         law: Law = self.laws[kind // KINDS]
-        return law.square(kind % KINDS, z, kind // KINDS * self.width)
+        return law.squared_margin(kind % KINDS, z, kind // KINDS * self.width)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
+    def evaluate_outputs(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
         """Fill the amplitudes of the reported degrees of freedom, and their growth.
 
         None of what no result has: where loads act the sum of many displacements may cancel, and its growth
@@ -462,7 +462,7 @@ class PointQuantities:
             PyErr_CheckSignals()
             b.load = level[i]
             b.evaluate_contacts(z[i], True)
-            b.report(z[i], direction[i])
+            b.evaluate_outputs(z[i], direction[i])
             for d in range(b.displacements.dofs):
                 self.mean[i, d], self.amplitude[i, d] = b.displacements.mean[d], b.displacements.amplitude[d]
                 self.growth[i, d] = b.displacements.growth[d]

@@ -170,7 +170,7 @@ class FurtherHarmonics:
         bent: cython.bint = False
         for k in range(self.contacts):
             law: Law = self.laws[k]
-            law.probe(z, k * self.width)
+            law.evaluate_forces(z, k * self.width)
             bent = bent or law.nonlinear
         if not bent:
             return False
@@ -184,7 +184,7 @@ class FurtherHarmonics:
         linear = np.ones(len(z), dtype=np.bool_)
         for i in range(len(z)):
             for c, law in enumerate(self.laws):
-                law.probe(z[i], c * self.width)
+                law.evaluate_forces(z[i], c * self.width)
                 linear[i] &= not law.nonlinear
         return linear
 
@@ -199,7 +199,7 @@ class FurtherHarmonics:
         most: cython.double = 0.0
         for c in range(self.contacts):
             law: Law = self.laws[c]
-            law.probe(z, c * self.width)
+            law.evaluate_forces(z, c * self.width)
             for h in range(self.highest):
                 for k in range(self.directions):
                     at = self.directions * (1 + 2 * h) + 2 * k
@@ -282,7 +282,7 @@ class EnrichedMotion:
         self.receptance.at(z[self.contacts * self.width])
         for c in range(self.contacts):
             law: Law = self.laws[c]
-            law.probe(z, c * self.width)
+            law.evaluate_forces(z, c * self.width)
             law.compute_resistance()
             for i in range(self.wide):
                 self.force[c, i] = law.force[i]

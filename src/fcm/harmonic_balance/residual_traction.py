@@ -134,12 +134,12 @@ class _FixedTractionBalance:
     def amplitudes(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Amplitudes (dof,) at a point, and their growth along a direction in scaled coordinates."""
         self.balance.evaluate(z)
-        self.balance.report(z, np.ascontiguousarray(direction * self.scale))
+        self.balance.evaluate_outputs(z, np.ascontiguousarray(direction * self.scale))
         return np.array(self.balance.output), np.array(self.balance.growth)
 
     def begin(self, z: FloatArray, edge: bool) -> FloatArray | None:
         """The direction of the curve at a point; that of the frequency at the end of a range."""
-        self.balance.measure(z)
+        self.balance.evaluate_scale(z)
         self.scale = np.array(self.balance.scale)
         row = np.eye(z.size)[-1]
         return row if self.solved(z, row) is None or edge else np.array(self.newton.tangent)
@@ -222,7 +222,7 @@ class _FixedTractionBalance:
             right[:] = np.linalg.solve(matrix, right)
         found = np.zeros((ports.size, balance.outputs))
         for k, direction in enumerate(right.T):
-            balance.report(z, np.ascontiguousarray(direction * scale))
+            balance.evaluate_outputs(z, np.ascontiguousarray(direction * scale))
             found[k] = balance.growth
         return found, (right * scale[:, None])[normal].T
 

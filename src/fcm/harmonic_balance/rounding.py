@@ -82,7 +82,7 @@ def with_precise_fundamental(
         else:
             made.z[i], ports, dofs = found.z, found.ports, found.dofs
             balance.evaluate(found.z)
-            balance.report(found.z, np.zeros(found.z.size))
+            balance.evaluate_outputs(found.z, np.zeros(found.z.size))
             made.X[i].real, made.X[i].imag, made.mean[i] = (
                 displacements.re,
                 displacements.im,
@@ -245,7 +245,7 @@ def moved_across_curve(
     nan in a corner that the curve does not leave in the direction given. Of many contacts it is no bound but
     some times the root of the mean square, over errors of random signs: no inverse is made of so many.
     """
-    balance.measure(z)
+    balance.evaluate_scale(z)
     scale = np.array(balance.scale)
     row = tangent / scale
     row /= np.linalg.norm(row)

@@ -66,7 +66,7 @@ class SampledLaw(Law):
         self.nonlinear = True
         return 0
 
-    def probe(self, x: FloatArray, first: int) -> int:
+    def evaluate_forces(self, x: FloatArray, first: int) -> int:
         """Compute the forces alone from the sampled law."""
         force, _ = self._sampled(self._motion(x, first), self.variation[:, :, :1])
         self.force[:] = np.einsum("dso,ds->o", self.projection, force)

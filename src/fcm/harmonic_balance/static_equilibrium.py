@@ -95,7 +95,12 @@ class StaticLoadProblem(Problem):
         balance = system.new_balance(loaded=False)
         balance.load = 0.0
         Problem.__init__(self, held.stiffness.size, balance.margins, 0)
-        self.rooted, self.unit, self.balance, self.held = balance.rooted, unit, balance, held
+        self.has_root_margins, self.unit, self.balance, self.held = (
+            balance.has_root_margins,
+            unit,
+            balance,
+            held,
+        )
         self.counted, self.mean_at, self.moved = system.linear.counted, system.layout.mean_at, 0.0
         self.force = np.zeros(held.ports.shape[1])  # of the contacts, beyond their preloads
         self.at = np.zeros(balance.unknowns + 1)
@@ -120,7 +125,7 @@ class StaticLoadProblem(Problem):
         np.asarray(self.jacobian)[:, -1] = -unit * self.held.load
         return 0
 
-    def measure(self, z: FloatArray) -> int:
+    def evaluate_scale(self, z: FloatArray) -> int:
         """Fill the units: of coordinates the greatest root mean square so far of the ports' displacements."""
         y, ports = np.asarray(z)[:-1], self.held.ports
         self.moved = max(self.moved, float(np.sqrt(np.mean((y @ ports) ** 2))))
@@ -130,9 +135,9 @@ class StaticLoadProblem(Problem):
         self.scale[self.unknowns] = max(abs(z[-1]), self.unit)
         return 0
 
-    def bound(self, z: FloatArray) -> int:
+    def evaluate_margins(self, z: FloatArray) -> int:
         """Fill the margins of the contacts."""
-        self.balance.bound(self._placed(z))
+        self.balance.evaluate_margins(self._placed(z))
         self.margin[:] = self.balance.margin
         self.kind[:], self.angle[:] = self.balance.kind, self.balance.angle
         return 0
@@ -194,7 +199,7 @@ def at_rest(system: System) -> AtRest:
     for y in _linear(single, held, 1.0):
         problem = StaticLoadProblem(single, held, options.min_share_unit)
         newton, z = Newton(problem), np.append(y, 1.0)
-        problem.measure(z)
+        problem.evaluate_scale(z)
         newton.scale[:], newton.z[:] = problem.scale, z
         newton.row[:] = np.eye(z.size)[-1]
         if newton.correct(1.0) and problem.balances_rigid_body(np.array(newton.z), options.balance_tolerance):

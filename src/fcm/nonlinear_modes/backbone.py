@@ -207,7 +207,7 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
     contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
     for i in _truncation_points(mode, finer.n, options.truncation) if mode.omega.size else ():
         start = finer.with_harmonics_of(mode.path.z[i], old)
-        finer.measure(start)
+        finer.evaluate_scale(start)
         newton.scale[:], newton.z[:] = finer.scale, start
         if newton.correct(1.0):
             omega, damping = np.asarray(newton.z)[-3:-1]

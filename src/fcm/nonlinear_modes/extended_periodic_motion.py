@@ -68,7 +68,7 @@ class Motion(Frozen):
 class AutonomousProblem(Problem):
     """The unknowns: those of the contacts as in `contact_law`, over a; Re and Im of the kept Q; omega; D.
 
-    precision: of Newton's method, in the units of `measure`.
+    precision: of Newton's method, in the units of `evaluate_scale`.
     """
 
     def __init__(self, system: System, guess: Guess, options: NonlinearModeOptions = NONLINEAR_MODE) -> None:
@@ -85,7 +85,7 @@ class AutonomousProblem(Problem):
         count = self.contact_unknowns + 2 * self.kept + 2
         margins = 0 if many else sum(law.margins for law in self.contacts.laws)
         super().__init__(count, margins, 2)
-        self.n, self.rooted = count, any(law.directions > 2 for law in self.contacts.laws)
+        self.n, self.has_root_margins = count, any(law.directions > 2 for law in self.contacts.laws)
         self.static = self.linear.ports.T @ self.linear.flexibility @ self.linear.ports
         self.largest = np.zeros(self.ports)
         self.views = {name: np.asarray(getattr(self, name)) for name in ("residual", "jacobian", "scale")}
@@ -198,7 +198,7 @@ class AutonomousProblem(Problem):
         residual[rows], residual[rows + 1] = value.real, value.imag
         J[rows], J[rows + 1] = derivative.real, derivative.imag
 
-    def measure(self, z: Any) -> int:
+    def evaluate_scale(self, z: Any) -> int:
         """Displacements by their present size, tangential and normal of each contact."""
         z, scale = np.asarray(z), self.views["scale"]
         size = np.sqrt(z[self.mean_rows] ** 2 + (z[self.rows] ** 2 + z[self.rows + 1] ** 2).sum(axis=0))
@@ -218,21 +218,21 @@ class AutonomousProblem(Problem):
         )
         return 0
 
-    def bound(self, z: Any) -> int:
+    def evaluate_margins(self, z: Any) -> int:
         """The margins of the contacts, one after the other."""
         if self.margins == 0:
             return 0
         z = np.asarray(z)
         x, at = self.contact_motion(z), 0
         for c, law in enumerate(self.contacts.laws):
-            law.bound(x, c * self.contacts.width)
+            law.evaluate_margins(x, c * self.contacts.width)
             for i in range(law.margins):
                 self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
                 self.kind[at] = kind_of(law, i, c)
                 at += 1
         return 0
 
-    def report(self, z: Any, direction: Any) -> int:
+    def evaluate_outputs(self, z: Any, direction: Any) -> int:
         """Reports the damping and the frequency with their growth along the curve."""
         omega = self.guess.omega
         self.output[0], self.growth[0] = self.units.damping_offset + abs(z[self.n - 1]), direction[self.n - 1]

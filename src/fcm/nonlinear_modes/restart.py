@@ -89,7 +89,7 @@ def _restart_point(
     """The solution a little further on that is nearest; None if there is none near."""
     newton = Newton(problem, options.newton)
     newton.row[-1] = 1.0
-    problem.measure(np.ascontiguousarray(z))
+    problem.evaluate_scale(np.ascontiguousarray(z))
     for step in restart.restart_lengths:
         guess = np.array(z)
         guess[-1] += step * problem.scale[z.size - 1]

@@ -127,7 +127,7 @@ def corrected(newton: Newton, z: FloatArray, along: bool = True) -> FloatArray |
 
     None where Newton's method does not converge.
     """
-    newton.problem.measure(z)
+    newton.problem.evaluate_scale(z)
     newton.scale[:] = newton.problem.scale
     newton.z[:] = z
     newton.row[:] = np.eye(z.size)[-1]

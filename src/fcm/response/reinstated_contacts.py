@@ -118,7 +118,7 @@ class ReinstatedContacts:
 
     def _heading(self, checkpoint: Checkpoint) -> FloatArray:
         """The direction at the start, in units of the scale there."""
-        self.before.measure(checkpoint.start)
+        self.before.evaluate_scale(checkpoint.start)
         direction = checkpoint.heading * np.asarray(self.before.scale)
         return _unit(self.now, self.point(checkpoint.start), self.way(direction))
 
@@ -138,7 +138,7 @@ def _places(problem: OrbitProblem) -> FloatArray:
 
 def _unit(problem: OrbitProblem, z: FloatArray, direction: FloatArray) -> FloatArray:
     """A direction at z in units of the scale there, of length 1."""
-    problem.measure(z)
+    problem.evaluate_scale(z)
     scaled = direction / np.asarray(problem.scale)
     unit: FloatArray = scaled / np.linalg.norm(scaled)
     return unit

@@ -221,7 +221,7 @@ def _begins_at(saved: SavedPath, problem: OrbitProblem, start: FloatArray, forwa
     else:
         assert saved.checkpoint is not None
         first, rise = saved.checkpoint.start, float(saved.checkpoint.heading[-1])
-    problem.measure(first)
+    problem.evaluate_scale(first)
     off = np.linalg.norm((first - start) / np.asarray(problem.scale))
     return bool(off < PATH.solution_tolerance) and (rise > 0.0) == forward
 

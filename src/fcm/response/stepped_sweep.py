@@ -212,7 +212,7 @@ class SteppedSweep:
         """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
         here = self._here
         assert here is not None
-        self.problem.measure(here.z)
+        self.problem.evaluate_scale(here.z)
         scale = np.array(self.problem.scale)
         rate = here.direction[-1]
         way = here.direction * ((omega - here.z[-1]) / rate) if rate else np.full(here.z.size, np.inf)

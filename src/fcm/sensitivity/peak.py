@@ -82,7 +82,7 @@ class Peak:
         self.kind, self.margin, self.curvature = Kind.UNKNOWN, -1, np.nan
         self.why = Unknown.NOT_SOLVED  # where the kind is unknown
         balance = self.newton.problem
-        balance.measure(z)
+        balance.evaluate_scale(z)
         self.scale = np.array(balance.scale)
         self.unit = np.eye(z.size)[-1]  # the curve is met across this, in scaled coordinates
         self.z = np.array(z)
@@ -108,7 +108,7 @@ class Peak:
     def slope(self, newton: Newton, z: FloatArray) -> float:
         """Growth of the amplitude along the curve, over a unit of length, at a point just solved."""
         newton.problem.evaluate(z)
-        newton.problem.report(z, np.ascontiguousarray(np.asarray(newton.tangent) * self.scale))
+        newton.problem.evaluate_outputs(z, np.ascontiguousarray(np.asarray(newton.tangent) * self.scale))
         return float(newton.problem.growth[self.dof])
 
     def along(self, length: float) -> FloatArray:
@@ -140,7 +140,7 @@ class Peak:
         point = self.solved(self.newton, self.along(length))
         if point is None:
             return None
-        self.newton.problem.bound(point)
+        self.newton.problem.evaluate_margins(point)
         return self.slope(self.newton, point), np.array(self.newton.problem.margin)
 
     def _climb(self) -> bool:
@@ -182,7 +182,7 @@ class Peak:
         assert isinstance(balance, Balance)
         R_p, X = rates.at(balance, self.z)
         across = lu_solve(self._factors, np.append(-R_p / self.scale[:-1], 0.0)) * self.scale
-        balance.report(self.z, np.ascontiguousarray(across))
+        balance.evaluate_outputs(self.z, np.ascontiguousarray(across))
         height = float(growth_of(balance, X)[self.dof] + balance.growth[self.dof])
         if self.kind is Kind.EDGE:
             return height, 0.0
@@ -224,7 +224,7 @@ class Peak:
             point = self.solved(newton, self.along(length))
             if point is None:
                 raise ArithmeticError
-            newton.problem.bound(point)
+            newton.problem.evaluate_margins(point)
             return float(newton.problem.margin[self.margin])
 
         try:
@@ -235,5 +235,5 @@ class Peak:
 
     def _height(self, newton: Newton, z: FloatArray) -> float:
         newton.problem.evaluate(z)
-        newton.problem.report(z, np.zeros(z.size))
+        newton.problem.evaluate_outputs(z, np.zeros(z.size))
         return float(newton.problem.output[self.dof])

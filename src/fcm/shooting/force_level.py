@@ -46,13 +46,13 @@ class LevelProblem(OrbitProblem):
         except SimulationError:
             return None
 
-    def measure(self, z: FloatArray) -> int:
+    def evaluate_scale(self, z: FloatArray) -> int:
         """Fill the units of lengths at z, see `OrbitProblem.measure`; the level by itself."""
-        super().measure(z)
+        super().evaluate_scale(z)
         self._scale[-1] = max(abs(float(z[-1])), self.options.level.level_floor)
         return 0
 
-    def report(self, z: FloatArray, direction: FloatArray) -> int:
+    def evaluate_outputs(self, z: FloatArray, direction: FloatArray) -> int:
         """Report nothing: only what the level passes matters."""
         return 0
 

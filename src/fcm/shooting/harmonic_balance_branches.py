@@ -33,7 +33,7 @@ def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
     across = np.flatnonzero(ahead * (z[-1] - after[:, -1]) <= 0.0)
     if not across.size:
         return False
-    problem.measure(z)
+    problem.evaluate_scale(z)
     scale, newton = np.array(problem.scale), Newton(problem)
     share = np.divide(ahead, rise, out=np.zeros_like(rise), where=rise != 0.0)[across, None]
     guesses = before[across] + share * (after[across] - before[across])

@@ -191,7 +191,7 @@ def _forces(
 
 def _stuck(law: SingleHarmonicLaw, x: FloatArray) -> bool:
     """Whether the contact never slips nor opens in the motion x."""
-    law.bound(x, 0)
+    law.evaluate_margins(x, 0)
     return bool(law.rests())
 
 

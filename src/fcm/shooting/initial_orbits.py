@@ -267,7 +267,7 @@ def inner_resonances(scene: Scene) -> list[float]:
 
 
 def _add_distinct(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
-    problem.measure(z)
+    problem.evaluate_scale(z)
     scale = np.asarray(problem.scale)
     if all(np.linalg.norm((z - other) / scale) > problem.options.start.distinct_distance for other in found):
         found.append(z)

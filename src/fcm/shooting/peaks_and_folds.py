@@ -53,7 +53,7 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     z = problem.z(guess.state, guess.frequency)
     other = problem.z(guess.neighbour[1], guess.neighbour[0])
     newton = Newton(problem)
-    problem.measure(z)
+    problem.evaluate_scale(z)
     scale = np.array(problem.scale)
     row = (other - z) / scale
     size = float(np.linalg.norm(row))
@@ -132,7 +132,7 @@ def _peak_dofs(problem: OrbitProblem, path: Path, k: int) -> PeakDofs:
 
 
 def _amplitudes(problem: OrbitProblem, path: Path, k: int) -> FloatArray:
-    problem.report(path.z[k], path.direction[k])
+    problem.evaluate_outputs(path.z[k], path.direction[k])
     return np.array(problem.output)
 
 

@@ -89,7 +89,7 @@ def to_flips(
     ends = [flip(branch, k) for branch in branches for k in flips(branch)]
     for end in (0, -1):
         last = points[end]
-        problem.measure(last.z)
+        problem.evaluate_scale(last.z)
         scale = np.array(problem.scale)
         near = [
             one

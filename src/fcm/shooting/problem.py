@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 def correct_at_frequency(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
     """Whether Newton's method comes to the curve from near z, with the frequency held."""
-    newton.problem.measure(z)
+    newton.problem.evaluate_scale(z)
     np.asarray(newton.scale)[:] = newton.problem.scale
     np.asarray(newton.z)[:] = z
     row = np.asarray(newton.row)
@@ -131,13 +131,13 @@ class OrbitProblem(Problem):
             jacobian[:, -1] = shot.by_parameter[self.free]
         return 0
 
-    def probe(self, z: FloatArray) -> int:
+    def evaluate_residual(self, z: FloatArray) -> int:
         """Fill the residual alone at z, see `Problem`."""
         shot = self.shot(z)
         self._residual[:] = np.nan if shot is None else shot.closure[self.free]
         return 0
 
-    def measure(self, z: FloatArray) -> int:
+    def evaluate_scale(self, z: FloatArray) -> int:
         """Fill the units of lengths at z: the size of the motion.
 
         Those of velocities are displacements times the modes' own frequencies.
@@ -154,14 +154,14 @@ class OrbitProblem(Problem):
         self._scale[:-1], self._scale[-1] = scale[self.free] * self._root, self.span
         return 0
 
-    def bound(self, z: FloatArray) -> int:
+    def evaluate_margins(self, z: FloatArray) -> int:
         """Fill the margin with the label of the states, see the class; it stays where there is no motion."""
         shot = self.shot(z)
         if shot is not None:
             self.margin[0] = _label(shot, self.options)
         return 0
 
-    def report(self, z: FloatArray, direction: FloatArray) -> int:
+    def evaluate_outputs(self, z: FloatArray, direction: FloatArray) -> int:
         """Fill the amplitudes, half the peak-to-peak, and their growth.
 
         An extreme grows as the motion at its instant.

@@ -55,8 +55,8 @@ class Rebalancing:
         last solution, whole ones from where that was beside its own z.
         """
         here = self.system.extended(z, self.harmonics)
-        self.balance.measure(here)
-        self.balance.probe(here)
+        self.balance.evaluate_scale(here)
+        self.balance.evaluate_residual(here)
         newton, lack = self.newton, np.array(self.balance.residual)
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
@@ -73,8 +73,8 @@ class Rebalancing:
     def continue_to(self, z: FloatArray, motion: FloatArray) -> FloatArray | None:
         """The solution of more harmonics for z, from a motion of these near it, or at a frequency near."""
         here = self.system.extended(z, self.harmonics)
-        self.balance.measure(here)
-        self.balance.probe(here)
+        self.balance.evaluate_scale(here)
+        self.balance.evaluate_residual(here)
         newton, lack = self.newton, np.array(self.balance.residual)
         newton.scale[:] = self.balance.scale
         guess = np.append(motion[:-1], z[-1])

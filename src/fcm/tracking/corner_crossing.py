@@ -52,11 +52,11 @@ class CornerCrossing:
 
     def measure_at(self, z: FloatArray) -> None:
         """Set the units, and the row of the tangent, at a point."""
-        self.smooth.measure(z)
+        self.smooth.evaluate_scale(z)
         if self.corner is not None:
             self.corner.problem.offset = 0.0
             self.corner.problem.row[:] = self.smooth.row
-            self.corner.problem.measure(z)
+            self.corner.problem.evaluate_scale(z)
         self.newton.scale[:] = self.smooth.scale
 
     def accept(self) -> None:

@@ -96,7 +96,7 @@ def with_points(
 
 def _reported(problem: ExtendedSystem, point: TrackedPoint) -> tuple[FloatArray, bool]:
     """The amplitudes at a point, and whether it is no trough."""
-    problem.measure(point.z)
+    problem.evaluate_scale(point.z)
     amplitude = problem.along(point.z)[1]
     return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, point)
 

@@ -136,7 +136,7 @@ class _CurveCollection:
         if condition.kind is not Kind.PEAK:
             return True
         problem = self.setup.tracked(condition)
-        problem.measure(point.z)
+        problem.evaluate_scale(point.z)
         return is_top(problem, point)
 
 

@@ -48,7 +48,7 @@ class _RefinedPoint:
         if condition.kind is not Kind.PEAK:
             return float(self.point.z[-2])
         problem = self.setup.tracked(condition)
-        problem.measure(self.point.z)
+        problem.evaluate_scale(self.point.z)
         return float(problem.along(self.point.z)[1][condition.which])
 
 
@@ -118,7 +118,7 @@ def _more(found: _RefinedPoint) -> tuple[int, ...]:
     if further.linear(y).all():
         return system.harmonics
     problem = found.setup.tracked(Condition(Kind.FOLD))
-    problem.measure(z)
+    problem.evaluate_scale(z)
     amplitude = problem.along(z)[1]
     share = further.shares(y, amplitude[None])[0]
     return reference_harmonics(system.harmonics, share, system.layout.ports, AT_POINTS)
@@ -157,6 +157,6 @@ def _same_kind(wider: TrackingSetup, condition: Condition, point: TrackedPoint, 
     tops = []
     for setup, one in ((wider, point), (start.setup, start.point)):
         problem = setup.tracked(condition)
-        problem.measure(one.z)
+        problem.evaluate_scale(one.z)
         tops.append(is_top(problem, one))
     return tops[0] == tops[1]

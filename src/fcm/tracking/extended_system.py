@@ -87,7 +87,7 @@ class ExtendedSystem(Problem):
         self.varied, self.condition, self.span = varied, condition, span
         self.n, self.offset = varied.balance.unknowns, 0.0  # of an onset: its function, in the scale, is this
         Problem.__init__(self, self.n + 1, 0, 0)
-        self.rooted = varied.balance.rooted
+        self.has_root_margins = varied.balance.has_root_margins
         self.row = np.zeros(self.n + 1)
         self.row[-1] = 1.0
         self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last
@@ -142,7 +142,7 @@ class ExtendedSystem(Problem):
             growth = np.append(one.slopes, by_s.of(one)) / max(one.value, self.options.special.min_amplitude)
         return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
-    def measure(self, z: FloatArray) -> int:
+    def evaluate_scale(self, z: FloatArray) -> int:
         """Fill the units: those of the balance, and the span for s.
 
         The row becomes the tangent of the response.
@@ -153,7 +153,7 @@ class ExtendedSystem(Problem):
         z = np.asarray(z)
         self.varied.set_parameter(float(z[-1]))
         y, balance, scale = np.array(z[:-1]), self.varied.balance, np.asarray(self.scale)
-        balance.measure(y)
+        balance.evaluate_scale(y)
         scale[:-1], scale[-1] = balance.scale, self.span
         balance.evaluate(y)
         t = _direction(jacobian_of(balance) * scale[:-1] / scale[:-2, None], self.row, self.options)
@@ -175,7 +175,7 @@ class ExtendedSystem(Problem):
         balance.evaluate(y)
         scale = np.asarray(self.scale)[:-1]
         t = _direction(jacobian_of(balance) * scale / scale[:-1, None], self.row, self.options)
-        balance.report(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
+        balance.evaluate_outputs(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
         return t, np.array(balance.output), np.array(balance.growth)
 
     def _tangent(self, jacobian: FloatArray) -> Tangent:
@@ -253,7 +253,7 @@ class ExtendedSystem(Problem):
         """Functions whose signs change where the Jacobian is not smooth."""
         balance = self.varied.balance
         if balance.margins:
-            balance.bound(y)
+            balance.evaluate_margins(y)
             return np.array(balance.margin)
         return values(balance.laws, y, self.varied.harmonics, self.options)
 

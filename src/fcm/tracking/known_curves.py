@@ -24,7 +24,7 @@ def passes(curve: SpecialPointCurve, condition: Condition, point: TrackedPoint, 
     if curve.condition != condition:
         return False
     problem = setup.tracked(condition)
-    problem.measure(point.z)
+    problem.evaluate_scale(point.z)
     scale = np.array(problem.scale)
     points = (np.array([one.z for one in curve.points]) - point.z) / scale
     if np.linalg.norm(points, axis=1).min() < setup.options.known.point_tolerance:
@@ -52,7 +52,7 @@ def _crosses(
     chord = (other.z - one.z) / scale
     row = chord / max(float(np.linalg.norm(chord)), 1e-300)
     guess = one.z + scale * row * float(row @ ((point.z - one.z) / scale))
-    problem.measure(guess)
+    problem.evaluate_scale(guess)
     newton = Newton(problem)
     newton.scale[:], newton.z[:], newton.row[:] = scale, guess, row
     if not newton.correct(setup.options.pieces.reach):

@@ -215,7 +215,7 @@ class LowestPeakSearch:
     def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
         """Height of the greatest target at a point; 0 where it is none of them."""
         problem = self.setup.tracked(condition)
-        problem.measure(z)
+        problem.evaluate_scale(z)
         amplitude = problem.along(z)[1]
         amplitude = np.where(at_rest(amplitude), 0.0, amplitude)
         heights = [

@@ -157,7 +157,7 @@ class PeakEnvelope:
                 np.append(z, 0.0), np.zeros(z.size + 1)
             )
             problem = setup.tracked(point.corner or condition)
-            problem.measure(point.z)
+            problem.evaluate_scale(point.z)
             problem.evaluate(point.z)
             jacobian = np.asarray(problem.jacobian)
             rate = np.linalg.solve(jacobian[:, :-1], -jacobian[:, -1])

@@ -19,7 +19,7 @@ def is_top(problem: ExtendedSystem, point: TrackedPoint) -> bool:
         return bool(gradient @ (np.asarray(problem.scale)[:-1] * problem.row) < 0.0)
     corner = Corner(problem, point.corner)
     corner.problem.row[:] = problem.row
-    corner.problem.measure(point.z)
+    corner.problem.evaluate_scale(point.z)
     before, after = corner.sides(point.z)
     return bool(before > after)
 

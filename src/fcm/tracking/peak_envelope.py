@@ -111,7 +111,7 @@ class MonotonePiece:
     def _solved(self, s: float) -> tuple[ExtendedSystem, Newton] | None:
         guess, _, _, corner = self._guess(s)
         problem = self._problem(corner)
-        problem.measure(guess)
+        problem.evaluate_scale(guess)
         newton = Newton(problem)
         newton.scale[:], newton.z[:] = problem.scale, guess
         newton.row[:] = np.eye(guess.size)[-1]

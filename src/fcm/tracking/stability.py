@@ -63,7 +63,7 @@ class _StabilityAlongCurve:
         at = other.corner if one.switch else one.corner
         problem = self.setup.tracked(at or self.track.condition)
         z = 0.5 * (one.z + other.z)
-        problem.measure(z)
+        problem.evaluate_scale(z)
         newton = Newton(problem)
         newton.scale[:] = problem.scale
         chord = (other.z - one.z) / np.asarray(problem.scale)
@@ -80,7 +80,7 @@ class _StabilityAlongCurve:
 
     def _at(self, point: TrackedPoint) -> float:
         problem = self.problem
-        problem.measure(point.z)
+        problem.evaluate_scale(point.z)
         fold = self.track.condition.kind is Kind.FOLD
         signs = {1.0, -1.0} if fold else _signs(problem, point)
         if max(signs) < 0.0:  # of the real multipliers an odd number is above 1
