@@ -64,7 +64,7 @@ def test_nothing_below_is_imported(package):
 
 def test_continuation_knows_nothing_of_contacts():
     own = {module.split(".")[1] for _, module in imported("continuation") if module.startswith("fcm.")}
-    assert own == {"continuation", "frozen", "cubic"}
+    assert own == {"continuation", "frozen", "cubic", "distinct_values"}
 
 
 @pytest.mark.parametrize("package", NUMERICS)

@@ -27,12 +27,12 @@ class Root(Problem):
         return float(p + self.pull * x - 0.3 * y + 0.5 * x * y)
 
     def evaluate_margins(self, z: FloatArray) -> int:
-        g = self.square(0, z)
+        g = self.squared_margin(0, z)
         self.margin[0] = np.sign(g) * np.sqrt(abs(g))
         return 0
 
     def evaluate(self, z: FloatArray) -> int:
-        (x, y, p), g = z, self.square(0, z)
+        (x, y, p), g = z, self.squared_margin(0, z)
         root = np.sqrt(abs(g))
         slope = np.sign(g) / (2.0 * max(root, 1e-150)) * np.array([self.pull + 0.5 * y, 0.5 * x - 0.3, 1.0])
         self.residual[0], self.residual[1] = x - root, y - 0.7 * root - p
@@ -49,7 +49,7 @@ def test_a_curve_that_leaves_to_where_it_came_from(pull: float) -> None:
     assert path.status is Status.COMPLETE
     (corner,) = np.flatnonzero(path.mark & Mark.CORNER)
     assert path.z[corner] == pytest.approx(np.zeros(3), abs=MET)
-    sides = np.sign([problem.square(0, z) for z in path.z])
+    sides = np.sign([problem.squared_margin(0, z) for z in path.z])
     assert (sides[:corner] == 1.0).all()
     assert (sides[corner + 1 :] == -1.0).all()
 
