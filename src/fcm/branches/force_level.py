@@ -29,6 +29,7 @@ from fcm.branches.shared_levels import shared_curve, solutions_at_level_one
 from fcm.continuation import End, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.follow import Progress
+from fcm.continuation.nearby_solution import solution_near
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import charged_to_work, seconds_of
 from fcm.harmonic_balance.system import System
@@ -349,15 +350,10 @@ def _comes_back(path: Path, low: float) -> bool:
 def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
     """Solutions that Newton's method finds from linear responses, where no level could be followed."""
     newton = Newton(system.new_balance())
-    row = np.zeros(newton.problem.unknowns + 1)
-    row[-1] = 1.0
     for x in linear_responses(system, omega, 1.0):
-        z = np.append(x, omega)
-        newton.problem.evaluate_scale(z)
-        newton.scale[:] = newton.problem.scale
-        newton.z[:], newton.row[:] = z, row
-        if newton.correct(1.0):
-            yield np.array(newton.z)
+        found = solution_near(newton, np.append(x, omega))
+        if found is not None:
+            yield found
 
 
 def level_frequencies(system: System, peaks: Sequence[float] = ()) -> tuple[float, ...]:

@@ -19,6 +19,7 @@ from fcm.branches.options import FOLDS, PROLONGATION, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
+from fcm.continuation.nearby_solution import solution_near
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
@@ -194,12 +195,8 @@ def _at_level_one(few: System, system: System, curve: Folds) -> tuple[list[Float
 
 def _corrected_in_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution near a guess, in the plane across a direction in the displacements."""
-    balance, newton = system.reset_balance(), system.shared_stepper.newton
-    balance.evaluate_scale(z)
-    newton.scale[:], newton.z[:] = balance.scale, z
-    row = way / np.asarray(balance.scale)
-    newton.row[:] = row / np.linalg.norm(row)
-    return np.array(newton.z) if newton.correct(1.0) else None
+    system.reset_balance()
+    return solution_near(system.shared_stepper.newton, z, way)
 
 
 def _prolongated(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:

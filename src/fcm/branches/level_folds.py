@@ -16,6 +16,7 @@ import numpy as np
 from fcm.branches.options import LEVEL_FOLDS
 from fcm.continuation import Mark, Path
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import begin_near
 from fcm.model.scene import FloatArray
 
 if TYPE_CHECKING:
@@ -93,10 +94,7 @@ def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) 
     newton belongs to that problem, and is then at the solution.
     """
     problem.load = turn.level
-    problem.evaluate_scale(turn.z)
-    newton.z[:], newton.scale[:] = turn.z, problem.scale
-    along = turn.direction / np.asarray(problem.scale)
-    newton.row[:] = along / np.linalg.norm(along)
+    begin_near(newton, turn.z, turn.direction)
     left, known = math.log(turn.level), turn.z
     stage = left / max(math.ceil(abs(left) / math.log(LEVEL_FOLDS.stage_factor)), 1)
     shortest = stage * LEVEL_FOLDS.min_stage

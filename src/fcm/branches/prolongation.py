@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from fcm.branches.options import PROLONGATION, ProlongationOptions
 from fcm.continuation import Mark, Path
+from fcm.continuation.nearby_solution import solution_near
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -78,11 +79,10 @@ def at_its_frequency(
     system: System, z: FloatArray, options: ProlongationOptions = PROLONGATION
 ) -> FloatArray | None:
     """The solution that Newton's method finds from z at its frequency, if that is not far."""
-    balance, newton = system.reset_balance(), system.shared_stepper.newton
-    newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
-    balance.evaluate_scale(z)
-    newton.scale[:] = balance.scale
-    return np.array(newton.z) if newton.correct(1.0) and newton.moved < options.max_change else None
+    system.reset_balance()
+    newton = system.shared_stepper.newton
+    found = solution_near(newton, z)
+    return found if found is not None and newton.moved < options.max_change else None
 
 
 def _harmonic_stages(

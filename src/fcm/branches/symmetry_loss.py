@@ -17,6 +17,7 @@ from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.trace import Traced
 from fcm.continuation import Path
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import begin_near
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -97,10 +98,7 @@ def _with_more(system: System, more: System, path: Path, options: BranchingOptio
     z, direction = (more.extended(one, system.harmonics) for one in (path.z, path.direction))
     newton, orientation = Newton(more.new_balance()), np.full(len(z), np.nan)
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):
-        newton.problem.evaluate_scale(one)
-        newton.scale[:], newton.z[:] = newton.problem.scale, one
-        row = way / np.asarray(newton.scale)
-        newton.row[:] = row / np.linalg.norm(row)
+        begin_near(newton, one, way)
         if not newton.take_tangent():
             continue
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import solution_near
 from fcm.fit.forced import NoMotionError
 from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import BACKBONE, FitOptions
@@ -157,10 +158,7 @@ class _Followed:
 
     def _solved(self, guess: FloatArray) -> FloatArray | None:
         """The point with the modal amplitude of a guess."""
-        newton = self.newton
-        self.problem.evaluate_scale(guess)
-        newton.scale[:], newton.z[:], newton.row[:] = self.problem.scale, guess, np.eye(guess.size)[-1]
-        return np.array(newton.z) if newton.correct(1.0) else None
+        return solution_near(self.newton, guess)
 
     def rates(self, z: FloatArray, moved: Sequence[ResidualDerivative]) -> FloatArray:
         """Derivatives (2, number) of frequency and damping by numbers, at fixed measured amplitude."""

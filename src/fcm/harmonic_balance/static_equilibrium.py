@@ -16,6 +16,7 @@ import numpy as np
 
 from fcm.continuation import FollowOptions, Status, follow
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import solution_near
 from fcm.continuation.problem import Problem
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.options import HARMONIC_BALANCE
@@ -198,12 +199,9 @@ def at_rest(system: System) -> AtRest:
             return _found(linear, held, path.z[-1][:-1])
     for y in _linear(single, held, 1.0):
         problem = StaticLoadProblem(single, held, options.min_share_unit)
-        newton, z = Newton(problem), np.append(y, 1.0)
-        problem.evaluate_scale(z)
-        newton.scale[:], newton.z[:] = problem.scale, z
-        newton.row[:] = np.eye(z.size)[-1]
-        if newton.correct(1.0) and problem.balances_rigid_body(np.array(newton.z), options.balance_tolerance):
-            return _found(linear, held, np.array(newton.z)[:-1])
+        z = solution_near(Newton(problem), np.append(y, 1.0))
+        if z is not None and problem.balances_rigid_body(z, options.balance_tolerance):
+            return _found(linear, held, z[:-1])
     raise RestError(NO_EQUILIBRIUM)
 
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.continuation import FollowOptions, Path
 from fcm.continuation.corrector import Newton
 from fcm.continuation.follow import Progress
+from fcm.continuation.nearby_solution import solution_near
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
@@ -202,20 +203,18 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
     larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
     finer = AutonomousProblem(larger, old.guess, options)
     newton = Newton(finer, finer.precision)
-    newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
     contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
     for i in _truncation_points(mode, finer.n, options.truncation) if mode.omega.size else ():
         start = finer.with_harmonics_of(mode.path.z[i], old)
-        finer.evaluate_scale(start)
-        newton.scale[:], newton.z[:] = finer.scale, start
-        if newton.correct(1.0):
-            omega, damping = np.asarray(newton.z)[-3:-1]
+        z = solution_near(newton, start)
+        if z is not None:
+            omega, damping = z[-3:-1]
             of_damping = abs(damping - mode.damping[i]) / max(
                 mode.damping.max(), options.truncation.damping_floor
             )
             error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
-            contacts[i] = *finer.contact_motion(np.asarray(newton.z)), omega
+            contacts[i] = *finer.contact_motion(z), omega
     contact_loads = contact_loads_along(larger, contacts)
     contact_loads[np.isnan(error)] = np.nan
     return error, contact_loads

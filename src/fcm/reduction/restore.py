@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import begin_near
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
 from fcm.harmonic_balance.system import System
@@ -127,11 +128,7 @@ def corrected(newton: Newton, z: FloatArray, along: bool = True) -> FloatArray |
 
     None where Newton's method does not converge.
     """
-    newton.problem.evaluate_scale(z)
-    newton.scale[:] = newton.problem.scale
-    newton.z[:] = z
-    newton.row[:] = np.eye(z.size)[-1]
+    begin_near(newton, z)
     if along and newton.take_tangent():
         newton.row[:] = newton.tangent
-    newton.z[:] = z
     return np.array(newton.z) if newton.correct(1.0) else None

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Mark, Path, follow
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import solution_near
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -52,18 +53,11 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     """The point of the curve in the plane through a guess, across the curve; else at its frequency."""
     z = problem.z(guess.state, guess.frequency)
     other = problem.z(guess.neighbour[1], guess.neighbour[0])
-    newton = Newton(problem)
-    problem.evaluate_scale(z)
-    scale = np.array(problem.scale)
-    row = (other - z) / scale
-    size = float(np.linalg.norm(row))
-    np.asarray(newton.scale)[:], np.asarray(newton.z)[:] = scale, z
-    np.asarray(newton.row)[:] = row / size if size > 0.0 else np.eye(z.size)[-1]
-    if (
-        newton.correct(1.0) or correct_at_frequency(newton, z)
-    ) and newton.moved < problem.options.peaks.max_distance:
-        return np.array(newton.z)
-    return None
+    newton, chord = Newton(problem), other - z
+    across = solution_near(newton, z, chord) if chord.any() else None
+    if across is None and not correct_at_frequency(newton, z):
+        return None
+    return np.array(newton.z) if newton.moved < problem.options.peaks.max_distance else None
 
 
 def _within(

@@ -8,6 +8,7 @@ from zlib import crc32
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import solution_near
 from fcm.continuation.problem import Problem
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -22,12 +23,7 @@ if TYPE_CHECKING:
 
 def correct_at_frequency(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
     """Whether Newton's method comes to the curve from near z, with the frequency held."""
-    newton.problem.evaluate_scale(z)
-    np.asarray(newton.scale)[:] = newton.problem.scale
-    np.asarray(newton.z)[:] = z
-    row = np.asarray(newton.row)
-    row[:-1], row[-1] = 0.0, 1.0
-    if not newton.correct(reach):
+    if solution_near(newton, z, reach=reach) is None:
         return False
     newton.z[-1] = z[-1]
     return True

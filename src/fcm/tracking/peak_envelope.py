@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import solution_near
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve
@@ -111,11 +112,9 @@ class MonotonePiece:
     def _solved(self, s: float) -> tuple[ExtendedSystem, Newton] | None:
         guess, _, _, corner = self._guess(s)
         problem = self._problem(corner)
-        problem.evaluate_scale(guess)
         newton = Newton(problem)
-        newton.scale[:], newton.z[:] = problem.scale, guess
-        newton.row[:] = np.eye(guess.size)[-1]
-        return (problem, newton) if newton.correct(problem.options.pieces.reach) else None
+        found = solution_near(newton, guess, reach=problem.options.pieces.reach)
+        return None if found is None else (problem, newton)
 
     def _problem(self, corner: Condition | None) -> ExtendedSystem:
         if corner not in self._problems:

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.continuation.nearby_solution import solution_near
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
@@ -63,16 +64,13 @@ class _StabilityAlongCurve:
         at = other.corner if one.switch else one.corner
         problem = self.setup.tracked(at or self.track.condition)
         z = 0.5 * (one.z + other.z)
-        problem.evaluate_scale(z)
-        newton = Newton(problem)
-        newton.scale[:] = problem.scale
-        chord = (other.z - one.z) / np.asarray(problem.scale)
-        length = float(np.linalg.norm(chord))
-        if length == 0.0:
+        newton, chord = Newton(problem), other.z - one.z
+        if not chord.any():
             return None
-        newton.z[:], newton.row[:] = z, chord / length
         try:
-            if not newton.correct(problem.options.pieces.reach) or newton.moved > length:
+            found = solution_near(newton, z, chord, problem.options.pieces.reach)
+            length = float(np.linalg.norm(chord / np.asarray(problem.scale)))
+            if found is None or newton.moved > length:
                 return None
         except np.linalg.LinAlgError:
             return None
