@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -36,12 +36,14 @@ from fcm.stability.classification import (
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.following_modes import Modes, combined
-from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.rebalanced import Rebalancing
 from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
+
+if TYPE_CHECKING:
+    from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
+    from fcm.stability.planar_monodromy import PlanarMonodromy
 
 
 class VariationalProblem(NamedTuple):
@@ -122,6 +124,9 @@ class Multipliers:
                 _many_contacts if len(self.contact) >= self.options.structure.many_contacts else _few_contacts
             )
             return make(self.system, self.far, self.contact, (fine, plain), self.options)
+        from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy  # most scenes do without
+        from fcm.stability.planar_monodromy import PlanarMonodromy
+
         linear = self.system.linear
         modes = Modes(linear.ports, linear.natural, linear.damping, self.far)
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
