@@ -16,7 +16,8 @@ from fcm.branches.force_level import solutions
 from fcm.branches.trace import traced
 from fcm.contact.kernels import periodic_contact, planar_contact
 from fcm.continuation import Mark, Status
-from fcm.harmonic_balance.contact_law import LineLaw, PlanarLaw
+from fcm.harmonic_balance.contact_law import LineLaw
+from fcm.harmonic_balance.planar_law import PlanarLaw
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError

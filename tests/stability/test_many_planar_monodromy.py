@@ -16,7 +16,7 @@ from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
 from fcm.stability.planar_monodromy import PlanarMonodromy
-from fcm.stability.state_sequence import PlanarSequence
+from fcm.stability.planar_sequence import PlanarSequence
 
 from ..harmonic_balance.strips import planar_strip
 

@@ -12,7 +12,7 @@ import fcm
 from fcm.stability.following_modes import Modes
 from fcm.stability.options import STABILITY
 from fcm.stability.planar_monodromy import PlanarMonodromy
-from fcm.stability.state_sequence import PlanarSequence
+from fcm.stability.planar_sequence import PlanarSequence
 
 OMEGA, MU, K_U, K_V = 1.1, 0.5, 1.3, 0.8
 NATURAL, DAMPING = np.array([1.0, 1.3, 2.4]), np.array([0.05, 0.02, 0.1])

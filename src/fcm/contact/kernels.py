@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import threading
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from fcm.contact.options import KERNELS
 from fcm.contact.periodic.forces import PeriodicContact
-from fcm.contact.plane.forces import PlanarContact
+
+if TYPE_CHECKING:
+    from fcm.contact.plane.forces import PlanarContact
 
 
 class _Kernels(threading.local):
@@ -33,6 +36,8 @@ def _periodic(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PeriodicC
 
 
 def _planar(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PlanarContact:
+    from fcm.contact.plane.forces import PlanarContact  # most scenes have no contacts in a plane
+
     return PlanarContact(list(harmonics), list(outputs))
 
 

@@ -1,8 +1,6 @@
 from fcm.contact.closed_form cimport CoefficientLaw
 from fcm.contact.periodic.forces cimport PeriodicContact
 from fcm.contact.periodic.margins cimport Margins, Measures
-from fcm.contact.plane.forces cimport PlanarContact
-from fcm.contact.plane.margins cimport PlanarMargins, PlanarMeasures
 
 cdef int KINDS
 
@@ -40,11 +38,6 @@ cdef class LineLaw(KernelLaw):
     cdef public PeriodicContact kernel
     cdef public Margins bounds
     cdef Measures measures
-
-cdef class PlanarLaw(KernelLaw):
-    cdef public PlanarContact kernel
-    cdef public PlanarMargins bounds
-    cdef PlanarMeasures measures
 
 cdef class SingleHarmonicLaw(Law):
     cdef public CoefficientLaw coefficients

@@ -22,25 +22,19 @@ from cython.cimports.libc.math import atan2, hypot, sqrt
 from fcm.contact.closed_form import CoefficientLaw
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Margins, Measures
-from fcm.contact.plane.forces import PlanarContact
-from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures
 from fcm.harmonic_balance import options
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
     from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
-    from cython.cimports.fcm.contact.plane.cycle import STUCK
-    from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
+    from cython.cimports.fcm.contact.periodic.motion import MIXED, TWO_PI
     from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.closed_form import PI
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
     from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
-    from fcm.contact.plane.cycle import STUCK
-    from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
+    from fcm.contact.periodic.motion import MIXED, TWO_PI
     from fcm.continuation.problem import NONE
 
 
@@ -269,89 +263,6 @@ class LineLaw(KernelLaw):
             self.measures.slip_path,
         )
         self.contact_loads[3] = self.measures.dissipation
-        return 0
-
-
-@cython.cclass
-class PlanarLaw(KernelLaw):
-    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
-    is."""
-
-    def __init__(
-        self,
-        kernel: PlanarContact,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
-    ) -> None:
-        self.kernel, self.bounds = kernel, PlanarMargins(kernel.cycle)
-        KernelLaw.__init__(self, kernel, 3, self.bounds.most, mu, k_u, k_v, n_0)
-        self.measures = PlanarMeasures(kernel.cycle)
-        self.state = self.measures.state
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """Compute the forces, and their tangent if that is wanted."""
-        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
-        self.take_forces(self.kernel.forces)
-        # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
-        smooth: cython.bint = self.kernel.cycle.behaviour == CLOSED and not self.mu * self.k_u > 0.0
-        self.nonlinear = self.kernel.kind == MIXED and not smooth
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
-        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
-
-    @cython.ccall
-    @cython.exceptval(-1.0, check=True)
-    def squared_margin(
-        self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t
-    ) -> cython.double:
-        if kind != SLIPS:
-            return NAN
-        own: cython.double[::1] = x[first : first + self.width]
-        grown: cython.double = self.bounds.overlap(own, self.mu, self.k_u, self.k_v, self.n_0, False)
-        return grown if self.bounds.resting.brief() else NAN
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def compute_resistance(self) -> cython.int:
-        """The resistance along a direction is k_u while it sticks; mu k_v, by the normal displacement, while
-        it slips."""
-        sums = self.kernel.sums
-        rubs: cython.bint = self.mu * self.k_u > 0.0
-        stick: cython.double = 0.0
-        closed: cython.double = 0.0
-        x: cython.double = 0.0
-        y: cython.double = 0.0
-        if self.kernel.kind == STUCK:
-            stick = closed = 1.0
-        elif self.kernel.kind == MIXED:
-            closed = sums.cos_sum[CONTACT, 0] / TWO_PI
-            if rubs:
-                stick = sums.cos_sum[STICKS, 0] / TWO_PI
-                x, y = sums.cos_sum[SLIPS_X, 0] / TWO_PI, sums.cos_sum[SLIPS_Y, 0] / TWO_PI
-        self.resistance[0, 0] = self.resistance[1, 1] = stick * self.k_u if rubs else 0.0
-        self.resistance[0, 2], self.resistance[1, 2] = x * self.mu * self.k_v, y * self.mu * self.k_v
-        self.resistance[2, 2] = closed * self.k_v
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.forces(x, first, False)
-        self.measures.bear(self.mu, self.k_u)
-        self.pieces = self.measures.pieces
-        self.contact_loads[0], self.contact_loads[1] = (
-            self.measures.greatest_load,
-            self.measures.greatest_friction,
-        )
-        self.contact_loads[2], self.contact_loads[3] = self.measures.slip_path, self.measures.dissipation
         return 0
 
 

@@ -18,16 +18,21 @@ On a line t_i is a number and its limits an interval; in a plane it is a vector,
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.contact_law import Law, LineLaw, PlanarLaw
+from fcm.harmonic_balance.contact_law import Law, LineLaw
 from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+
+if TYPE_CHECKING:
+    from fcm.harmonic_balance.planar_law import PlanarLaw
 
 BoolArray = npt.NDArray[np.bool_]
 _End = tuple[float, float, FloatArray]  # of a stretch of a curve: length, slope of the amplitude, point

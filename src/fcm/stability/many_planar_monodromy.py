@@ -42,12 +42,12 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from cython.cimports.fcm.continuation.dense_solver import condense
     from cython.cimports.fcm.stability.planar_monodromy import VariationalSteps
-    from cython.cimports.fcm.stability.state_sequence import PlanarSequence
+    from cython.cimports.fcm.stability.planar_sequence import PlanarSequence
 else:
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from fcm.continuation.dense_solver import condense
     from fcm.stability.planar_monodromy import VariationalSteps
-    from fcm.stability.state_sequence import PlanarSequence
+    from fcm.stability.planar_sequence import PlanarSequence
 
 FloatArray = npt.NDArray[np.float64]
 

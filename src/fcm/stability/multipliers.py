@@ -39,11 +39,12 @@ from fcm.stability.following_modes import Modes, combined
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.rebalanced import Rebalancing
-from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
+from fcm.stability.state_sequence import BalancedSequence
 
 if TYPE_CHECKING:
     from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
     from fcm.stability.planar_monodromy import PlanarMonodromy
+    from fcm.stability.planar_sequence import PlanarSequence
 
 
 class VariationalProblem(NamedTuple):
@@ -92,6 +93,8 @@ class Multipliers:
         self.far = far
         self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
         if system.scene.planar:
+            from fcm.stability.planar_sequence import PlanarSequence  # most scenes do without
+
             self.states = (
                 PlanarSequence(contact, tuple(finer), options.planar),
                 PlanarSequence(contact, tuple(harmonics), options.planar),
@@ -124,8 +127,9 @@ class Multipliers:
                 _many_contacts if len(self.contact) >= self.options.structure.many_contacts else _few_contacts
             )
             return make(self.system, self.far, self.contact, (fine, plain), self.options)
-        from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy  # most scenes do without
+        from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
         from fcm.stability.planar_monodromy import PlanarMonodromy
+        from fcm.stability.planar_sequence import PlanarSequence
 
         linear = self.system.linear
         modes = Modes(linear.ports, linear.natural, linear.damping, self.far)

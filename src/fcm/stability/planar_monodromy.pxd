@@ -1,4 +1,4 @@
-from fcm.stability.state_sequence cimport PlanarSequence
+from fcm.stability.planar_sequence cimport PlanarSequence
 
 cdef class VariationalSteps:
     cdef public PlanarSequence sequence

@@ -41,11 +41,11 @@ from fcm.stability.following_modes import Modes
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
-    from cython.cimports.fcm.stability.state_sequence import PlanarSequence
+    from cython.cimports.fcm.stability.planar_sequence import PlanarSequence
 else:
     from fcm.contact.periodic.motion import TWO_PI
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
-    from fcm.stability.state_sequence import PlanarSequence
+    from fcm.stability.planar_sequence import PlanarSequence
 
 
 @cython.cclass

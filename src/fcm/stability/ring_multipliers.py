@@ -26,7 +26,8 @@ from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import RingPlanarMonodromy
-from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
+from fcm.stability.planar_sequence import PlanarSequence
+from fcm.stability.state_sequence import BalancedSequence
 from fcm.structure.ring import RingLinear
 
 MAX_NAMED = 8  # diameters in a sentence

@@ -1,6 +1,5 @@
 from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport Motion
-from fcm.contact.plane.forces cimport PlanarContact
 
 cdef int FREE
 
@@ -23,26 +22,3 @@ cdef class BalancedSequence(StateSequence):
     cdef bint contact_cycle(self, double[::1] x, int c) noexcept
     cdef bint opens(self) noexcept
     cdef double limit_at(self, int p) noexcept
-
-cdef class PlanarSequence:
-    cdef readonly int contacts, width, moving, held, capacity, highest
-    cdef public bint yielding
-    cdef readonly object options
-    cdef double invisible
-    cdef PlanarContact kernel
-    cdef readonly double[:, ::1] contact, begin, record
-    cdef readonly int[::1] count, first
-    cdef readonly int[:, ::1] state
-    cdef int[::1] piece
-    cdef double[:, :, ::1] re, im
-    cdef double[::1] mean, order
-    cdef double[::1] bary, node
-    cdef readonly double e_x, e_y, x_1, y_1, r, r_1
-    cpdef bint find_events(self, double[::1] x) except -1
-    cdef bint look(self, double[::1] x, int c) except -1
-    cdef bint keep(self, int c) except -1
-    cpdef int state_at(self, int c, double theta) except -1
-    cpdef int remembers(self, int c, double theta) except -1
-    cdef void rates(self, int c, double theta) noexcept nogil
-    cdef int panel(self, int c, double theta, bint before) noexcept nogil
-    cdef void direction(self, int p, double theta) noexcept nogil

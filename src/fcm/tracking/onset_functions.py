@@ -25,7 +25,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.contact_law import Law, PlanarLaw
+from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.planar_law import PlanarLaw
 from fcm.model.scene import FloatArray
 from fcm.structure.layout import layout_of
 from fcm.tracking.options import TRACKING, TrackingOptions
