@@ -43,6 +43,7 @@ OFF = {
     ],
     "levels in gaps": [(force_level, "frequencies_in_gaps", lambda system, known, peaks=(): ())],
     "levels at lost peaks": [(branch_trace.Traced, "lost_peaks", lambda found, options: ())],
+    "levels near peaks without preload": [(search, "with_large_motions", lambda system, found: found)],
     "levels below peaks": [(refined, "with_levels_below_peaks", lambda found, accuracy: found)],
     "levels where nothing is stable": [
         (refined, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))

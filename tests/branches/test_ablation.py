@@ -31,6 +31,7 @@ LOST = [
     ("prolongation", one(KNOWN, "missed"), 8, "branches 4 -> 3"),
     ("levels in gaps", one(KNOWN, "between_resonances"), 3, "peak 30y"),
     ("levels at lost peaks", one(KNOWN, "isolated_by_harmonics"), 3, "peak 9x"),
+    ("levels near peaks without preload", one(SCENES, "large_motions"), 3, "peak u"),
     ("levels below peaks", scene_from_dict(ONE_MODE).each_curve()[0], 5, "branches 4 -> 3"),
     ("levels where nothing is stable", one(KNOWN, "chaos", (1.23, 1.6)), 3, "peaks of unknown"),
     ("narrow resonances", replace(around(with_mode(-60.0, 1.31, 1e-5, 0.005)), max_step=0.1), 3, "peak u"),

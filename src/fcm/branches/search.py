@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fcm.branches.branch_points import BranchPoint, branch_points
+from fcm.branches.force_level import level_frequencies, solutions_at
 from fcm.branches.friction_homotopy import with_friction_raised
 from fcm.branches.isolas import folds_to_follow, level_one_crossings
 from fcm.branches.mirror_images import symmetric_half
-from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.branches.options import BRANCHING, LEVEL_CURVE, BranchingOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.symmetry_in_level import unsymmetric_solutions
 from fcm.branches.trace import Traced, with_further
+from fcm.branches.without_preload import peaks_without_preload
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
 
@@ -31,10 +33,21 @@ def with_further_branches(system: System, found: Traced, isolated: bool = True) 
 def _with_connected(system: System, found: Traced, isolated: bool) -> Traced:
     """The branches with those that what is known leads to."""
     if isolated:
-        found = with_isolas(system, found)
+        found = with_isolas(system, with_large_motions(system, found))
     else:
         found = replace(found, folds_lost=folds_to_follow(system, found.found))
     return with_unsymmetric(system, with_branching(system, found))
+
+
+def with_large_motions(system: System, found: Traced) -> Traced:
+    """The branches with those of the level near peaks of the response without preloads that no branch has."""
+    lost = found.not_met(peaks_without_preload(system), system.option(LEVEL_CURVE))
+    known = {one.omega for one in found.found}
+    further = [omega for omega in level_frequencies(system, lost) if omega not in known] if lost else []
+    if not further:
+        return found
+    more = solutions_at(system, further)
+    return with_further(system, found, more, [z for one in more for z in one.solutions])
 
 
 def with_isolas(system: System, found: Traced) -> Traced:

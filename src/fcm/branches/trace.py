@@ -73,10 +73,12 @@ class Traced(Frozen):
     def lost_peaks(self, options: LevelCurveOptions) -> tuple[float, ...]:
         """Frequencies [rad/s] of those peaks of fewer harmonics that no branch has: maybe of one that is
         isolated with more."""
+        return self.not_met(self.fewer_peaks, options)
+
+    def not_met(self, peaks: Sequence[FoundPeak], options: LevelCurveOptions) -> tuple[float, ...]:
+        """Frequencies [rad/s] of those peaks of another response that no branch has."""
         own = self.own_peaks
-        return tuple(
-            one.omega for one in self.fewer_peaks if not any(one.is_like(other, options) for other in own)
-        )
+        return tuple(one.omega for one in peaks if not any(one.is_like(other, options) for other in own))
 
 
 def traced(
