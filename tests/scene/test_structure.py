@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import pi
 
 import numpy as np
@@ -425,6 +426,33 @@ def test_a_loss_factor_is_half_of_it_at_each_resonance():
     for omega in EXACT:
         hysteretic = np.linalg.inv(K * (1 + 0.02j) - omega**2 * M)[2, 2]
         assert abs(answer(scene.modal, omega)[2, 2]) == pytest.approx(abs(hysteretic), rel=5e-3)
+
+
+def test_of_a_loss_factor_the_ratio_with_stuck_contacts_is_told():
+    """Beside that of hysteresis: the energy of the structure alone, which the stiff contact has little of."""
+    contact = {
+        "tangential": "1x",
+        "normal": "2x",
+        "name": "a",
+        "mu": 0.3,
+        "k_u": 40.0,
+        "k_v": 90.0,
+        "n_0": 1.0,
+    }
+    scene = read(top={"contact": [contact]}, damping={"loss_factor": 0.02})
+    (note,) = (note for note in scene.notes if "half the loss factor" in note)
+    taken, meant = (float(word) for word in re.findall(r"has (\S+) in place of (\S+)\.", note)[0])
+    stuck = K * (1 + 0.02j) + np.diag([40.0, 90.0, 0.0])
+    omega = np.sqrt(np.sort_complex(np.linalg.eigvals(np.linalg.solve(M, stuck)))[0])
+    assert meant == pytest.approx(omega.imag / abs(omega), rel=5e-3)
+    shapes = scene.modal.shapes.T
+    by_modes = M @ shapes @ np.diag(0.02 * scene.modal.frequency) @ shapes.T @ M
+    state = np.block(
+        [[np.zeros((3, 3)), np.eye(3)], [-np.linalg.solve(M, stuck.real), -np.linalg.solve(M, by_modes)]]
+    )
+    decay = min(np.linalg.eigvals(state), key=abs)
+    assert taken == pytest.approx(-decay.real / abs(decay), rel=5e-3)
+    assert abs(taken / meant - 1.0) > 0.02
 
 
 def test_a_loss_factor_at_one_frequency_is_right_where_a_contact_holds_a_rigid_body():

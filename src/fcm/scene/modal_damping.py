@@ -47,12 +47,13 @@ def damping_of(
     if matrices.ratio is not None:
         return Damping(np.full(stiffness.size, matrices.ratio), 0.0, _of_floating(matrices.ratio, rigid))
     if matrices.hysteretic:
+        half = matrices.hysteretic / 2.0
         equal = (
             "structure: half the loss factor is taken as damping ratio, which is equal at each resonance "
-            "without contacts. Where contacts move a resonance far, or hold rigid bodies, it is another. "
-            f"{_AT_ONE}"
+            "without contacts. Where contacts move a resonance far, or hold rigid bodies, it is another."
+            f"{_while_stuck(half, stiffness, found.modes.shapes.conj().T @ loads, springs)} {_AT_ONE}"
         )
-        return Damping(np.full(stiffness.size, matrices.hysteretic / 2.0), 0.0, [equal])
+        return Damping(np.full(stiffness.size, half), 0.0, [equal])
     if matrices.C is None:
         ratio = proportional(matrices.by_mass, matrices.by_stiffness, stiffness)
         modal = np.diag(matrices.by_mass + matrices.by_stiffness * stiffness)
@@ -74,6 +75,24 @@ def damping_of(
         said = _left_out(dragged, effects)
     lowest = ends[0] if np.isfinite(ends[0]) else 0.0
     return Damping(ratio, float(dragged / np.hypot(lowest, dragged)) if dragged else 0.0, said)
+
+
+def _while_stuck(half: float, stiffness: FloatArray, pushes: FloatArray, springs: FloatArray) -> str:
+    """A sentence on the ratio of the first stuck resonance beside that of hysteresis, if they differ.
+
+    Of a stuck mode x (mode,) with frequency omega the ratio is half sum_i omega_i |x_i|^2 / omega, and that
+    of hysteresis half sum_i omega_i^2 |x_i|^2 / omega^2.
+    """
+    squares, shapes = np.linalg.eigh(np.diag(stiffness) + (pushes * springs) @ pushes.conj().T)
+    first = int((squares > stiffness.max(initial=0.0) * np.finfo(np.float64).eps * squares.size).argmax())
+    if not squares.size or not squares[first] > 0.0:
+        return ""
+    share, omega = np.abs(shapes[:, first]) ** 2, np.sqrt(squares[first])
+    taken = half * float(np.sqrt(np.maximum(stiffness, 0.0)) @ share) / omega
+    meant = half * float(stiffness @ share) / omega**2
+    if abs(taken - meant) <= MESSAGES.damping_left_out * meant:
+        return ""
+    return f" With all of them stuck the first has {taken:.3g} in place of {meant:.3g}."
 
 
 def _of_floating(ratio: float, rigid: int) -> list[str]:
