@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.model.question import Question
 from fcm.scene import SceneError, scene_from_dict
 
 DOFS = ["ax", "ay", "az", "bx", "by", "bz"]
@@ -133,3 +134,86 @@ def test_modes_of_a_structure_keep_the_second_direction():
     answers = [fcm.respond(scene_from_dict(one), "closed-form") for one in (whole, few)]
     peaks = [one["peak_amplitude"].sel(dof="ax").item() for one in answers]
     assert peaks[1] == pytest.approx(peaks[0], rel=5e-3)
+
+
+NAMED = {
+    "dofs": ["7x", "7y", "7z", "8x", "8y", "8z", "7rx", "7rz", "q", "9z"],
+    "frequency": [1.0 + 0.3 * i for i in range(10)],
+    "damping": 0.05,
+    "shapes": np.eye(10).tolist(),
+}
+TURNED = {"normal": {"x": 1.0, "y": 1.0}, "tangential": {"x": -1.0, "y": 1.0}}
+
+
+OF_DOFS = CONTACT | {"tangential": {"7x": 1.0, "8x": -1.0}, "normal": {"7z": 1.0, "8z": -1.0}}
+OF_NODES = CONTACT | NODES | {"nodes": [["7", "8"]]}
+
+
+def questions(*contacts):
+    scene = scene_from_dict(
+        data({}, force=[{"dof": "7x", "amplitude": 1.0}]) | {"modal": NAMED, "contact": contacts}
+    )
+    return [one for one in scene.notes if " meant? Its length " in one]
+
+
+def test_a_direction_of_another_length_acts_as_the_question_says():
+    """With u = L u', v = L v' the forces along t / L and n / L are L f and L n: k L^2, n_0 L, and mu."""
+    (question,) = questions(OF_NODES | TURNED)
+    assert isinstance(question, Question)
+    assert question == (
+        'contact "joint": is tangential = { x = -1, y = 1 } meant? Its length is 1.41421, so that the '
+        "contact acts as one of length 1 with 2 times k_u and 1.41421 times mu. { x = -0.707107, y = "
+        "0.707107 } is of length 1; is normal = { x = 1, y = 1 } meant? Its length is 1.41421, so that the "
+        "contact acts as one of length 1 with 2 times k_v, 1.41421 times n_0 and 0.707107 times mu. { x = "
+        "0.707107, y = 0.707107 } is of length 1"
+    )
+    half = float(np.sqrt(0.5))
+    unit = {"normal": {"x": half, "y": half}, "tangential": {"x": -half, "y": half}}
+    same = unit | {"k_u": 2.0, "k_v": 4.0, "n_0": 5.0 * 2.0**0.5}
+    long, short = (scene_from_dict(data(NODES | one)) for one in (TURNED, same))
+    assert not any(" meant? " in note for note in short.notes)
+    one, other = (fcm.respond(scene, harmonics=1) for scene in (long, short))
+    assert float(one.peak_amplitude[0, 0]) == pytest.approx(float(other.peak_amplitude[0, 0]), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("contact", "words"),
+    [
+        (
+            OF_NODES | {"normal": {"z": 2.0}, "n_0": None, "gap": 0.1},
+            "4 times k_v, 0.5 times gap and 0.5 times",
+        ),
+        (OF_NODES | {"normal": {"y": 0.71, "z": 0.71}}, "Its length is 1.00409"),
+        (OF_NODES | {"tangential": [{"x": 2.0}, {"y": 2.0}]}, "[{ x = 1 }, { y = 1 }] is of length 1"),
+        ({"tangential": {"7x": 0.5, "8x": -0.5}}, '{ "7x" = 1, "8x" = -1 } is of length 1'),
+        ({"tangential": {"7x": 1.0, "7y": 1.0}}, "2 times k_u and 1.41421 times mu"),
+    ],
+)
+def test_directions_of_another_length_are_asked_about(contact, words):
+    given = {key: value for key, value in (OF_DOFS | contact).items() if value is not None}
+    (question,) = questions(given)
+    assert words in question
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [
+        {"normal": {"7z": 1.0}},
+        {"tangential": {"7x": 0.5, "8x": 0.5}},  # halfway between nodes
+        {"tangential": {"7x": 1.0, "8x": -0.4}},  # levers
+        {"tangential": {"7x": 0.707, "7y": 0.707}},
+        {"tangential": {"7x": 1.0, "7rz": 0.3}},
+        {"tangential": {"7rz": 0.3}},
+        {"normal": {"9z": 0.2}},  # a node without rows along the other axes
+        {"tangential": {"q": 0.2}},
+        OF_NODES | {"normal": {"z": 1.0, "rx": 0.2}, "nodes": [["7"]]},
+    ],
+)
+def test_other_weights_are_not(contact):
+    assert questions(OF_DOFS | contact) == []
+
+
+def test_several_contacts_are_asked_about_once():
+    other = OF_DOFS | {"tangential": {"7x": 3.0}}
+    (question,) = questions(other, other | {"name": "b"}, other | {"name": "c"})
+    assert question.endswith('. The same of "b" and "c"')

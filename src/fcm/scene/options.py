@@ -152,8 +152,8 @@ class ToleranceOptions(Frozen):
     # part of a direction, relative to it, by which its projection on a plane may be shorter, up to which it
     # lies in the plane
     square: float = 1e-6
-    # relative difference of the lengths of two directions, and cosine between them, up to which they are of
-    # one length and at right angles: weights of three digits are so far off
+    # relative difference of the lengths of two directions, or of one from 1, and cosine between two, up to
+    # which they are of one length and at right angles: weights of three digits are so far off
     written: float = 2e-3
     # distance of a node from its place, relative to the extent of the places, or part of rigid-body motions
     # that does not fit: above it nodes are not where a file says

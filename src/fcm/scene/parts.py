@@ -10,6 +10,7 @@ from typing import Any
 
 from fcm.model.scene import NO_RANGE, Contact, Force
 from fcm.scene.address import TOTAL
+from fcm.scene.direction_lengths import GivenDirections, of_dofs, questions_of_lengths
 from fcm.scene.errors import nearest, quoted, shown
 from fcm.scene.files import Files
 from fcm.scene.keys import names
@@ -41,7 +42,9 @@ ONE = "give a range, and a single frequency within it by --at"
 def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]]:
     """The contacts as read, in the words of the file."""
     sections = top.tables("contact")
-    drafts = [draft for section in sections for draft in _contacts(section, dofs, files)]
+    given: list[GivenDirections] = []
+    drafts = [draft for section in sections for draft in _contacts(section, dofs, files, given)]
+    files.noted.extend(questions_of_lengths(given))
     for name, group in same_names(draft["name"] for draft in drafts if draft["name"]):
         written = "" if len(set(group)) == 1 else " (in other Unicode characters)"
         top.wrong(
@@ -50,8 +53,13 @@ def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
     return drafts
 
 
-def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]]:
-    """The contacts of one [[contact]]: one, or one for each of its pairs of nodes."""
+def _contacts(
+    section: Section, dofs: Dofs, files: Files, given: list[GivenDirections]
+) -> list[dict[str, Any]]:
+    """The contacts of one [[contact]]: one, or one for each of its pairs of nodes.
+
+    Its directions are added to those given.
+    """
     name = section.text("name")
     if name:
         section.path += f" {quoted(name)}"
@@ -69,6 +77,8 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
             lambda key: section.weights(key, dofs),
             lambda value, key: section.weights_in(value, key, dofs),
         )
+        if dofs is not None:
+            given.append(GivenDirections(name, load, of_dofs(found, dofs), dofs))
         return [draft | {"name": name} | found]
     table = read_pairs(section, files)
     section = with_fitted(section, table)
@@ -77,6 +87,9 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
     directions = read_directions(section, partial(read_direction, section), partial(direction_in, section))
     check_nodes(section, directions.values(), table.pairs, dofs)
     check_axes(section, directions)
+    if dofs is not None and table.pairs:
+        load = "gap" if "gap" in numbers else "n_0"
+        given.append(GivenDirections(name, load, directions, dofs, table.pairs[0][0]))
     files.noted.extend(table.said)
     if table.interface is not None:
         files.interfaces.append(replace(table.interface, nodes=tuple(table.pairs)))
