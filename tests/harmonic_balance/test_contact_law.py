@@ -197,6 +197,28 @@ def test_a_law_of_no_use_is_told(law, said):
         fcm.respond(scene_of(law), "closed-form")
 
 
+@pytest.mark.parametrize(
+    ("returned", "said"),
+    [
+        (lambda x, dx: x[0], r"an array of shape \(\d+,\)"),
+        (lambda x, dx: x, r"an array of shape \(2, \d+\)"),  # of as many rows as there are to be arrays
+        (lambda x, dx: (x, dx, x), "3 values"),
+        (lambda x, dx: None, "a NoneType"),
+    ],
+)
+def test_a_law_that_does_not_return_two_arrays_is_told_what_is_expected(returned, said):
+    class Odd(fcm.ContactLaw):
+        def forces(self, x, dx):
+            return returned(x, dx)
+
+    told = (
+        rf'the law Odd of the contact "joint": forces\(x, dx\) has returned {said}; it is to return two '
+        r"arrays, the forces and their changes, with the shapes of x and dx, \(2, \d+\) and \(2, \d+, 6\)"
+    )
+    with pytest.raises(ContactLawError, match=told):
+        fcm.respond(scene_of(Odd()), "closed-form")
+
+
 class Doubled(Cubic):
     """The changes are twice what they should be."""
 
@@ -225,6 +247,34 @@ def test_contacts_that_cannot_have_it():
     swept = scene_from_dict({**DATA, "sweep": {"contact.joint.k_u": [1.0, 2.0]}}, "own.toml")
     with pytest.raises(ValueError, match="are swept, which its own law has not"):
         swept.with_laws({"joint": Cubic(1.0, 0.0)})
+
+
+PAIRS = {
+    "modal": {"dofs": ["7x", "7y", "8x", "8y"], "frequency": [1.0] * 4, "damping": 0.1}
+    | {"shapes": np.eye(4).tolist()},
+    "contact": [
+        {"name": "tip", "nodes": [[7], [8]], "tangential": "x", "normal": "y"}
+        | {"mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 1.0}
+    ],
+    "force": [{"dof": "7x", "amplitude": 1.0}],
+    "response": {"frequency": [0.8, 1.6]},
+}
+
+
+def test_the_name_of_pairs_of_nodes_stands_for_all_of_them():
+    scene, law, other = scene_from_dict(PAIRS), Cubic(1.0, 0.0), Cubic(2.0, 0.0)
+    assert [one.law for one in scene.with_laws({"tip": law}).contacts] == [law, law]
+    assert [one.law for one in scene.with_laws({"tip_2": other, "tip": law}).contacts] == [law, other]
+    with pytest.raises(ValueError, match=r'"tipp"; there are "tip", "tip_1", "tip_2"$'):
+        scene.with_laws({"tipp": law})
+
+
+@pytest.mark.parametrize("swept", ["contact.tip.mu", "contact.*.mu"])
+@pytest.mark.parametrize("name", ["tip", "tip_1"])
+def test_swept_numbers_of_pairs_of_nodes_are_none_of_their_law(name, swept):
+    scene = scene_from_dict(PAIRS | {"sweep": {swept: [0.1, 0.2]}})
+    with pytest.raises(ValueError, match="are swept, which its own law has not"):
+        scene.with_laws({name: Cubic(1.0, 0.0)})
 
 
 def test_derivatives_that_are_none_are_told():

@@ -95,7 +95,14 @@ class SampledLaw(Law):
 
     def _sampled(self, motion: FloatArray, variation: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Forces of the law, less those at rest, and their changes; ContactLawError if they are of no use."""
-        force, change = (np.asarray(one, dtype=np.float64) for one in self.own.forces(motion, variation))
+        found = self.own.forces(motion, variation)
+        if not isinstance(found, tuple | list) or len(found) != 2:
+            what = f"an array of shape {found.shape}" if isinstance(found, np.ndarray) else _kind(found)
+            raise ContactLawError(
+                f"{self.description}: forces(x, dx) has returned {what}; it is to return two arrays, the "
+                f"forces and their changes, with the shapes of x and dx, {motion.shape} and {variation.shape}"
+            )
+        force, change = (np.asarray(one, dtype=np.float64) for one in found)
         if force.shape != motion.shape or change.shape != variation.shape:
             raise ContactLawError(
                 f"{self.description}: forces of shape {force.shape} and changes of shape {change.shape}; "
@@ -109,6 +116,15 @@ class SampledLaw(Law):
     def description(self) -> str:
         """The class of the law and the name of its contact, for a sentence."""
         return f"the law {type(self.own).__name__} of the contact {quoted(self.name)}"
+
+
+def _kind(found: object) -> str:
+    """What a law has returned in place of two arrays.
+
+    >>> _kind((1.0, 2.0, 3.0)), _kind(None)
+    ('3 values', 'a NoneType')
+    """
+    return f"{len(found)} values" if isinstance(found, tuple | list) else f"a {type(found).__name__}"
 
 
 def check_own_laws(scene: Scene) -> None:

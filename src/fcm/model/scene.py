@@ -302,6 +302,9 @@ class Scene(Frozen):
     def with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
         """The scene with laws of one's own, by the names of the contacts that have them.
 
+        The name of a [[contact]] with nodes stands for the contacts of all its pairs. The law of a pair by
+        its own name goes before it.
+
         The search for solutions still begins with the contact's mu, k_u, k_v and n_0. They give the stiffness
         of what resembles it, and the level of the forces beyond which it may slip or open.
 
@@ -319,24 +322,37 @@ class Scene(Frozen):
         >>> fcm.load_scene("yang1998-n5").with_laws({"shroud": Spring()}).with_own_laws
         True
         """
-        names = [one.name for one in self.contacts]
+        groups = self._groups()
+        swept = [key for curve in self.curves for key in curve.parameters]
+        of_groups, of_contacts = dict[str, ContactLaw](), dict[str, ContactLaw]()
         for name, law in laws.items():
-            if name not in names:
+            pairs = [one for one, group in groups.items() if group == name]
+            own = [name] if name in groups else pairs
+            if not own:
+                there = dict.fromkeys(one for pair in groups.items() for one in reversed(pair) if one)
                 raise ValueError(
-                    f"no contact is called {quoted(name)}; there are {', '.join(map(quoted, names))}"
+                    f"no contact is called {quoted(name)}; there are {', '.join(map(quoted, there))}"
                 )
             if not isinstance(law, ContactLaw):
                 raise ValueError(
                     f"the law of {quoted(name)} is a {type(law).__name__}, and no fcm.ContactLaw"
                 )
-            swept = [key for curve in self.curves for key in curve.parameters]
-            if any(key.startswith((f"contact.{name}.", "contact.*.")) for key in swept):
+            called = {"*", name, *own, *(groups[one] for one in own)} - {""}
+            if any(key.startswith(tuple(f"contact.{one}." for one in called)) for key in swept):
                 raise ValueError(
                     f"numbers of the contact {quoted(name)} are swept, which its own law has not"
                 )
+            (of_contacts if name in groups else of_groups).update(dict.fromkeys(own, law))
+        laws = of_groups | of_contacts
         if self.ring is not None and laws:
             raise ValueError("a contact of a ring of sectors cannot have a law of its own")
         return replace(self._with_laws(laws), curves=tuple(one._with_laws(laws) for one in self.curves))
+
+    def _groups(self) -> dict[str, str]:
+        """The name of the [[contact]] with nodes that each contact is of; empty of others."""
+        drafts = [] if self.draft is None else self.draft.parts["contact"]
+        of_pairs = {one["name"]: one["group"] for one in drafts if "group" in one}
+        return {one.name: of_pairs.get(one.name, "") for one in self.contacts}
 
     def _with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
         contacts = tuple(replace(one, law=laws.get(one.name, one.law)) for one in self.contacts)
