@@ -130,7 +130,16 @@ def folds_uncertain(summary: Mapping[str, Any]) -> str:
 
 def of_more_harmonics(summary: Mapping[str, Any]) -> str:
     """That branches of more harmonics than are given were not looked for; empty where errors of peaks are
-    small. Of curves over the frequency by a balance alone."""
+    small. Of curves over the frequency by a balance alone.
+
+    >>> peak = {"peak": {"u": {"amplitude": 1.0, "error": 0.012}}, "harmonics": [1]}
+    >>> unknown = {"peak": {"u": {"amplitude": 1.0, "error": None}}, "harmonics": [1]}
+    >>> for curves in ([peak], [unknown], [peak, unknown]):
+    ...     print(of_more_harmonics({"curves": curves}).split(". ")[0])
+    the harmonics are given, and errors of peaks are up to 1.2 %
+    the harmonics are given, and errors of peaks are unknown
+    the harmonics are given, and errors of peaks are up to 1.2 %, 1 of 2 unknown
+    """
     from fcm.response.options import INPUT_LIMITS
 
     completed = _completed(summary)
@@ -141,8 +150,12 @@ def of_more_harmonics(summary: Mapping[str, Any]) -> str:
     errors = [peak.get("error") for peak in [*highest, *lower] if peak.get("amplitude")]
     if all(error is not None and error <= INPUT_LIMITS.accuracy for error in errors):
         return ""
+    known = [error for error in errors if error is not None]
+    unknown = len(errors) - len(known)
+    most = f"up to {share_of(max(known))}" if known else "unknown"
+    lacking = f", {unknown} of {len(errors)} unknown" if known and unknown else ""
     return (
-        "the harmonics are given, and errors of peaks are large or unknown. Branches that only more "
+        f"the harmonics are given, and errors of peaks are {most}{lacking}. Branches that only more "
         f"harmonics have were not looked for: --accuracy {INPUT_LIMITS.accuracy:g} looks for them, as far as "
         "its time goes"
     )
