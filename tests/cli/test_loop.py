@@ -441,3 +441,12 @@ def test_a_point_beside_the_frequency_asked_for_is_said(fcm, folded):
     assert f"at 1.2: drawn is the nearest point of the file, at {one['frequency']:.6g} rad/s" in done.err
     again = fcm("plot", "loop", folded, "--curve", 0, "--at", repr(one["frequency"]), "--json")
     assert "nearest point" not in again.err
+
+
+def test_a_modal_amplitude_beside_that_asked_for_has_no_unit_of_frequency(fcm):
+    run = ("--mode", 1, "--level", "0.1:100", "--harmonics", 1, "-o", "mode.nc")
+    assert fcm("respond", "yang1998-n5", *map(str, run)).code == 0
+    done = fcm("plot", "loop", "mode.nc", "--amplitude", "3", "--json")
+    (one,) = json.loads(done.out)["loops"]
+    nearest = f"{one['modal_amplitude']:.6g}"
+    assert f"at 3: drawn is the nearest point of the file, at {nearest}. A smaller" in done.err

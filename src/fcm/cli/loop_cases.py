@@ -195,8 +195,10 @@ def of_file(
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         points = points if solution is None else points[solution - 1 : solution]
-        if place is not None and (said := not_at(place.value, [place.of(one) for one in points], file.unit)):
-            tell(said)
+        if place is not None:
+            unit = "" if place.modal else file.unit
+            if said := not_at(place.value, [place.of(one) for one in points], unit):
+                tell(said)
         for point in points:
             with read(path, "its loops cannot be drawn"):
                 if isinstance(point.motion, PlanePoint):
