@@ -1,18 +1,23 @@
 """Pictures of nonlinear modes: how many lines are named, and where the greatest damping is marked."""
 
+import json
 import re
 from dataclasses import replace
+from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 from matplotlib.text import Text
 from tests.program import called
 
+import fcm
 from fcm.plot import draw_response, read_response
 from fcm.plot.error_panel import RANGE
 from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes, read_modes
 from fcm.plot.unfinished import Unfinished
 
+SCENES = Path(fcm.__file__).parent / "scenes"
 AMPLITUDE = np.geomspace(0.1, 10.0, 41)
 
 
@@ -210,6 +215,23 @@ def test_the_axis_says_what_a_modal_amplitude_means(tmp_path):
     assert draw_modes(read).axes[-1].get_xlabel() == f"Modal amplitude, of the mode of mass 1\n{of_w15}"
     several = replace(read, modes=read.modes * 2)
     assert draw_modes(several).axes[-1].get_xlabel() == "Modal amplitude, of the mode of mass 1"
+
+
+def test_the_axis_says_it_of_what_the_scene_asks_for(tmp_path):
+    """It was of whatever moves most, which are those of contacts, too."""
+    text = (
+        (SCENES / "yang1998-n5.toml")
+        .read_text(encoding="utf-8")
+        .replace("[response]", '[response]\noutput = ["v"]')
+    )
+    (tmp_path / "one.toml").write_text(text, encoding="utf-8")
+    path = tmp_path / "one.nc"
+    run = ("--mode", 1, "--level", "0.1:1", "--harmonics", 1, "-o", path)
+    assert called("respond", tmp_path / "one.toml", *run).code == 0
+    (mode,) = read_modes(path).modes
+    assert list(mode.displacement) == ["v"]
+    with netCDF4.Dataset(path) as data:
+        assert set(json.loads(data.summary)["curves"][0]["mode"]["displacement"]) == {"u", "v"}
 
 
 @pytest.mark.parametrize(("count", "lines"), [(6, 6), (7, 0)])

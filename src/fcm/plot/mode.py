@@ -11,6 +11,7 @@ import numpy as np
 
 from fcm.frozen import Frozen
 from fcm.plot.curve_names import name_at_side, write_beside
+from fcm.plot.dof import asked_for
 from fcm.plot.error_panel import RANGE, draw_greatest, greatest_between, together
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
@@ -151,11 +152,16 @@ def read_modes(path: Path) -> DrawnModes:
 
 
 def _displacements(data: Any) -> list[dict[str, float]]:
-    """What a modal amplitude of 1 is at degrees of freedom, of each curve, from the file's summary."""
-    return [
-        {str(dof): _number(value) for dof, value in curve.get("mode", {}).get("displacement", {}).items()}
-        for curve in summary_of(data).get("curves", ())
-    ]
+    """What a modal amplitude of 1 is at degrees of freedom, of each curve, from the file's summary.
+
+    Of those that the scene asks for, where it does.
+    """
+    found = []
+    for curve in summary_of(data).get("curves", ()):
+        moved = {str(dof): _number(x) for dof, x in curve.get("mode", {}).get("displacement", {}).items()}
+        asked = asked_for(getattr(data, "output", ""), list(moved))
+        found.append({dof: moved[dof] for dof in asked or moved})
+    return found
 
 
 class Resonance(NamedTuple):
