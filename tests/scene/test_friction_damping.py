@@ -7,8 +7,11 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import fcm
+from fcm.cli.modes import as_table
 from fcm.response.mode import ModeRequest, trace_modes
+from fcm.scene import scene_from_dict
 from fcm.scene.friction_damping import friction_damping
+from fcm.scene.listing import listing
 
 from ..program import called
 
@@ -117,3 +120,42 @@ def test_contacts_that_open_with_the_preload_are_named(tmp_path, times, opens):
     assert ("contacts would open with this preload" in out) == bool(opens)
     (row,) = [line for line in out.splitlines() if "damper   100 %" in line]
     assert row.endswith("*") == bool(opens)
+
+
+def symmetric(k_u):
+    """Nine masses between walls, with stiff ends and a contact at each, pushed in the middle."""
+    springs = np.array([1e4, 9.0, 3.0, 7.0, 2.0])
+    every = np.concatenate((springs, springs[::-1]))
+    stiffness = np.diag(every[:-1] + every[1:]) - np.diag(every[1:-1], 1) - np.diag(every[1:-1], -1)
+    dofs = [f"x{i}" for i in range(9)]
+    contacts = [
+        {"name": name, "tangential": dof, "normal": dof, "mu": 0.3, "k_u": k_u, "k_v": 0.0, "n_0": 1.0}
+        for name, dof in (("left", "x3"), ("right", "x5"))
+    ]
+    structure = {"dofs": dofs, "mass": [1.0] * 9, "stiffness": stiffness.tolist(), "damping": 0.01}
+    force = [{"dof": "x4", "amplitude": 1.0}]
+    response = {"frequency": [0.1, 9.0]}
+    return {"structure": structure, "contact": contacts, "force": force, "response": response}
+
+
+def test_modes_that_forces_do_not_move_but_for_rounding_have_no_preload():
+    """Antisymmetric modes had 1e-15 and less."""
+    every = friction_damping(scene_from_dict(symmetric(1.0)))[:7]  # those of the ends are of one frequency
+    assert [one["excited"] for one in every] == [i % 2 == 0 for i in range(7)]
+    for one in every:
+        assert all((force > 0.0) == one["excited"] for force in one["preload"].values())
+
+
+def test_overdamped_modes_that_forces_do_not_move_have_no_damping():
+    found = listing(scene_from_dict(symmetric(1e3)))
+    still = [one["friction_damping"] >= 1.0 and not one["excited"] for one in found["resonances"]]
+    assert any(still)
+    lines = as_table(found).splitlines()
+    head = next(i for i, line in enumerate(lines) if line.startswith("resonance"))
+    rows = [line.split() for line in lines[head + 1 : head + 1 + len(still)]]
+    assert [row[4] == "-" for row in rows] == still
+    assert "- of n_0: the scene's forces do not move the mode" in as_table(found)
+    free = symmetric(1e3)
+    del free["force"]
+    free = listing(scene_from_dict(free, solved=False))
+    assert "do not move" not in as_table(free) and "overdamped" in as_table(free)

@@ -23,6 +23,7 @@ _OF_OPENING = (
     f"{_OPENS} contacts would open with this preload, so that it does not hold, nor does the damping: "
     "[optimum] finds the best"
 )
+_NOT_MOVED = "- of n_0: the scene's forces do not move the mode"
 _FLOATS = "'"  # beside a stiffness where rigid-body modes move
 _OF_FLOATING = f"{_FLOATS} of elastic modes alone: rigid-body modes move along it; - where no other does"
 _SPRINGS = (("k_u", "tangential"), ("k_v", "normal"))
@@ -50,7 +51,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     It has the greatest damping ratio that friction can add to each, estimated by one harmonic. Contacts stay
     closed, at their best preload, with the same share of slip. The contact with the greatest part is "most
     in". Its preload that gives this damping, in resonance with the scene's forces, is "n_0". It is marked
-    where contacts would open with it. A ratio of 1 and more is marked as overdamped.
+    where contacts would open with it. A ratio of 1 and more is marked as overdamped. A mode that the forces
+    do not move has no preload, and none that is overdamped has a ratio then.
 
     A third table has the stiffness of each contact, and that of the structure there, by a unit load without
     contacts. A contact of a hundredth of it changes little. With a hundred times as much it is as good as
@@ -127,6 +129,7 @@ def _resonances(found: dict[str, Any]) -> str:
     if not any(one["friction_damping"] for one in every):
         return ""
     unit = found["frequency_unit"]
+    forced = any(name.startswith("force.") for name in found["modes"][0]["participation"])
     heads = ["friction adds", "most in", "", "n_0"]
     rows = [["resonance", f"stuck at {unit}", f"open at {unit}", "MAC", *heads]]
     for number_of, one in enumerate(every, 1):
@@ -134,17 +137,21 @@ def _resonances(found: dict[str, Any]) -> str:
         preload = f"{one['preload'][name]:.2g}" if one["preload"][name] else "-"
         preload += _OPENS if one["opens"] else ""
         most = [name, f"{100.0 * share:.0f} %", preload] if one["friction_damping"] else ["-", "", ""]
+        adds = ratio(one["friction_damping"], 2)
+        if adds.endswith(OVERDAMPED) and forced and not one["excited"]:
+            adds, most = "-", ["-", "", ""]
         rows.append(
             [
                 str(number_of),
                 number(one["stuck"]),
                 number(one["open"]) if one["mac"] >= SENTENCES.least_alike else "-",
                 f"{one['mac']:.3f}",
-                ratio(one["friction_damping"], 2),
+                adds,
                 *most,
             ]
         )
-    marks = [_OF_OPENING] if any(one["opens"] for one in every) else []
+    marks = [_NOT_MOVED] if forced and not all(one["excited"] for one in every) else []
+    marks += [_OF_OPENING] if any(one["opens"] for one in every) else []
     marks += [OF_OVERDAMPED] if any(row[4].endswith(OVERDAMPED) for row in rows) else []
     of_pairs = any(row[5] in found["of_pairs"] for row in rows)
     said = _FRICTION.format(_OF_PAIRS if of_pairs else "", SENTENCES.least_alike)

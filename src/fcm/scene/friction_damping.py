@@ -43,9 +43,9 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     `mac` its modal assurance criterion. Each is followed by its shape as the contacts slip.
 
     `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
-    in it, `preload` that of each contact which gives it with the forces of the scene: 0 where these do not
-    move the mode. `opens` are the contacts that would open with it. Empty without contacts. Modes are
-    counted among those that are elastic while the contacts stick.
+    in it, `preload` that of each contact which gives it with the forces of the scene. Where these do not move
+    the mode it is 0, and `excited` is false. `opens` are the contacts that would open with it. Empty without
+    contacts. Modes are counted among those that are elastic while the contacts stick.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     followed = np.array([one.shape for one in modes]).T  # at the last theta
     most = min(2 * modes[-1].number + 2, modal.frequency.size) if modes else 0
 
-    best = np.zeros(len(modes))
+    best, excited = np.zeros(len(modes)), np.zeros(len(modes), dtype=np.bool_)
     # of each contact, at the best theta of each mode
     ratio, preload, load = np.zeros((3, len(modes), len(contacts)))
     angles = np.geomspace(FRICTION_DAMPING.least_angle, np.pi, FRICTION_DAMPING.angles, endpoint=False)
@@ -95,9 +95,9 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
                 ratio[mode] = np.bincount(owner, loss, len(contacts))
                 omega = float(np.sqrt(square))
                 own = float((modal.damping * modal.frequency) @ shape**2) / omega
-                size = abs(_force_on(scene, shape / np.sqrt(modal.mass), omega)) / (
-                    2.0 * (best[mode] + own) * square
-                )
+                push = abs(_force_on(scene, shape / np.sqrt(modal.mass), omega))
+                excited[mode] = push > 0.0
+                size = push / (2.0 * (best[mode] + own) * square)
                 amplitude = size * np.sqrt(np.bincount(owner, moved, len(contacts)))
                 preload[mode] = per_force * amplitude * (1.0 - np.cos(theta))
                 load[mode] = k_v * np.abs(across.T @ shape) * size
@@ -109,6 +109,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
             "mac": one.mac,
             "stuck": one.frequency / unit,
             "friction_damping": float(best[mode]),
+            "excited": bool(excited[mode]),
             "by_contact": {
                 contact.name: float(part / best[mode]) if best[mode] else 0.0
                 for contact, part in zip(contacts, ratio[mode], strict=True)
@@ -127,10 +128,16 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
 
 
 def _force_on(scene: Scene, shape: FloatArray, omega: float) -> complex:
-    """The amplitude of the forces of the fundamental on a combination (mode,) of the modes."""
+    """The amplitude of the forces of the fundamental on a combination (mode,) of the modes.
+
+    0 within the rounding of its shape, which is that of the greatest stiffness beside its own.
+    """
     moved = shape @ scene.modal.shapes
-    return sum(
-        one.amplitude * omega**one.power * float(one.direction @ moved) * complex(np.exp(1j * one.phase))
-        for one in scene.forces
-        if one.harmonic == 1
-    )
+    total, size = 0.0j, 0.0
+    for one in scene.forces:
+        if one.harmonic == 1:
+            amplitude = one.amplitude * omega**one.power
+            total += amplitude * float(one.direction @ moved) * complex(np.exp(1j * one.phase))
+            size += abs(amplitude) * float(np.abs(one.direction).sum()) * float(np.abs(moved).max())
+    stiffer = max(float(scene.modal.frequency.max()) / omega, 1.0) ** 2
+    return total if abs(total) > TOLERANCES.shape * stiffer * size else 0.0j

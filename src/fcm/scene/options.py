@@ -135,6 +135,9 @@ class ToleranceOptions(Frozen):
     # difference relative to the largest entry of a matrix, up to which it is rounding
     negligible: float = 1e-12
     displacement: float = 1e-12  # displacement relative to the largest, up to which it is none
+    # displacement in the shape of a mode relative to its largest, by the ratio of the greatest square of a
+    # frequency to its own, up to which it is rounding: measured are 5e-16
+    shape: float = 1e-14
     cancelled: float = 1e-14  # sum of forces relative to their sizes, up to which it is rounding
     # ratio of modal masses above which sums over the modes lose the heavy ones to rounding
     mass_ratio: float = 1e20
