@@ -369,7 +369,7 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
 
 
 def _faults_of_curve(curve: Scene) -> Iterator[str]:
-    if curve.has_range and not _moved(curve):
+    if curve.has_range and curve.forces and not _moved(curve):
         yield f"{_unmoved(curve)}, so the response is zero"
     masses = curve.modal.mass
     if masses.size and masses.max() > TOLERANCES.mass_ratio * masses.min():
