@@ -145,7 +145,7 @@ def _point_fields(response: Response) -> dict[str, Field]:
     if any(c.across is not None for c in found.curves):
         found.out |= motions_across(found.curves)
     _add_trust(found)
-    if any(c.harmonic is not None for c in found.curves):
+    if any(c.harmonics for c in found.curves):
         found.out |= _harmonic_fields(found.curves)
     if response.method == "exact":
         _add_exact(found)

@@ -56,13 +56,13 @@ def bytes_of_results(
     >>> from fcm import load_scene
     >>> scene = load_scene("yang1998")
     >>> bytes_of_results(scene, (1,), peaks_only=False)
-    74800.0
+    81200.0
     """
     options = options or SizeOptions()
     dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
     curves = len(scene.each_curve()) if curves is None else curves
-    many = 2 * len(harmonics) if len(harmonics) > 1 else 0  # amplitude and phase of each
-    motions = 2 * len(harmonics) * scene.directions_of_contact if many or scene.planar else 0
+    many = 2 * len(harmonics)  # amplitude and phase of each
+    motions = many * scene.directions_of_contact if len(harmonics) > 1 or scene.planar else 0
     point = options.of_point + dofs * (options.of_dof + many) + contacts * (options.of_contact + motions)
     cycles = sum(phase.cycles for phase in scene.schedule)
     moved = curves * cycles * options.of_cycle * (1 + dofs)
