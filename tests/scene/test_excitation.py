@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.model.question import Question
 from fcm.scene import SceneError, scene_from_dict
 
 # ground - 1 - 2 - 3, along x; node 2 has a y of its own
@@ -239,3 +240,54 @@ def test_the_net_of_loads_whose_directions_have_no_names_is_not_told():
     force = [{"dof": "a", "amplitude": 1.0}]
     notes = read(structure=table, load=[{"dof": "b", "force": 2.0}], force=force).notes
     assert not any("static loads" in note or "its mass" in note for note in notes)
+
+
+def chain(reduced=False, lacking=0):
+    """Ten nodes of six directions between walls, each coupled to its neighbours, or to all; rows by nodes."""
+    count = 10
+    coupled = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    if reduced:
+        coupled = np.eye(count) + np.ones((count, count))
+    stiffness = np.kron(coupled, np.diag([3.0, 2.0, 1.0, 0.1, 0.1, 0.1]))
+    mass = np.tile([1.0, 1.0, 1.0, 1e-3, 1e-3, 1e-3], count)
+    kept = np.arange(6 * count) != (14 if lacking else -1)  # a z of the third node
+    return stiffness[np.ix_(kept, kept)], mass[kept]
+
+
+def by_node(count=10):
+    return [f"{node}{axis}" for node in range(1, count + 1) for axis in ("x", "y", "z", "rx", "ry", "rz")]
+
+
+def by_axis(count=10):
+    return sorted(by_node(count), key=lambda dof: (len(dof.lstrip("0123456789")), dof.lstrip("0123456789")))
+
+
+def asked_of_order(dofs, stiffness, mass):
+    structure = {"dofs": dofs, "stiffness": stiffness.tolist(), "mass": mass.tolist(), "damping": 0.01}
+    data = {"structure": structure, "force": [{"dof": "5x", "amplitude": 1.0}]}
+    scene = scene_from_dict(data | {"response": {"frequency": [0.1, 9.0]}})
+    return [note for note in scene.notes if "in their order?" in note]
+
+
+def test_a_held_mesh_whose_rows_are_named_in_another_order_is_asked_about():
+    """Its mass differed by less than what rows that are held may explain."""
+    stiffness, mass = chain()
+    (question,) = asked_of_order(by_axis(), stiffness, mass)
+    assert isinstance(question, Question) and "though each of its nodes has rows along x, y and z" in question
+    assert asked_of_order(by_node(), stiffness, mass) == []
+
+
+@pytest.mark.parametrize(("difference", "asked"), [(0.04, 0), (0.06, 1)])
+def test_elements_at_held_nodes_explain_a_small_difference(difference, asked):
+    stiffness, mass = chain()
+    mass[0::6] *= 1.0 - difference
+    assert len(asked_of_order(by_node(), stiffness, mass)) == asked
+
+
+def test_mass_that_differs_by_a_reduction_or_by_held_rows_is_not():
+    stiffness, mass = chain(reduced=True)
+    mass[0::6] *= 0.7
+    assert asked_of_order(by_node(), stiffness, mass) == []
+    stiffness, mass = chain(lacking=1)
+    dofs = [dof for dof in by_node() if dof != "3z"]
+    assert asked_of_order(dofs, stiffness, mass) == []

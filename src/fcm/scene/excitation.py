@@ -144,10 +144,13 @@ def _net(weights: FloatArray | None, dofs: Names | None) -> FloatArray | None:
     return np.stack((each.sum(axis=1), np.abs(each).sum(axis=1)), axis=1)
 
 
-def note_of_mass(masses: Mapping[str, float], length: str, force: str, floats: bool = False) -> list[str]:
+def note_of_mass(
+    masses: Mapping[str, float], length: str, force: str, floats: bool = False, mesh: bool = False
+) -> list[str]:
     """The mass of a structure along each axis, in the unit that follows from those of length and force.
 
-    Of one that floats it is the same along all: else a question.
+    Of one that floats it is the same along all: else a question. So it is of a mesh whose nodes are held as
+    a whole, but for the elements at them.
 
     >>> note_of_mass({"x": 0.25, "y": 0.25, "z": 0.2}, "mm", "N")
     ['structure: its mass along x, y, z is 0.25, 0.25, 0.2 t, without rows that are held']
@@ -173,6 +176,13 @@ def note_of_mass(masses: Mapping[str, float], length: str, force: str, floats: b
             Question(
                 f"structure: it floats, but its mass differs by {100 * (1 - least / most):.2g} % along the "
                 "axes. Do dofs name the rows in their order?"
+            )
+        )
+    elif mesh and least < (1.0 - TOLERANCES.mesh_mass) * most:
+        said.append(
+            Question(
+                f"structure: its mass differs by {100 * (1 - least / most):.2g} % along the axes, though "
+                "each of its nodes has rows along x, y and z. Do dofs name the rows in their order?"
             )
         )
     elif most > TOLERANCES.held_mass * least > 0.0:

@@ -50,6 +50,7 @@ class Files(Frozen):
     read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
     said: list[str] = field(default_factory=list, compare=False)  # of the matrices that were read
     masses: dict[str, float] = field(default_factory=dict, compare=False)  # of the structure, along axes
+    meshes: list[bool] = field(default_factory=list, compare=False)  # see `structure_table.is_mesh`
     noted: list[str] = field(default_factory=list, compare=False)  # of the pairs that were made
     interfaces: list[Interface] = field(default_factory=list, compare=False)  # whose nodes have places
 

@@ -200,7 +200,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     notes = [
         *files.noted,
         *notes,
-        *note_of_mass(files.masses, *units, floats=_floats(parts)),
+        *note_of_mass(files.masses, *units, floats=_floats(parts), mesh=any(files.meshes)),
         *notes_of_loads(parts["load"], units[1]),
         *questions(top, parts, draft.swept),
     ]

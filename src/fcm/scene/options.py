@@ -146,6 +146,12 @@ class ToleranceOptions(Frozen):
     floating_mass: float = 1e-3
     # ratio of the masses along the axes of a held structure, up to which the rows that are held explain it
     held_mass: float = 10.0
+    # entries of a stiffness relative to those of full blocks of its coupled rows, up to which it is that of a
+    # mesh, and not of a reduced structure
+    mesh_entries: float = 0.5
+    # relative difference of the masses along the axes of a mesh whose nodes are held as a whole, up to which
+    # the elements at held nodes explain it: 4 % of the mass of each, 1/3 against 13/35, for a beam
+    mesh_mass: float = 0.05
     # difference from 1 of the largest value of a shape, below which shapes were scaled to it
     scaled_shape: float = 1e-6
     same_direction: float = 1e-9  # difference of two directions up to which they are the same

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import scipy.sparse
+import scipy.sparse.csgraph
 
 from fcm.frozen import Frozen
 from fcm.scene.entries import check_numbers, check_symmetric, symmetric
@@ -16,7 +18,8 @@ from fcm.scene.files import DataFileError, Files
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.keys import names
 from fcm.scene.matrix_file import is_matrix_file, read_matrix
-from fcm.scene.names import Names
+from fcm.scene.names import Names, motion_of
+from fcm.scene.options import TOLERANCES
 from fcm.scene.row_names import in_order, labels_of, row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section, written_as
@@ -83,6 +86,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
             _check_definite(section, K, M)
         return dofs, None
     files.masses.update(translated(M, dofs))
+    files.meshes.append(is_mesh(K, dofs))
     return dofs, Matrices(
         dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
@@ -112,6 +116,28 @@ def translated(M: Any, dofs: Names) -> dict[str, float]:
     """
     moved = {axis: np.array([along_axis(name, axis) for name in dofs], dtype=float) for axis in TRANSLATIONS}
     return {axis: float(one @ (M @ one)) for axis, one in moved.items() if one.any()}
+
+
+def is_mesh(K: Any, dofs: Names) -> bool:
+    """Whether rows are those of nodes, each with three translations, that are coupled to neighbours alone.
+
+    A reduced structure couples every row to all others. Its mass may differ along the axes, by the shapes of
+    its reduction; that of a mesh does not.
+
+    >>> dofs = Names([f"{node}{axis}" for axis in "xyz" for node in range(8)])
+    >>> chain = scipy.sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(8, 8))
+    >>> mesh, reduced = (scipy.sparse.block_diag([one] * 3) for one in (chain, np.ones((8, 8))))
+    >>> is_mesh(mesh, dofs), is_mesh(reduced, dofs), is_mesh(mesh, Names((*dofs[:-1], "q")))
+    (True, False, False)
+    """
+    at: dict[str, set[str]] = {}
+    for name in dofs:
+        node, axis = re.fullmatch(r"(\d*)(.*)", motion_of(name), re.DOTALL).groups()  # type: ignore[union-attr]
+        at.setdefault(node, set()).add(axis)
+    if not all(set(TRANSLATIONS) <= axes for axes in at.values()):
+        return False
+    sizes = np.bincount(scipy.sparse.csgraph.connected_components(K, directed=False)[1])
+    return bool(K.count_nonzero() <= TOLERANCES.mesh_entries * (sizes.astype(np.float64) ** 2).sum())
 
 
 def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
