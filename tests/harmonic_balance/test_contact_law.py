@@ -212,8 +212,8 @@ def test_a_law_that_does_not_return_two_arrays_is_told_what_is_expected(returned
             return returned(x, dx)
 
     told = (
-        rf'the law Odd of the contact "joint": forces\(x, dx\) has returned {said}; it is to return two '
-        r"arrays, the forces and their changes, with the shapes of x and dx, \(2, \d+\) and \(2, \d+, 6\)"
+        rf'the law Odd of the contact "joint": forces\(x, dx\) has returned {said}. It is to return two '
+        r"arrays: the forces, of shape \(2, \d+\) as x, and their changes, of \(2, \d+, 6\) as dx"
     )
     with pytest.raises(ContactLawError, match=told):
         fcm.respond(scene_of(Odd()), "closed-form")

@@ -99,8 +99,8 @@ class SampledLaw(Law):
         if not isinstance(found, tuple | list) or len(found) != 2:
             what = f"an array of shape {found.shape}" if isinstance(found, np.ndarray) else _kind(found)
             raise ContactLawError(
-                f"{self.description}: forces(x, dx) has returned {what}; it is to return two arrays, the "
-                f"forces and their changes, with the shapes of x and dx, {motion.shape} and {variation.shape}"
+                f"{self.description}: forces(x, dx) has returned {what}. It is to return two arrays: the "
+                f"forces, of shape {motion.shape} as x, and their changes, of {variation.shape} as dx"
             )
         force, change = (np.asarray(one, dtype=np.float64) for one in found)
         if force.shape != motion.shape or change.shape != variation.shape:
