@@ -18,13 +18,13 @@ LIMIT           ?= 20
 KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*.pxd src/fcm/*/*.pxd src/fcm/*/*/*.pxd)
 
 # What the pictures are made of, so that a change redoes only what it touches.
-ALL        := src/fcm/lazy_import.py src/fcm/frozen.py src/fcm/quoting.py src/fcm/resources.py src/fcm/signals.py src/fcm/rotational_dofs.py src/fcm/units.py src/fcm/unknown_stability.py src/fcm/files.py src/fcm/at_rest.py src/fcm/cubic.py src/fcm/local_maxima.py src/fcm/model/question.py
+ALL        := src/fcm/lazy_import.py src/fcm/frozen.py src/fcm/quoting.py src/fcm/resources.py src/fcm/signals.py src/fcm/rotational_dofs.py src/fcm/units.py src/fcm/unknown_stability.py src/fcm/files.py src/fcm/at_rest.py src/fcm/cubic.py src/fcm/local_maxima.py src/fcm/distinct_values.py src/fcm/model/question.py
 CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
 SOLVER     := $(CONTACT) tables/default.nc \
 	$(wildcard $(foreach part,model scene table structure continuation harmonic_balance sensitivity nonlinear_modes mesh stability accuracy branches results reduction run response,src/fcm/$(part)/*.py)) \
 	$(foreach part,shooting tracking,src/fcm/$(part)/__init__.py src/fcm/$(part)/options.py)
 SIMULATION := $(SOLVER) $(wildcard src/fcm/time_domain/*.py src/fcm/shooting/*.py)
-DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/summary.py src/fcm/plot/options.py src/fcm/plot/read.py src/fcm/plot/measured.py src/fcm/plot/unfinished.py src/fcm/plot/window.py src/fcm/plot/labels.py src/fcm/plot/dof.py src/fcm/plot/reader_process.py src/fcm/plot/layout.py src/fcm/cli/drawing.py
+DRAWING    := $(ALL) src/fcm/plot/blades.py src/fcm/plot/style.py src/fcm/plot/summary.py src/fcm/plot/options.py src/fcm/plot/read.py src/fcm/plot/measured.py src/fcm/plot/unfinished.py src/fcm/plot/window.py src/fcm/plot/labels.py src/fcm/plot/dof.py src/fcm/plot/reader_process.py src/fcm/plot/layout.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(DRAWING) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
 SURFACES   := $(CONTACT) $(DRAWING) $(addprefix src/fcm/plot/,plane.py surface.py) src/fcm/cli/coefficients.py
 NORMAL     := $(CONTACT) $(DRAWING) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
