@@ -306,3 +306,48 @@ def test_a_contact_that_never_touches_beside_another_that_slips_is_named(fcm, sc
     run = fcm("respond", scene, "--harmonics", 1)
     assert run.code == 0 and ("never touches" in run.err) == bool(said)
     assert not said or f'1 contact never touches {said}: "stop". A smaller gap' in run.err
+
+
+FOLDS_OF_MORE = """
+frequency_unit = "Hz"
+[modal]
+dofs = ["drive", "u", "v"]
+frequency = [52.93, 173.9, 375.4]
+damping = 0.004
+shapes = [[0.883, 2.356, 1.087], [0.622, -1.411, 2.055], [1.984, -1.578, -0.739]]
+[[contact]]
+name = "tip"
+tangential = "u"
+normal = "v"
+mu = 0.1
+k_u = 18800.0
+k_v = 27000.0
+n_0 = 8.66
+[[force]]
+dof = "drive"
+amplitude = 5.81
+[response]
+frequency = [50.0, 70.0]
+output = ["u"]
+"""
+
+
+def test_large_errors_of_points_away_from_peaks_are_told(fcm, tmp_path):
+    """A peak with two folds at 60.3 Hz takes more harmonics than the greatest peak, at 57.3 Hz."""
+    scene = tmp_path / "a.toml"
+    scene.write_text(FOLDS_OF_MORE)
+    run = fcm("respond", scene, "--accuracy", "0.03", "--json", "-o", "a.nc")
+    (curve,) = json.loads(run.out)["curves"]
+    (there,) = curve["large_errors"]
+    assert f"between {there['from']:.6g} and {there['to']:.6g} Hz. The accuracy is of peaks" in run.err
+    assert not any(there["from"] < one < there["to"] for one in curve["folds"])
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        frequency, amplitude = data["frequency"][0], data["amplitude"][0, :, 1]
+        beside = (frequency > 59.0) & (frequency < 62.0)
+    exact = trace_exact(load_scene(scene), np.linspace(59.1, 60.2, 7).tolist()).curves[0]
+    told = np.interp(exact.frequency / (2.0 * np.pi), frequency[beside], amplitude[beside])
+    assert 0.1 < np.abs(exact.amplitude[:, 1] / told - 1.0).max() <= 1.1 * there["error"]
+
+    fine = fcm("respond", scene, "--accuracy", "0.01", "--json", "-o", "b.nc")
+    assert "large_errors" not in json.loads(fine.out)["curves"][0] and "errors of points are" not in fine.err
+    assert len(json.loads(fine.out)["curves"][0]["folds"]) == len(curve["folds"]) + 2

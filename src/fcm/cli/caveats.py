@@ -161,6 +161,34 @@ def of_more_harmonics(summary: Mapping[str, Any]) -> str:
     )
 
 
+def large_errors(summary: Mapping[str, Any]) -> str:
+    """Caveat on the widest range in which points have large errors, of curves that have their accuracy; or
+    ''.
+
+    Of a curve that misses it, the errors of its peaks say as much.
+
+    >>> curve = {"large_errors": [{"from": 59.5, "to": 60.6, "error": 0.286}], "parameters": {}}
+    >>> print(large_errors({"curves": [curve], "frequency_unit": "Hz"}).split(". ")[0])
+    errors of points are up to 28.6 % of the amplitude between 59.5 and 60.6 Hz
+    >>> large_errors({"curves": [curve | {"short_of_accuracy": "it takes more"}]})
+    ''
+    """
+    curves = summary["curves"]
+    found = [curve for curve in curves if curve.get("large_errors") and not curve.get("short_of_accuracy")]
+    if not found:
+        return ""
+    one, *more = found[0]["large_errors"]
+    where = f"{_between(one['from'], one['to'])} {summary['frequency_unit']}"
+    given = _given(found[0])
+    which = f" ({given}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 and given else ""
+    every = ". All of them: large_errors of --json" if more or len(found) > 1 else ""
+    return (
+        f"errors of points are up to {share_of(one['error'])} of the amplitude {where}{which}. The accuracy is "
+        "of peaks and folds that the curve has: more harmonics may have others there. --harmonics, with more "
+        f"than these, shows them{every}"
+    )
+
+
 def symmetry_lost(summary: Mapping[str, Any]) -> str:
     """Caveat on symmetric motions that lose their symmetry by harmonics left out, with places; or ''."""
     what = (

@@ -11,6 +11,7 @@ from fcm.cli.caveats import (
     branches_uncertain,
     folds_uncertain,
     kept_friction,
+    large_errors,
     linear,
     mirrored,
     never_closed,
@@ -128,7 +129,7 @@ def close(
                 peaks_not_followed,
             )
         ),
-        of_more_harmonics(result) if announced.harmonics_given else "",
+        of_more_harmonics(result) if announced.harmonics_given else large_errors(result),
         folds_uncertain(result),
     ]
     of_doubt = (

@@ -11,8 +11,10 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.results.jumps import FrequencySweep
 from fcm.results.lower_peaks import lower_peaks, rise_beside
+from fcm.results.options import RESULTS, PointErrorOptions
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
 if TYPE_CHECKING:
@@ -32,6 +34,8 @@ class CondensedCurve(Frozen):
     table_error: float | None  # the largest that is known
     truncation_error: float | None
     truncation_error_at: float  # [rad/s] where it is the largest; NaN where it is not known
+    # [rad/s] where points have large errors, and the greatest of these, the widest range first
+    inaccurate: tuple[tuple[float, float, float], ...]
     # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one
     stable_peaks: FloatArray
     linear: str  # how the response is that of a linear structure; empty if it is not
@@ -67,6 +71,7 @@ def condense(curve: Curve) -> CondensedCurve:
         table_error=worst(curve.table_error),
         truncation_error=worst(curve.truncation_error),
         truncation_error_at=_at_worst(curve),
+        inaccurate=tuple(_inaccurate_ranges(curve)),
         stable_peaks=_stable_peaks(curve),
         linear=_linear(curve),
         lower_peaks=_lower_peaks(curve, on_isolated),
@@ -102,6 +107,22 @@ def _at_worst(curve: Curve) -> float:
     if not known.any() or curve.level is not None or curve.mode is not None:
         return float("nan")
     return float(curve.frequency[np.where(known, curve.truncation_error, -np.inf).argmax()])
+
+
+def _inaccurate_ranges(
+    curve: Curve, options: PointErrorOptions = RESULTS.point_errors
+) -> list[tuple[float, float, float]]:
+    """Ranges of frequency [rad/s] in which a branch has large errors, with the greatest error in each.
+
+    Of a curve over the frequency, the widest range first.
+    """
+    if curve.level is not None or curve.mode is not None:
+        return []
+    large = np.isfinite(curve.truncation_error) & (curve.truncation_error > options.least_error)
+    parts = [(curve.frequency[a:b], curve.truncation_error[a:b]) for a, b in runs(large)]
+    ranges = [(float(at.min()), float(at.max()), float(error.max())) for at, error in parts]
+    wide = [one for one in ranges if one[1] - one[0] > options.least_width * one[1]]
+    return sorted(wide, key=lambda one: one[0] - one[1])
 
 
 def _ends(curve: Curve, known: FloatArray) -> tuple[float, float]:

@@ -94,6 +94,11 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
     if np.isfinite(condensed.truncation_error_at):
         out["truncation_error_at"] = float(in_unit(condensed.truncation_error_at, unit))
+    if condensed.inaccurate:
+        out["large_errors"] = [
+            {"from": float(in_unit(low, unit)), "to": float(in_unit(high, unit)), "error": error}
+            for low, high, error in condensed.inaccurate
+        ]
     if curve.orbits is not None:
         out |= _of_orbits(curve, curve.orbits, unit)
     if curve.mode is not None:

@@ -77,6 +77,23 @@ class PeakOptions(Frozen):
     least_prominence: float = 0.01
 
 
+class PointErrorOptions(Frozen):
+    """Options on ranges of frequency in which errors of points are told by themselves.
+
+    Attributes
+    ----------
+    least_error : float
+        Error of a point, relative to the greatest amplitude there, above which it belongs to such a range:
+        ten times the default accuracy.
+    least_width : float
+        Width of a range, relative to its frequency, below which it is not told. A shift of a flank by less
+        than the default accuracy explains it.
+    """
+
+    least_error: float = 0.1
+    least_width: float = 0.01
+
+
 class ResultOptions(Frozen):
     """All options on what is reported of curves.
 
@@ -84,12 +101,15 @@ class ResultOptions(Frozen):
     ----------
     jumps, draws, file, peaks : JumpOptions, DrawOptions, FileOptions, PeakOptions
         Options of the parts.
+    point_errors : PointErrorOptions
+        Options of ranges with large errors of points.
     """
 
     jumps: JumpOptions = field(default_factory=JumpOptions)
     draws: DrawOptions = field(default_factory=DrawOptions)
     file: FileOptions = field(default_factory=FileOptions)
     peaks: PeakOptions = field(default_factory=PeakOptions)
+    point_errors: PointErrorOptions = field(default_factory=PointErrorOptions)
 
 
 RESULTS = ResultOptions()  # where nothing else is said
