@@ -202,3 +202,44 @@ def test_the_last_line_says_at_how_many_points_the_error_was_estimated(fcm, tmp_
     assert curve["mode"]["error_known"]["points"] == known
     assert curve["mode"]["error_known"]["modal_amplitude"] == amplitude[np.isfinite(error)].max()
     assert f"estimated at {known} of {points} points" in done.err
+
+
+RESONANT = """
+[modal]
+dofs = ["u", "v"]
+frequency = [1.0, {second}]
+damping = 0.002
+shapes = [[0.8, 0.5], [0.7, -0.6]]
+[[contact]]
+name = "c"
+tangential = "u"
+normal = "v"
+mu = 0.4
+k_u = 0.3
+k_v = 0.3
+n_0 = 1.0
+[[force]]
+dof = "u"
+amplitude = 0.3
+[response]
+frequency = [0.85, 1.25]
+"""
+
+
+@pytest.mark.parametrize(("second", "resonant"), [(3.2, True), (5.0, False)])
+def test_an_internal_resonance_is_told(fcm, tmp_path, second, resonant):
+    """Where the third harmonic meets the second mode, the mode predicts a peak that the response has not."""
+    scene = tmp_path / "a.toml"
+    scene.write_text(RESONANT.format(second=second))
+    run = fcm("respond", scene, "--mode", "1", "--level", "0.01:100", "--harmonics", "1-7", "--json")
+    (curve,) = json.loads(run.out)["curves"]
+    assert ("internal_resonance" in curve["mode"]) == ("internal resonance:" in run.err) == resonant
+    (predicted,) = curve["mode"]["resonances"]
+    (response,) = json.loads(fcm("respond", scene, "--harmonics", "1-7", "--json").out)["curves"]
+    off = abs(predicted["amplitude"]["u"] / response["peak"]["u"]["amplitude"] - 1.0)
+    assert off > 0.2 if resonant else off < 0.01
+    if resonant:
+        there = curve["mode"]["internal_resonance"]
+        low, high = there["frequency"]
+        assert there["harmonic"] == 3 and 3.2 < 3.0 * low < 3.0 * high < 3.3
+        assert 0.2 < there["share"] < 1.0

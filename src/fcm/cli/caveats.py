@@ -183,9 +183,9 @@ def large_errors(summary: Mapping[str, Any]) -> str:
     which = f" ({given}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 and given else ""
     every = ". All of them: large_errors of --json" if more or len(found) > 1 else ""
     return (
-        f"errors of points are up to {share_of(one['error'])} of the amplitude {where}{which}. The accuracy is "
-        "of peaks and folds that the curve has: more harmonics may have others there. --harmonics, with more "
-        f"than these, shows them{every}"
+        f"errors of points are up to {share_of(one['error'])} of the amplitude {where}{which}. The accuracy "
+        "is of peaks and folds that the curve has: more harmonics may have others there. --harmonics, with "
+        f"more than these, shows them{every}"
     )
 
 

@@ -18,6 +18,7 @@ from fcm.cli.columns import (
     number,
     ranges,
     ratio,
+    share_of,
     short,
     swept,
 )
@@ -129,6 +130,25 @@ def outside_range(summary: Mapping[str, Any]) -> str:
     return (
         f"mode {away[0]['number']} goes from {first:.6g} to {last:.6g} {unit}{on}, outside the scene's range "
         f"of {low:.6g} to {high:.6g} {unit}: is another --mode meant?"
+    )
+
+
+def internal_resonance(summary: Mapping[str, Any]) -> str:
+    """Caveat on modal amplitudes at which much of a mode's power is in further harmonics; or ''."""
+    modes = [curve["mode"] for curve in summary["curves"] if curve.get("mode")]
+    found = [mode for mode in modes if mode.get("internal_resonance")]
+    if not found:
+        return ""
+    one = max((mode["internal_resonance"] for mode in found), key=lambda one: one["share"])
+    unit, (low, high) = summary["frequency_unit"], one["modal_amplitude"]
+    on = f" on {len(found)} of {len(modes)} curves" if len(modes) > 1 else ""
+    slow, fast = (f"{value:.5g}" for value in one["frequency"])
+    where = f"at {slow}" if slow == fast else f"between {slow} and {fast}"
+    return (
+        f"internal resonance{on}: {where} {unit} (modal amplitudes {low:.3g} to {high:.3g}) up to "
+        f"{share_of(one['share'])} of the mode's power is in further harmonics, most in {one['harmonic']}. "
+        "Its damping there may be off by a factor, as forces do no work on these harmonics. fcm respond "
+        "without --mode has the response"
     )
 
 

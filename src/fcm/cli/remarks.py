@@ -134,6 +134,7 @@ def close(
     ]
     of_doubt = (
         nonlinear_mode.outside_range,
+        nonlinear_mode.internal_resonance,
         short_of_accuracy,
         branches_uncertain,
         symmetry_lost,

@@ -51,6 +51,20 @@ class Mode(Frozen):
         return a[:, None, None] * (self.Q @ linear.dofs), self.rest + a[:, None] * (self.mean @ linear.dofs)
 
     @property
+    def power(self) -> FloatArray:
+        """Shares (point, harmonic) of the power that the negative damping -2 D omega M x' does on each
+        harmonic.
+
+            P_h / P = h^2 sum_i |Q_hi|^2 / sum_hi h^2 |Q_hi|^2
+
+        Forces in resonance do work on the first alone. Where the others have much of the power, as at an
+        internal resonance, the damping is not that of a response.
+        """
+        size: FloatArray = (np.abs(self.Q) ** 2).sum(axis=2) * np.array(self.system.harmonics) ** 2
+        share: FloatArray = size / size.sum(axis=1, keepdims=True)
+        return share
+
+    @property
     def rest(self) -> FloatArray:
         """Displacements of the degrees of freedom under the static loads, (dof,)."""
         found: FloatArray = self.modes_at_rest @ self.system.linear.dofs

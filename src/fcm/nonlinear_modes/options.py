@@ -149,6 +149,9 @@ class NonlinearModeOptions(Frozen):
     same_end : float
         Relative difference of a value from that at an end of the mode, up to which the point sought is that
         end.
+    shared_power : float
+        Share of the power of the negative damping in further harmonics, above which the mode is at an
+        internal resonance.
     """
 
     linear: LinearModeOptions = field(default_factory=LinearModeOptions)
@@ -159,6 +162,7 @@ class NonlinearModeOptions(Frozen):
     truncation: TruncationOptions = field(default_factory=TruncationOptions)
     resonance: float = 1e-9
     same_end: float = 1e-9
+    shared_power: float = 0.05
 
 
 NONLINEAR_MODE = NonlinearModeOptions()  # where nothing else is said

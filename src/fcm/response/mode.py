@@ -28,6 +28,7 @@ from fcm.nonlinear_modes.forced_response import (
     resonances,
     resonant_level,
 )
+from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions
 from fcm.response.accuracy_shortfall import remedy
 from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
@@ -40,7 +41,7 @@ from fcm.response.undetermined_traction import undetermined
 from fcm.results.at_rest import without_rounding
 from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
-from fcm.results.nonlinear_mode import MotionOfMode, NonlinearMode, Resonance
+from fcm.results.nonlinear_mode import InternalResonance, MotionOfMode, NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import IN_THIS_PROCESS, Execution, fingerprint
 from fcm.scene.errors import counted
@@ -231,7 +232,23 @@ def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> Non
         folds=mode.amplitude[(mode.path.mark & Mark.FOLD) > 0].tolist(),
         resonances=[one for level in asked.levels for one in _resonances(mode, level)],
         steady=steady,
+        internal=_internal_resonance(mode),
     )
+
+
+def _internal_resonance(
+    mode: Mode, options: NonlinearModeOptions = NONLINEAR_MODE
+) -> InternalResonance | None:
+    """Where further harmonics than the first have much of a mode's power; None if nowhere."""
+    harmonics, power = np.array(mode.system.harmonics), mode.power
+    further = np.where(harmonics > 1, power, 0.0)
+    share = further.sum(axis=1)
+    at = share > options.shared_power
+    if not at.any():
+        return None
+    a, omega, most = mode.amplitude[at], mode.omega[at], further[share.argmax()].argmax()
+    ends = (float(a.min()), float(a.max())), (float(omega.min()), float(omega.max()))
+    return InternalResonance(*ends, int(harmonics[most]), float(share.max()))
 
 
 def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> Iterator[MotionOfMode]:

@@ -24,6 +24,15 @@ class Resonance(NamedTuple):
     damping: float  # ratio
 
 
+class InternalResonance(NamedTuple):
+    """Points of a nonlinear mode at which much of its power is in further harmonics than the first."""
+
+    modal_amplitude: tuple[float, float]  # the least and the greatest
+    frequency: tuple[float, float]  # [rad/s] of these points, the lowest and the highest
+    harmonic: int  # the one with most power
+    share: float  # of the power, that further harmonics have at most
+
+
 class MotionOfMode(Frozen):
     """The motion at a point of a nonlinear mode."""
 
@@ -47,6 +56,7 @@ class NonlinearMode:
     folds: list[float]  # modal amplitudes at which the curve turns back
     resonances: list[Resonance]  # at these levels
     steady: npt.NDArray[np.bool_]  # (point,) False where nothing holds a rigid-body mode
+    internal: InternalResonance | None = None
     motions: tuple[MotionOfMode, ...] = ()  # that are to be exported
 
     def summary(
@@ -82,6 +92,14 @@ class NonlinearMode:
                 for one in self.resonances
             ],
             "not_met": [{"level": level, "why": why} for level in self.levels if (why := self._unmet(level))],
+            **({"internal_resonance": self._internal(unit)} if self.internal else {}),
+        }
+
+    def _internal(self, unit: str) -> dict[str, Any]:
+        """The internal resonance as `summary` has it."""
+        assert self.internal is not None
+        return self.internal._asdict() | {
+            "frequency": in_unit(np.array(self.internal.frequency), unit).tolist()
         }
 
     def _unmet(self, level: float) -> str:
