@@ -45,9 +45,9 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
 
 def _shown(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Peaks of the degrees of freedom that the tables show, those at rest left out."""
-    found = []
+    found, dofs = [], shown_dofs(summary)
     for curve in summary["curves"]:
-        for dof in shown_dofs(summary):
+        for dof in dofs:
             highest = [curve["peak"].get(dof) or {}]
             found += [one for one in curve.get("peaks", {}).get(dof) or highest if one.get("amplitude")]
     return found
