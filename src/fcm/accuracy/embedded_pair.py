@@ -19,7 +19,7 @@ import numpy.typing as npt
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.accuracy.peak_errors import peak_errors
+from fcm.accuracy.peak_errors import PeakErrors, peak_errors
 from fcm.accuracy.peaks import rise_between_points, tops_of_reference
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
@@ -144,7 +144,7 @@ def errors_along(
     error = raised
     error[folds] = at_frequency[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
     comes: Mask = ~np.any(np.isnan(error), axis=1)
-    height, told = _set_errors_of_peaks(reference, error, shift, change, followed, met)
+    height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, followed, met, of_peaks)
     unit, amplitude = reference.unit, quantities.amplitude
     at_rest = amplitude <= np.finfo(float).eps * unit  # but for rounding
     for one in (error, at_frequency):
@@ -159,7 +159,7 @@ def errors_along(
         is_same_curve=comes,
         ends_before=reference.ends_before,
         peak=np.where(told, error[tops, np.arange(len(size))], np.nan),
-        peak_frequency=of_peaks.frequency_at(tops),
+        peak_frequency=frequency,
         height=height,
         fold=of_folds,
         share=share,
@@ -351,12 +351,15 @@ def _set_errors_of_peaks(
     change: FloatArray,
     followed: list[FollowedStretch],
     met: Indices,
-) -> tuple[FloatArray, Mask]:
-    """Greatest amplitudes (dof,) of the reference, and whether the errors at them are known.
+    of_peaks: PeakErrors,
+) -> tuple[FloatArray, Mask, FloatArray]:
+    """Greatest amplitudes (dof,) of the reference, whether the errors at them are known, and the errors of
+    their frequencies.
 
     error (point, dof), in units of the reference's curve, is then filled at the greatest amplitudes, with the
     difference in height. That of a reference with still more harmonics counts, too; where that is not found
-    and may matter the error is unknown.
+    and may matter the error is unknown. Where another peak of the reference is the greatest, both count: by
+    how much that is off, and the peak itself.
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
     own, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
@@ -364,6 +367,7 @@ def _set_errors_of_peaks(
     height, settles = np.array([every[-1].height for every in tops]), ~reference.linear[own]
     inside = (own > 0) & (own < len(path.z) - 1)
     now = amplitude[own, d] + np.where(inside, rise_between_points(reference, np.zeros_like(unit), own), 0.0)
+    own_height, frequency = of_peaks.at(own)
     for k in np.flatnonzero(np.isfinite(height)).tolist():
         settles[k] |= inside[k] or tops[k][-1].piece is not None or tops[k][-1].point != own[k]
         if not settles[k]:
@@ -373,9 +377,12 @@ def _set_errors_of_peaks(
         highest = there[:, 0] + there[:, 1]
         most = int(np.nanargmax(highest)) if np.isfinite(highest[-1]) else -1
         off = np.maximum(np.abs(highest[most] - now[k]), np.abs(there[most, 2]))
+        apart = abs(reference.frequency_of(tops[k][most], change) / path.parameter[own[k]] - 1.0)
+        if apart > reference.options.end_tolerance and np.isfinite(frequency[k]):
+            off, frequency[k] = np.maximum(off, own_height[k]), apart
         error[own[k], k] = off / unit[own[k], k]
         height[k] = height[k] if np.isnan(off) else highest[most]
-    return height, np.isfinite(height) | ~settles
+    return height, np.isfinite(height) | ~settles, frequency
 
 
 def _of_folds(

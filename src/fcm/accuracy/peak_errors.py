@@ -31,12 +31,13 @@ class PeakErrors(Frozen):
     height: FloatArray
     frequency: FloatArray
 
-    def frequency_at(self, tops: Indices) -> FloatArray:
-        """Errors (dof,) of the frequencies of the peaks at given points; NaN where a point has no peak."""
-        found = np.full(len(tops), np.nan)
+    def at(self, tops: Indices) -> tuple[FloatArray, FloatArray]:
+        """Errors (dof,) of the heights and of the frequencies of the peaks at given points; NaN where a point
+        has no peak."""
+        height, frequency = np.full((2, len(tops)), np.nan)
         at_top = self.point == tops[self.dof]
-        found[self.dof[at_top]] = self.frequency[at_top]
-        return found
+        height[self.dof[at_top]], frequency[self.dof[at_top]] = self.height[at_top], self.frequency[at_top]
+        return height, frequency
 
 
 class _Tops(NamedTuple):

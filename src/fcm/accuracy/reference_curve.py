@@ -179,6 +179,12 @@ class ReferenceCurve:
             )
         return self.interpolated(np.arange(count))
 
+    def frequency_of(self, top: ReferenceTop, change: FloatArray) -> float:
+        """The frequency [rad/s] of a top; change (point, 1 + dof): the displacements from the curve."""
+        if top.piece is not None:
+            return float(top.piece.path.parameter[top.point])
+        return float(self.path.parameter[top.point] * (1.0 + change[top.point, 0]))
+
     def is_same_curve(self) -> bool:
         """Whether the reference is found from most of a few points spread evenly along the curve."""
         even = np.arange(0, len(self.known), self.options.point_interval)
