@@ -95,6 +95,18 @@ def test_symmetry_is_lost_by_even_harmonics_whatever_odd_ones_are_balanced():
     assert any(min(abs(one - omega)) < 1e-3 for one in unsymmetric for omega in lost.frequencies)
 
 
+def test_symmetry_that_is_lost_within_two_steps_is_not_missed():
+    """Between the branch points at 0.841 and 0.863 rad/s the curve has one point; a march settles there at an
+    unsymmetric motion."""
+    scene = KINDS["stops"](2033)
+    few = System(scene, (1, 2, 3, 4, 5, 7, 9, 11))
+    lost = symmetry_loss(few, traced(few))
+    assert lost.harmonics and set(lost.harmonics) <= {6, 8, 10}
+    whole = System(scene, tuple(range(1, 12)))
+    there = [point.z[-1] for point in branch_points(whole, traced(whole).branches.paths)]
+    assert all(min(abs(one - omega) for omega in there) < 1e-3 for one in lost.frequencies)
+
+
 @pytest.mark.slow
 def test_a_branch_point_that_the_sixth_harmonic_alone_makes_is_not_missed():
     """Every march from a random state at 0.8333 rad/s settles at one of two mirrored motions. With the second

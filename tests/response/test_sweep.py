@@ -173,7 +173,8 @@ def test_ctrl_c_and_resume_give_the_same_file(program, tmp_path):
     os.kill(run.pid, signal.SIGINT)
     _, said = run.communicate(timeout=50)
     assert run.returncode == 3 and "Traceback" not in said
-    assert "a.nc.unfinished: continue with --resume" in said and "curves stopped early" in said
+    assert "a.nc.unfinished: continue with --resume" in said
+    assert "curves stopped early" in said or "curves were not begun" in said
     with netCDF4.Dataset(tmp_path / "a.nc") as part:
         assert 0 < part["complete"][:].sum() < part.dimensions["curve"].size
     assert program(*command, "a.nc", "--resume", before=GROUPS).returncode == 0

@@ -37,6 +37,7 @@ from fcm.shooting.trace import distinct_motions, explore, incomplete, is_known
 from fcm.time_domain import State, simulate
 from fcm.time_domain.errors import SimulationError
 
+from ..branches.relatives import KINDS
 from ..interrupted import interrupted_after
 from ..response.random_scenes import random_scene
 from ..time_domain.cases import one_mode, two_contacts, yang
@@ -208,6 +209,28 @@ def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_
     assert is_known([isolated], distinct_motions(again), problem) and not is_known(
         [other], distinct_motions(again), problem
     )
+
+
+def test_both_branches_at_branch_points_of_the_exact_motion_are_followed():
+    """Between two equal stops three pairs of mirrored motions leave the symmetric one. The balance of
+    one harmonic has none of them. A march settles at one of them where the symmetric motion is unstable."""
+    scene = KINDS["stops"](2033)
+    problem = OrbitProblem(scene)
+    paths, missed = explore(problem)
+    symmetric, *others = sorted(paths, key=lambda path: -np.ptp(path.parameter))
+    assert not missed and [one.status for one in others] == 3 * [Status.CLOSED]
+    changes = np.flatnonzero(symmetric.orientation[:-1] * symmetric.orientation[1:] < 0.0)
+    ends = sorted(float(end) for one in others for end in (one.parameter.min(), one.parameter.max()))
+    assert np.allclose(symmetric.parameter[changes], ends, rtol=0.02)  # some begin beyond a fold
+
+    omega, begin = 0.85, State(np.array([0.3, -0.1]), np.zeros(2), np.zeros(2))
+    (march,) = simulate(scene, omega, 400, begin).measures(last=1)
+    orbit = periodic(scene, omega, simulate(scene, omega, 400, begin).end)
+    z = first_point(problem, orbit)
+    assert (
+        np.allclose(orbit.measure.amplitude, march.amplitude, rtol=1e-6) and np.abs(march.mean).max() > 1e-3
+    )
+    assert not is_known([symmetric], [z], problem) and is_known(others, [z], problem)
 
 
 def lightly_damped(seed):

@@ -14,7 +14,8 @@ treated alike.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -25,9 +26,10 @@ from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
-from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+
+Jacobian = Callable[[], FloatArray]  # (unknown, unknown + 1) of a problem as it was evaluated last
 
 
 class BranchPoint(Frozen):
@@ -42,11 +44,18 @@ def branch_points(
     system: System, paths: Sequence[Path], options: BranchingOptions = BRANCHING
 ) -> Iterator[BranchPoint]:
     """The branch points of paths of a system."""
-    balance: Balance | None = None
+    if any(sign_changes(path.orientation) for path in paths):
+        balance = system.new_balance()
+        yield from branch_points_of(balance, partial(jacobian_of, balance), paths, options)
+
+
+def branch_points_of(
+    problem: Problem, jacobian: Jacobian, paths: Sequence[Path], options: BranchingOptions = BRANCHING
+) -> Iterator[BranchPoint]:
+    """The branch points of paths of a problem that other branches leave."""
     for path in paths:
         for i in sign_changes(path.orientation):
-            balance = balance or system.new_balance()
-            point = branch_point_at(balance, balance, path, i, options)
+            point = branch_point_at(problem, jacobian, path, i, options)
             if point.starts:
                 yield point
 
@@ -57,17 +66,17 @@ def sign_changes(orientation: FloatArray) -> list[int]:
 
 
 def branch_point_at(
-    problem: Problem, balance: Balance, path: Path, i: int, options: BranchingOptions = BRANCHING
+    problem: Problem, jacobian: Jacobian, path: Path, i: int, options: BranchingOptions = BRANCHING
 ) -> BranchPoint:
-    """The branch point between point i of a path of a problem and the next; the problem is one of a balance,
-    in its frequency or in the level of its forces."""
-    z = _located(Segment(problem, path, i), path.orientation[i], options)
-    return BranchPoint(z, tuple(_leaving(problem, balance, z, path, i, options)))
+    """The branch point between point i of a path of a problem and the next."""
+    z = sign_change_at(problem, path, i, options)
+    return BranchPoint(z, tuple(_leaving(problem, jacobian, z, path, i, options)))
 
 
-def _located(between: Segment, before: float, options: BranchingOptions) -> FloatArray:
-    """The place between two points where the determinant changes its sign."""
-    low, high = 0.0, 1.0
+def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptions = BRANCHING) -> FloatArray:
+    """The place (unknown + 1,) between point i of a path and the next where the determinant of a problem
+    changes its sign."""
+    between, before, low, high = Segment(problem, path, i), path.orientation[i], 0.0, 1.0
     between.find(low)
     z = between.z
     while high - low > options.tolerance:
@@ -80,7 +89,7 @@ def _located(between: Segment, before: float, options: BranchingOptions) -> Floa
 
 
 def _leaving(
-    problem: Problem, balance: Balance, z: FloatArray, path: Path, i: int, options: BranchingOptions
+    problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: int, options: BranchingOptions
 ) -> Iterator[FloatArray]:
     """Solutions on both sides of a branch point that follows point i of a path, off the path, at the least
     distance at which there are any. The path's direction is that of its chord: it has no one tangent there.
@@ -90,7 +99,7 @@ def _leaving(
     scale = np.array(problem.scale)
     t = (path.z[i + 1] - path.z[i]) / scale
     t /= np.linalg.norm(t)
-    matrix = np.vstack((jacobian_of(balance) * scale / scale[:-1, None], t))
+    matrix = np.vstack((jacobian() * scale / scale[:-1, None], t))
     singular = np.linalg.svd(matrix)[2][-1]
     singular -= (singular @ t) * t
     singular /= np.linalg.norm(singular)

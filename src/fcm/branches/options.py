@@ -128,6 +128,8 @@ class BranchingOptions(Frozen):
     # even harmonic relative to the greatest, above which it counts where a level loses symmetry
     min_leading_fraction: float = 0.1
     max_level_step: float = 0.1  # longest step of branches that leave a curve of the level
+    # highest even harmonic by which few contacts may lose their symmetry, relative to the highest balanced
+    even_factor: float = 2.0
     symmetry_points: int = 16  # number of points of a path whose symmetry decides on that of the path
 
 

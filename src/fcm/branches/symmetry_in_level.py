@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from fcm.branches.symmetry import is_symmetric, parts_of
 from fcm.continuation import Events, FollowOptions, Path, Status, follow
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.prolongation import ForceLevelProblem
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import WorkLimitError
@@ -79,7 +81,7 @@ def _past_branch_points(
     balance, known = few.new_balance(), list[Path]()
     level = ForceLevelProblem(balance, omega)
     for i in sign_changes(path.orientation):
-        point = branch_point_at(level, balance, path, i, options)
+        point = branch_point_at(level, partial(jacobian_of, balance), path, i, options)
         if not point.starts or any(contains(one, z, level) for one in known for z in point.starts):
             continue
         new = _branch_through(few, level, point.starts[0], span, options)  # the other is its image

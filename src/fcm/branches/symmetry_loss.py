@@ -1,24 +1,29 @@
 r"""Frequencies at which symmetric motions lose their symmetry by even harmonics that are not balanced.
 
 A symmetric motion has odd harmonics alone, and loses its symmetry by even ones. So its branch points are
-those of the balance with all even harmonics up to the highest, which it solves with none of these. Where the
-balance with fewer lacks one, or has it at another frequency, the sign of the determinant is another along a
-stretch of the branch. The harmonics that it lacks are the fewest with which there is no such stretch.
+those of the balance with all even harmonics, up to twice the highest, which it solves with none of these.
+Where the balance with fewer lacks one, or has it at another frequency, the sign of the determinant is another
+along a stretch of the branch. The harmonics that it lacks are the fewest with which there is no such stretch.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from fcm.branches.branch_points import BranchPoint, branch_point_at, sign_changes
+from fcm.branches.branch_points import BranchPoint, branch_point_at, sign_change_at, sign_changes
+from fcm.branches.force_level import LEVEL_REACH
 from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.branches.symmetry import is_symmetric
 from fcm.branches.trace import Traced
 from fcm.continuation import Path
 from fcm.continuation.corrector import Newton
 from fcm.continuation.nearby_solution import begin_near
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -33,11 +38,13 @@ class SymmetryLoss(Frozen):
 
 def symmetry_loss(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> SymmetryLoss:
     """Places where branches of a system leave symmetric ones by even harmonics that it lacks."""
-    whole = system.with_harmonics(tuple(sorted({*system.harmonics, *range(2, system.harmonics[-1] + 1, 2)})))
+    few = len(system.scene.contacts) < system.option(LEVEL_REACH).min_contacts
+    most = int((options.even_factor if few else 1.0) * system.harmonics[-1])
+    whole = system.with_harmonics(tuple(sorted({*system.harmonics, *range(2, most + 1, 2)})))
     if whole.harmonics == system.harmonics or not system.scene.contacts:
         return SymmetryLoss()
     frequencies, harmonics = list[float](), set[int]()
-    for path in found.branches.paths:
+    for path in (one for one in found.branches.paths if is_symmetric(system, one, options)):
         omega, lacking = _loss_of(system, whole, path, options)
         frequencies += omega
         harmonics |= lacking
@@ -53,11 +60,12 @@ def _loss_of(
 ) -> tuple[list[float], set[int]]:
     """Frequencies [rad/s] of branch points of a path with all even harmonics that its system has not, and the
     harmonics that it lacks."""
-    finer, balance = _with_more(system, whole, path, options), whole.new_balance()
+    finer, coarser = _with_more(system, whole, path, options), _Judged(path, system)
+    balance = whole.new_balance()
     frequencies, change = list[float](), np.zeros(len(whole.harmonics))
-    changes = sign_changes(finer.orientation)
-    for i in (i for ends in _differing(finer, path, options) for i in ends if i in changes):
-        point = branch_point_at(balance, balance, finer, i, options)
+    changes = sign_changes(finer.path.orientation)
+    for i in (i for ends in _differing(finer, coarser, options) for i in ends if i in changes):
+        point = branch_point_at(balance, partial(jacobian_of, balance), finer.path, i, options)
         by = _changes(whole, point)
         if whole.harmonics[int(by.argmax())] % 2 == 0 and by.any():
             frequencies.append(float(point.z[-1]))
@@ -72,17 +80,40 @@ def _loss_of(
     return frequencies, lacking
 
 
-def _differing(finer: Path, coarser: Path, options: BranchingOptions) -> list[tuple[int, int]]:
+class _Judged(Frozen):
+    """A path with the signs of the determinant of a system."""
+
+    path: Path
+    system: System
+
+
+def _differing(finer: _Judged, coarser: _Judged, options: BranchingOptions) -> list[tuple[int, int]]:
     """The points before and at the end of stretches of a path where its sign is another with fewer harmonics.
 
-    Only stretches that are wider than the possible displacement of a branch point."""
-    differ, wide = finer.orientation * coarser.orientation < 0.0, list[tuple[int, int]]()
+    Only stretches that are wider than the possible displacement of a branch point. Where that depends on the
+    steps at its ends, these are located."""
+    differ = finer.path.orientation * coarser.path.orientation < 0.0
+    parameter, wide = finer.path.parameter, list[tuple[int, int]]()
     ends = np.flatnonzero(np.diff(differ, prepend=False, append=False)).tolist()
     for first, end in zip(ends[::2], ends[1::2], strict=True):
-        omega = finer.parameter[first:end]
-        if omega.max() > (1.0 + options.max_displacement) * omega.min():
+        inside, around = parameter[first:end], parameter[max(first - 1, 0) : end + 1]
+        if not _is_wide(inside, options) and _is_wide(around, options):
+            inside = np.append(inside, list(_places((finer, coarser), (first - 1, end - 1), options)))
+        if _is_wide(inside, options):
             wide.append((first - 1, end - 1))
     return wide
+
+
+def _is_wide(omega: FloatArray, options: BranchingOptions) -> bool:
+    return bool(omega.max() > (1.0 + options.max_displacement) * omega.min())
+
+
+def _places(judged: Sequence[_Judged], steps: Sequence[int], options: BranchingOptions) -> Iterator[float]:
+    """The frequencies [rad/s] within the given steps at which one of the signs changes."""
+    for i in steps:
+        for path, system in ((one.path, one.system) for one in judged):
+            if 0 <= i < len(path.z) - 1 and path.orientation[i] * path.orientation[i + 1] < 0.0:
+                yield float(sign_change_at(system.new_balance(), path, i, options)[-1])
 
 
 def _changes(system: System, point: BranchPoint) -> FloatArray:
@@ -92,7 +123,7 @@ def _changes(system: System, point: BranchPoint) -> FloatArray:
     return change
 
 
-def _with_more(system: System, more: System, path: Path, options: BranchingOptions) -> Path:
+def _with_more(system: System, more: System, path: Path, options: BranchingOptions) -> _Judged:
     """A path of a system with the orientations that more harmonics give it; NaN where it is no solution with
     nothing of the others, as where these are driven."""
     z, direction = (more.extended(one, system.harmonics) for one in (path.z, path.direction))
@@ -104,4 +135,4 @@ def _with_more(system: System, more: System, path: Path, options: BranchingOptio
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
         if np.abs(off).max(initial=0.0) < options.min_residual:
             orientation[i] = newton.orientation
-    return replace(path, z=z, direction=direction, orientation=orientation)
+    return _Judged(replace(path, z=z, direction=direction, orientation=orientation), more)

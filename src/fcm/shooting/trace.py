@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import islice
 
 import numpy as np
 
+from fcm.branches.branch_points import branch_points_of
+from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
-from fcm.continuation.all_branches import Branches, Follow, Following
+from fcm.continuation.all_branches import Branches, Follow, Following, contains
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.force_level import LevelMotions, level_motions
 from fcm.shooting.harmonic_balance_branches import converged_balance, passes
@@ -125,6 +128,8 @@ def explore(
     search = _BranchSearch(problem, branches, bounded, uncertain or UncertainFrequencies())
     if not sought:
         paths = search.with_others(paths, apart)
+    if not bounded.given_up:
+        paths = search.with_branching(paths)
     if search.too_many_broken(paths):
         bounded.add_reason(f"{problem.options.search.max_broken} of them broke off while they were followed")
     if not bounded.given_up:
@@ -212,19 +217,49 @@ class _BranchSearch:
 
     def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:
         """Paths with those through motions that none of them passes, unless too many break off."""
-        problem = self.problem
         for z in motions:  # what is passed already is known without being followed again
             if self.too_many_broken(paths):
                 break
-            if not is_known(paths, [z], problem):
-                more = self.branches([z], known=paths).paths[len(paths) :]
-                fresh = [
-                    one
-                    for one in more
-                    if not is_known(paths, distinct_motions(one, problem.options), problem)
-                ]
-                paths += tuple(fresh)
+            if not is_known(paths, [z], self.problem):
+                paths = self._with_branches_through(paths, z)
         return paths
+
+    def _with_branches_through(self, paths: tuple[Path, ...], z: FloatArray) -> tuple[Path, ...]:
+        """Paths with the branch through a motion, unless they have it already."""
+        problem, more = self.problem, self.branches([z], known=paths).paths[len(paths) :]
+        fresh = (one for one in more if not is_known(paths, distinct_motions(one, problem.options), problem))
+        return (*paths, *fresh)
+
+    def with_branching(
+        self, paths: tuple[Path, ...], options: BranchingOptions = BRANCHING
+    ) -> tuple[Path, ...]:
+        """Paths with those that leave them at branch points, unless too many break off."""
+        problem, known, left = self.problem, 0, options.max_starts
+        for _ in range(options.max_rounds):
+            fresh, known = paths[known:], len(paths)
+            points = branch_points_of(problem, lambda: np.array(problem.jacobian), fresh, options)
+            for point in islice(self.bounded.each(points), left):
+                left -= 1
+                for z in self._without_image(point.starts, paths, options):
+                    if not self.too_many_broken(paths):  # so near the path, Newton's method leads to that
+                        paths = self._with_branches_through(paths, z)
+            if len(paths) == known or not left:
+                break
+        return paths
+
+    def _without_image(
+        self, starts: Sequence[FloatArray], paths: Sequence[Path], options: BranchingOptions
+    ) -> Sequence[FloatArray]:
+        """One of two starts with the same amplitudes, as those of mirror images; none where the other is
+        known."""
+        amplitudes = [shot.amplitude for z in starts if (shot := self.problem.shot(z)) is not None]
+        if len(amplitudes) < 2:
+            return starts
+        off = np.abs(np.subtract(*amplitudes)).max(initial=0.0)
+        if off > options.motion_tolerance * np.max(amplitudes):
+            return starts
+        known = any(contains(path, starts[1], self.problem) for path in paths)
+        return () if known else starts[:1]
 
     def too_many_broken(self, paths: Sequence[Path]) -> bool:
         """Whether so many paths have come to no end that no more are looked for."""
@@ -233,8 +268,12 @@ class _BranchSearch:
 
 
 def is_known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
-    """Whether any of some motions is passed by a path."""
-    return any(passes(path, z, problem) for path in paths for z in motions)
+    """Whether most of some motions are passed by a path.
+
+    At a branch point those of another branch are, too; and one next to a fold may not be found.
+    """
+    known = sum(any(passes(path, z, problem) for path in paths) for z in motions)
+    return 2 * known > len(motions)
 
 
 def distinct_motions(path: Path, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
