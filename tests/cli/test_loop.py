@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from fcm import load_scene, periodic_forces, periodic_loop, planar_loop
-from fcm.cli.loop_cases import PlanarCase
+from fcm.cli.loop_cases import PlanarCase, of_file
+from fcm.cli.loop_names import titles
+from fcm.plot.loop_file import PlaceOnCurve
 from fcm.response import trace
 from fcm.results.output import write_netcdf
 
@@ -441,6 +443,15 @@ def test_a_point_beside_the_frequency_asked_for_is_said(fcm, folded):
     assert f"at 1.2: drawn is the nearest point of the file, at {one['frequency']:.6g} rad/s" in done.err
     again = fcm("plot", "loop", folded, "--curve", 0, "--at", repr(one["frequency"]), "--json")
     assert "nearest point" not in again.err
+
+
+def test_the_title_of_a_loop_beside_the_frequency_asked_for_has_both(folded):
+    (beside,) = of_file(folded, [0], None, [PlaceOnCurve(1.3)], None, print)
+    at = beside.facts["frequency"]
+    common, _ = titles([beside])
+    assert at != 1.3 and common.endswith(f"= {at:.5g} rad/s\nasked: 1.3 rad/s")
+    (there,) = of_file(folded, [0], None, [PlaceOnCurve(at)], None, print)
+    assert "asked" not in titles([there])[0]
 
 
 def test_a_modal_amplitude_beside_that_asked_for_has_no_unit_of_frequency(fcm):

@@ -106,6 +106,16 @@ def test_a_column_for_each_frequency_and_marks_at_the_places(file):
         assert axes.get_xlim()[0] < 0.0 and axes.get_ylim()[1] > 2.0
 
 
+def test_a_panel_beside_the_frequency_asked_for_has_both_in_its_title(file):
+    """A picture alone did not say that another frequency was asked for."""
+    read = read_interface(file[0])
+    (beside,) = points_of(read, (1.2,))
+    row = draw_interface(read, [beside, *points_of(read, (beside.frequency,))])
+    titles = [axes.get_title() for axes in row.axes[:2]]
+    assert beside.frequency != 1.2 and "asked: 1.2 rad/s" in titles[0].split("\n")
+    assert f"{beside.frequency:.6g} rad/s" in titles[0] and "asked" not in titles[1]
+
+
 def test_columns_of_unlike_size_are_told_by_a_logarithm_and_bars_are_in_line(file):
     """Values of the second column a hundredth: on a linear scale they would all be of one colour."""
     read = read_interface(file[0])
@@ -356,6 +366,8 @@ def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
         f"at 3: drawn is the nearest point of the file, at {point_at(read, 3.0).modal_amplitude:.6g}. A"
         in said.err
     )
+    figure = draw_interface(read, [point_at(read, 3.0)])
+    assert "asked: 3" in figure.axes[0].get_title().split("\n")
     said = called("plot", "loop", path, "--amplitude", 20, "--json", "-o", tmp_path / "l.png")
     (loop,) = json.loads(said.out)["loops"]
     assert loop["frequency"] == point_at(read, 20.0).frequency

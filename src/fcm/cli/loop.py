@@ -293,12 +293,11 @@ def _sentence(case: Case | PlanarCase, cosine: bool) -> str:
     from fcm.cli.loop_cases import PlanarCase
     from fcm.contact.sampled import shown_degrees, transitions
 
+    names = ", ".join(filter(None, [*(name.plain for name in case.names if name.in_message), case.note]))
     if isinstance(case, PlanarCase):
         begun = zip(case.loop.sequence, case.loop.angles.tolist(), strict=False)
         where = ", ".join(f"{state} at {math.degrees(theta):.1f}°" for state, theta in begun)
-        names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))
-        return f"{names}: {case.loop.sequence}{', ' if where else ''}{where}"
-    found = transitions(case.loop)
-    where = ", ".join(f"{one.states[1]} at {shown_degrees(one.theta, cosine):.1f}°" for one in found)
-    names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))
+    else:
+        found = transitions(case.loop)
+        where = ", ".join(f"{one.states[1]} at {shown_degrees(one.theta, cosine):.1f}°" for one in found)
     return f"{names}: {case.loop.sequence}{', ' if where else ''}{where}"

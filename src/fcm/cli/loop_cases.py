@@ -201,14 +201,26 @@ def of_file(
                 tell(said)
         for point in points:
             with read(path, "its loops cannot be drawn"):
+                asked = _asked(point, place, file)
                 if isinstance(point.motion, PlanePoint):
-                    planar.append(_in_plane(point, point.motion, file))
+                    planar.append(_in_plane(point, point.motion, file, asked))
                 else:
-                    cases.append(_on_a_line(point, point.motion, file))
+                    cases.append(_on_a_line(point, point.motion, file, asked))
     return planar or cases
 
 
-def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict[str, Any]]:
+def _asked(point: LoopPoint, place: PlaceOnCurve | None, file: LoopFile) -> Name:
+    """The place asked for, where the point that is drawn is beside it: for the picture, see `not_at`."""
+    from fcm.plot.read import asked_beside
+
+    if place is None:
+        return Name("", "")
+    digits, unit = (4, "") if place.modal else (5, file.unit)
+    text = asked_beside(place.value, place.of(point), unit, digits)
+    return Name(text, text, in_message=False)
+
+
+def _said(point: LoopPoint, file: LoopFile, asked: Name) -> tuple[tuple[Name, ...], str, dict[str, Any]]:
     """The names of a point in a picture, what else is to be said of it, and for --json."""
     from fcm.plot.labels import curve_label
 
@@ -224,6 +236,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
         *((_peak(point, file),) if point.peak else ()),
         *(() if modal is None else (Name(f"modal amplitude {modal:.4g}", f"modal amplitude {modal:.4g}"),)),
         Name(f"{symbol} = {at}", f"level {at}" if unit == "level" else at),
+        asked,
     )
     if point.fundamental:
         names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
@@ -248,20 +261,20 @@ def _peak(point: LoopPoint, file: LoopFile) -> Name:
     return Name(text.replace("$", r"\$"), text)
 
 
-def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile) -> PlanarCase:
+def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile, asked: Name) -> PlanarCase:
     from fcm.contact import planar_loop
 
-    names, note, facts = _said(point, file)
+    names, note, facts = _said(point, file, asked)
     u_x, u_y, v = plane.motion
     mu, k_u, k_v, n_0 = plane.law
     loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0)
     return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions)
 
 
-def _on_a_line(point: LoopPoint, motion: LinePoint | None, file: LoopFile) -> Case:
+def _on_a_line(point: LoopPoint, motion: LinePoint | None, file: LoopFile, asked: Name) -> Case:
     from fcm.contact import hysteresis_loop, periodic_loop
 
-    names, note, facts = _said(point, file)
+    names, note, facts = _said(point, file, asked)
     ratios, a, force = (point.n0_bar, point.b_bar, point.phi), point.amplitude, point.force
     loop: Loop | PeriodicLoop
     if motion is None or not force > 0.0:

@@ -39,6 +39,7 @@ class Name(NamedTuple):
 
     drawn: str
     plain: str
+    in_message: bool = True
 
 
 def titles(cases: Sequence[Case]) -> tuple[str, list[str]]:
