@@ -355,7 +355,9 @@ def test_a_file_without_loops(fcm, folded, tmp_path):
         data.renameVariable("psi", "phi")
         loops = {name: data[name][:] for name in ("n0_bar", "b_bar", "tangential_amplitude")}
         data["n0_bar"][:] = data["b_bar"][:] = 0.0
-    assert "has no friction, and so no loop" in fcm("plot", "loop", "b.nc", "--curve", 0).err
+    said = fcm("plot", "loop", "b.nc", "--curve", 0).err
+    assert "has no friction, and so no loop. Its normal force is n_0 + k_v v while it is closed" in said
+    assert "fcm plot contacts draws the greatest" in said and "--contact-forces FILE" in said
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         for name, values in loops.items():
             data[name][:] = 0.0 if name == "tangential_amplitude" else values

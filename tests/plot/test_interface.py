@@ -299,6 +299,17 @@ def test_few_contacts_in_a_row_have_their_names(file):
     assert all(bar.get_width() < 0.2 * np.ptp(axes.get_xlim()) for bar in axes.patches)
 
 
+def test_contacts_without_energy_and_slip_say_so_in_place_of_an_axis_of_nothing(file):
+    """As those of stops without friction: the axes went from 0 to 1."""
+    read = read_interface(file[0])
+    (point,) = points_of(read, (1.2,))
+    loads = np.stack((np.zeros(12), np.zeros(12), np.arange(12.0)))
+    _, energy, slip, force = draw_interface(read, [replace(point, contact_loads=loads)]).axes
+    for axes in (energy, slip):
+        assert [one.get_text() for one in axes.texts] == ["none"] and axes.get_yticks().tolist() == [0.0]
+    assert not force.texts and len(force.get_yticks()) > 1
+
+
 def test_an_open_contact_and_one_without_a_value_have_marks_of_their_own(file):
     """Both were white circles."""
     read = read_interface(file[0])

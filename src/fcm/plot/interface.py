@@ -355,6 +355,12 @@ def _in_row(file: InterfaceFile, points: Sequence[InterfacePoint], at: FloatArra
             grid[1 + row, column].bar(at, values[column], width=thick, color="#404040")
             grid[1 + row, column].set_yscale(kind)
             grid[1 + row, column].set_ylim(low_value, high_value)
+            if not values[column].any():
+                grid[1 + row, column].text(
+                    0.5, 0.5, "none", transform=grid[1 + row, column].transAxes, ha="center", va="center"
+                )
+        if not values.any():
+            grid[1 + row, 0].set_yticks([0.0])
         grid[1 + row, 0].set_ylabel("\n".join((title, f"({unit})" * bool(unit))), parse_math=False)
     grid[0, 0].set_yticks(range(len(STATES_OF_CONTACTS)), [word for word, *_ in STATES_OF_CONTACTS])
     grid[0, 0].set_ylim(-0.6, len(STATES_OF_CONTACTS) - 0.4)

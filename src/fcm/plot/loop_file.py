@@ -266,7 +266,11 @@ def _point(file: LoopFile, index: PointIndex, solution: int, solutions: int, pea
         )
     motion = None if file.motions is None else file.motions.at(index, name)
     if n0_bar == b_bar == 0.0:
-        raise PlotError(f"{file.path}: {name} has no friction, and so no loop")
+        raise PlotError(
+            f"{file.path}: {name} has no friction, and so no loop. Its normal force is n_0 + k_v v while it "
+            "is closed: fcm plot contacts draws the greatest of a cycle, and fcm respond --contact-forces "
+            "FILE writes its harmonics"
+        )
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
