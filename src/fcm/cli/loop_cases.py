@@ -21,7 +21,7 @@ from fcm.rotational_dofs import unit_of as dof_unit
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
     from fcm.contact.plane.loop import PlanarLoop
-    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, PlaceOnCurve, PlanePoint
+    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, NormalPoint, PlaceOnCurve, PlanePoint
 
 
 class Case(Frozen):
@@ -108,6 +108,36 @@ class PlanarCase(Frozen):
         }
 
 
+class NormalCase(Frozen):
+    """The normal force of a contact without friction."""
+
+    loop: PeriodicLoop  # of no tangential motion, which sticks while the contact is closed
+    names: tuple[Name, ...]
+    note: str
+    facts: dict[str, Any]
+    units: tuple[str, str] | None
+
+    def record(self, _from_greatest: bool) -> dict[str, Any]:
+        """Output of ``--json`` for the normal force."""
+        loop = self.loop
+        return {
+            **self.facts,
+            "sequence": self.states(),
+            "transitions": [
+                {"to": "open" if state == "S" else "closed", "degrees": math.degrees(theta)}
+                for state, theta in zip(loop.sequence, loop.angles.tolist(), strict=False)
+            ],
+            "k_v": loop.k_v,
+            "n_0": loop.n_0,
+            "least_normal_force": max(loop.least_load, 0.0),
+            "greatest_normal_force": max(loop.greatest_load, 0.0),
+        }
+
+    def states(self) -> list[str]:
+        """States of the cycle in order."""
+        return ["open" if state == "S" else "closed" for state in self.loop.sequence]
+
+
 def of_ratios(n0_bars: Iterable[float], b_bars: Iterable[float], phases: Iterable[float]) -> list[Case]:
     """Every combination of dimensionless parameters."""
     from fcm.contact import hysteresis_loop
@@ -177,12 +207,12 @@ def of_file(
     places: Sequence[PlaceOnCurve | None],
     solution: int | None,
     tell: Callable[[str], None],
-) -> list[Case] | list[PlanarCase]:
+) -> list[Case] | list[PlanarCase] | list[NormalCase]:
     """The loops of a contact on curves of a response file, at places of each.
 
     Which contact was taken is told.
     """
-    from fcm.plot.loop_file import PlanePoint, busiest, points_at, read_loops
+    from fcm.plot.loop_file import NormalPoint, PlanePoint, busiest, points_at, read_loops
     from fcm.plot.read import read
 
     file = read_loops(path)
@@ -190,6 +220,7 @@ def of_file(
         tell(said)
     cases: list[Case] = []
     planar: list[PlanarCase] = []
+    normal: list[NormalCase] = []
     for curve, place in product(curves, places):
         points = points_at(file, curve, contact, place)
         if solution is not None and solution > len(points):
@@ -202,11 +233,13 @@ def of_file(
         for point in points:
             with read(path, "its loops cannot be drawn"):
                 asked = _asked(point, place, file)
-                if isinstance(point.motion, PlanePoint):
+                if isinstance(point.motion, NormalPoint):
+                    normal.append(_without_friction(point, point.motion, file, asked))
+                elif isinstance(point.motion, PlanePoint):
                     planar.append(_in_plane(point, point.motion, file, asked))
                 else:
                     cases.append(_on_a_line(point, point.motion, file, asked))
-    return planar or cases
+    return normal or planar or cases
 
 
 def _asked(point: LoopPoint, place: PlaceOnCurve | None, file: LoopFile) -> Name:
@@ -269,6 +302,16 @@ def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile, asked: Name) 
     mu, k_u, k_v, n_0 = plane.law
     loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0)
     return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions)
+
+
+def _without_friction(point: LoopPoint, normal: NormalPoint, file: LoopFile, asked: Name) -> NormalCase:
+    from fcm.contact import periodic_loop
+
+    names, note, facts = _said(point, file, asked)
+    k_v, n_0 = normal.law
+    loop = periodic_loop([0.0], normal.motion, 1.0, 1.0, k_v, n_0)
+    own = {key: value for key, value in facts.items() if key not in ("a", "k_u a")}
+    return NormalCase(loop, names, note, own, file.dimensions)
 
 
 def _on_a_line(point: LoopPoint, motion: LinePoint | None, file: LoopFile, asked: Name) -> Case:
