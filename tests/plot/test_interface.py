@@ -351,6 +351,7 @@ def test_the_page_has_names_of_contacts_and_coordinates_at_its_axes(file, tmp_pa
     assert '"title":{"text":"x"}' in plane and '"title":{"text":"z"}' in plane
     names = ",".join(f'"{name}"' for name in read.contacts)
     assert f'"ticktext":[{names}]' in row
+    assert ", asked: 1.2 rad" in row
 
 
 def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
