@@ -174,6 +174,7 @@ bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, s
 	$(BIN)/python -m tests.benchmarks.process
 	$(BIN)/python tests/benchmarks/large.py
 	$(BIN)/python -m tests.benchmarks.ring
+	$(BIN)/python -m tests.benchmarks.own_law
 
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
 	$(BIN)/python tests/benchmarks/motion.py

@@ -168,3 +168,29 @@ def test_a_file_without_points_has_those_of_the_greatest(fcm, tmp_path):
             energy = found[-1]["shroud"]["dissipated_energy"]
             assert data["peak_dissipated_energy_error"][0, 0] == energy["error"]
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize(
+    ("options", "unknown"),
+    [
+        ((), []),
+        (("--mode", 1, "--level", "0.1:10"), ["error u", "error v", "error_at_frequency u"]),
+    ],
+)
+def test_errors_that_are_unknown_at_all_points_have_no_column(fcm, tmp_path, options, unknown):
+    """Those of the amplitudes of nonlinear modes were columns of nan."""
+    assert fcm("respond", "yang1998-n5", *options, "-o", "a.nc", "--csv", "a.csv").code == 0
+    with (tmp_path / "a.csv").open() as file, netCDF4.Dataset(tmp_path / "a.nc") as data:
+        head, *rows = csv.reader(file)
+        assert all(len(row) == len(head) for row in rows)
+        for name in ("error", "error_at_frequency"):
+            values = np.ma.filled(data[name][0], np.nan)
+            for i, dof in enumerate(data["dof"][:]):
+                assert (f"{name} {dof}" in head) == np.isfinite(values[:, i]).any()
+        columns = dict(zip(head, np.array(rows).T, strict=True))
+        there = np.isfinite(np.ma.filled(data["frequency"][0], np.nan))
+        amplitude = np.ma.filled(data["amplitude"][0, :, 0], np.nan)[there]
+        assert columns["amplitude u"].astype(float).tolist() == amplitude.tolist()
+    errors = [name for name in head if "error" in name.split()[0]]
+    assert errors and not set(unknown) & set(errors)
+    assert all(set(columns[name]) != {"nan"} for name in errors)

@@ -8,7 +8,7 @@ import numpy as np
 import fcm
 
 from ..response import random_points
-from . import lap_joint, large, many, motion, process, ring, speed
+from . import lap_joint, large, many, motion, own_law, process, ring, speed
 from .others import problems, solved
 
 
@@ -64,6 +64,13 @@ def test_kernels_and_curves(capsys, monkeypatch):
     speed.planar(2, (1,))
     speed.many_curves(2)
     assert capsys.readouterr().out.count("scaled") == 5
+
+
+def test_laws_in_python_beside_that_of_fcm(capsys, monkeypatch):
+    monkeypatch.setattr(own_law.Friction, "samples", 32)
+    own_law.main(1)
+    *_, own, arrays, loop = (line.split() for line in capsys.readouterr().out.splitlines())
+    assert own[-1] == "1" and float(loop[-1]) > float(arrays[-1]) > 1.0
 
 
 def test_a_problem_that_other_packages_get():

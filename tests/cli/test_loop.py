@@ -10,9 +10,13 @@ import numpy as np
 import pytest
 
 from fcm import load_scene, periodic_forces, periodic_loop, planar_loop
-from fcm.cli.loop_cases import PlanarCase
+from fcm.cli.loop_cases import PlanarCase, of_file
+from fcm.cli.loop_names import titles
+from fcm.plot.loop_file import PlaceOnCurve
+from fcm.plot.normal_force import DrawnNormalForce, draw_normal_force
 from fcm.response import trace
 from fcm.results.output import write_netcdf
+from fcm.scene import scene_from_dict
 
 CONTACT = ("--mu", 0.4, "--k-u", 1, "--k-v", 1, "--n0", 0.8, "--a", 1, "--b", 1)
 
@@ -353,7 +357,8 @@ def test_a_file_without_loops(fcm, folded, tmp_path):
         data.renameVariable("psi", "phi")
         loops = {name: data[name][:] for name in ("n0_bar", "b_bar", "tangential_amplitude")}
         data["n0_bar"][:] = data["b_bar"][:] = 0.0
-    assert "has no friction, and so no loop" in fcm("plot", "loop", "b.nc", "--curve", 0).err
+    said = fcm("plot", "loop", "b.nc", "--curve", 0).err
+    assert "has no friction, and so no loop, and the file has not its normal motion" in said
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         for name, values in loops.items():
             data[name][:] = 0.0 if name == "tangential_amplitude" else values
@@ -443,6 +448,15 @@ def test_a_point_beside_the_frequency_asked_for_is_said(fcm, folded):
     assert "nearest point" not in again.err
 
 
+def test_the_title_of_a_loop_beside_the_frequency_asked_for_has_both(folded):
+    (beside,) = of_file(folded, [0], None, [PlaceOnCurve(1.3)], None, print)
+    at = beside.facts["frequency"]
+    common, _ = titles([beside])
+    assert at != 1.3 and common.endswith(f"= {at:.5g} rad/s\nasked: 1.3 rad/s")
+    (there,) = of_file(folded, [0], None, [PlaceOnCurve(at)], None, print)
+    assert "asked" not in titles([there])[0]
+
+
 def test_a_modal_amplitude_beside_that_asked_for_has_no_unit_of_frequency(fcm):
     run = ("--mode", 1, "--level", "0.1:100", "--harmonics", 1, "-o", "mode.nc")
     assert fcm("respond", "yang1998-n5", *map(str, run)).code == 0
@@ -450,3 +464,75 @@ def test_a_modal_amplitude_beside_that_asked_for_has_no_unit_of_frequency(fcm):
     (one,) = json.loads(done.out)["loops"]
     nearest = f"{one['modal_amplitude']:.6g}"
     assert f"at 3: drawn is the nearest point of the file, at {nearest}. A smaller" in done.err
+
+
+STOP = {
+    "modal": {
+        "dofs": ["x", "y"],
+        "frequency": [1.0, 2.0],
+        "damping": 0.02,
+        "shapes": [[1.0, 0.5], [-0.5, 1.0]],
+    },
+    "contact": [
+        {"name": "stop", "tangential": "y", "normal": "x", "mu": 0.0, "k_u": 0.0, "k_v": 0.5, "gap": 2.0}
+    ],
+    "force": [{"dof": "x", "amplitude": 0.2}],
+    "response": {"frequency": [0.8, 1.4]},
+    "units": {"length": "mm", "force": "N"},
+}
+
+
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_of_a_contact_without_friction_the_normal_force_is_drawn(fcm, tmp_path, harmonics):
+    """It was refused."""
+    path = tmp_path / "stop.nc"
+    write_netcdf(trace(scene_from_dict(STOP), harmonics=harmonics), path)
+    done = fcm("plot", "loop", path, "--json")
+    (one,) = loops(done)
+    assert (tmp_path / "stop-loop.png").exists() and "no friction; normal force up to" in done.err
+    with netCDF4.Dataset(path) as data:
+        k = np.nanargmin(np.abs(data["frequency"][0].filled(np.nan) - one["frequency"]))
+        assert one["greatest_normal_force"] == pytest.approx(data["greatest_normal_force"][0, k, 0])
+        amplitude, phase = (data[f"harmonic_{name}"][0, k, :, 0] for name in ("amplitude", "phase"))
+        orders, mean = data["harmonic"][:], float(data["mean"][0, k, 0])
+    assert sorted(one["sequence"]) == ["closed", "open"] and one["least_normal_force"] == 0.0
+
+    def n(degrees):
+        return 0.5 * (mean + sum(amplitude * np.sin(orders * np.radians(degrees) + phase))) - 1.0
+
+    for transition in one["transitions"]:
+        after = 1.0 if transition["to"] == "closed" else -1.0
+        assert n(transition["degrees"]) == pytest.approx(0.0, abs=1e-6)
+        assert n(transition["degrees"] + 1.0) * after > 0.0 > n(transition["degrees"] - 1.0) * after
+    done = fcm("plot", "loop", path, "--cosine", "--dimensionless")
+    assert (
+        done.code == 2 and "--cosine, --dimensionless are of no use: the contact has no friction" in done.err
+    )
+
+
+def test_the_picture_of_a_normal_force_has_it_over_displacement_and_angle():
+    v = [0.5, -2.0j, 0.0, 0.3]
+    cycle = periodic_loop([0.0], v, 1.0, 1.0, 4.0, -2.0)
+    above, below = draw_normal_force(DrawnNormalForce(cycle, "a stop", ("mm", "N"))).axes
+    assert (above.get_xlabel(), above.get_ylabel()) == (
+        "Normal displacement $v$ (mm)",
+        "Normal force $n$ (N)",
+    )
+
+    def at(theta):
+        return sum((x * np.exp(1j * h * theta)).real for h, x in enumerate(v))
+
+    displacement = at(np.linspace(0.0, 2.0 * np.pi, 100_000))
+    lines = [line for line in above.lines if line.get_label() in ("open", "closed")]
+    drawn = np.concatenate([line.get_xydata() for line in lines])
+    assert np.allclose(drawn[:, 1], np.maximum(4.0 * drawn[:, 0] - 2.0, 0.0), atol=1e-12)
+    ends = [drawn[:, 0].min(), drawn[:, 0].max()]
+    assert ends == pytest.approx([displacement.min(), displacement.max()], rel=1e-4)
+    over = np.concatenate([line.get_xydata() for line in below.lines if len(line.get_xdata()) > 2])
+    over = over[(over[:, 0] >= 0.0) & (over[:, 0] <= 360.0)]
+    told = np.maximum(4.0 * at(np.radians(over[:, 0])) - 2.0, 0.0)
+    assert np.allclose(over[:, 1], told, atol=1e-12) and np.ptp(over[:, 0]) > 359.0
+    (ring,) = (line for line in above.lines if line.get_marker() == "o")
+    assert ring.get_xydata().ravel().tolist() == pytest.approx([0.5, 0.0])
+    (text,) = (text.get_text() for text in above.texts)
+    assert text.count("opens at") == text.count("closes at") == cycle.sequence.count("S")

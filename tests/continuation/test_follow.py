@@ -1152,3 +1152,28 @@ def test_a_curve_may_begin_in_any_direction():
     top = start(3.0, 4.0)
     path = follow(circle(), top, (-1.0, 5.0), options=FollowOptions(0.1), direction=np.array([1.0, 1.0, 0.0]))
     assert path.status is Status.CLOSED and path.z[1, 0] > 3.0
+
+
+OLD_AND_NEW = {
+    "probe": "evaluate_residual",
+    "measure": "evaluate_scale",
+    "bound": "evaluate_margins",
+    "report": "evaluate_outputs",
+    "square": "squared_margin",
+}
+
+
+@pytest.mark.parametrize(("old", "new"), OLD_AND_NEW.items())
+def test_a_function_of_a_problem_by_its_old_name_alone_is_refused(old, new):
+    """It was not called, and the curve had no peaks or no corners."""
+
+    def function(self, *arguments):
+        return 0
+
+    problem = type("Beam", (Problem,), {"evaluate": function, old: function})
+    with pytest.raises(TypeError, match=f"Beam.{old}: this function of a problem is {new} now"):
+        problem(1, 1, 1)
+    with pytest.raises(TypeError, match=f"Plate.{old}"):
+        type("Plate", (problem,), {})(1, 1, 1)
+    both = type("Beam", (Problem,), {"evaluate": function, old: function, new: function})
+    assert both(1, 1, 1).outputs == 1

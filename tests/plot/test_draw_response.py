@@ -88,6 +88,21 @@ def test_names_touch_neither_each_other_nor_a_line():
         assert not any(path.intersects_bbox(box, filled=False) for box in boxes)
 
 
+def test_names_touch_no_tick():
+    """The ticks of the frame's upper edge went into the name of the highest curve."""
+    curves = [replace(one, truncation_error=np.full(201, 1e-3)) for one in three().curves]
+    figure = draw_response(response(*curves))
+    figure.draw_without_rendering()
+    axes, frame = figure.axes[0], figure.axes[0].get_window_extent()
+    boxes = [text.get_window_extent() for text in axes.texts if isinstance(text, Annotation)]
+    shown = [tick for tick in axes.xaxis.get_major_ticks() if 0.7 <= tick.get_loc() <= 1.7]
+    assert len(boxes) == 3 and len(shown) >= 5
+    for tick in shown:
+        x, _ = axes.transData.transform((tick.get_loc(), 0.0))
+        end = frame.y1 - tick.tick2line.get_markersize() * figure.dpi / 72.0
+        assert not any(box.x0 < x < box.x1 and box.y1 > end for box in boxes)
+
+
 def test_curves_that_leave_no_room_for_names_have_a_legend():
     same = [resonance(9.0, 1.2, float(n)) for n in range(8)]
     figure = draw_response(response(*same))

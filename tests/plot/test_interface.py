@@ -106,6 +106,16 @@ def test_a_column_for_each_frequency_and_marks_at_the_places(file):
         assert axes.get_xlim()[0] < 0.0 and axes.get_ylim()[1] > 2.0
 
 
+def test_a_panel_beside_the_frequency_asked_for_has_both_in_its_title(file):
+    """A picture alone did not say that another frequency was asked for."""
+    read = read_interface(file[0])
+    (beside,) = points_of(read, (1.2,))
+    row = draw_interface(read, [beside, *points_of(read, (beside.frequency,))])
+    titles = [axes.get_title() for axes in row.axes[:2]]
+    assert beside.frequency != 1.2 and "asked: 1.2 rad/s" in titles[0].split("\n")
+    assert f"{beside.frequency:.6g} rad/s" in titles[0] and "asked" not in titles[1]
+
+
 def test_columns_of_unlike_size_are_told_by_a_logarithm_and_bars_are_in_line(file):
     """Values of the second column a hundredth: on a linear scale they would all be of one colour."""
     read = read_interface(file[0])
@@ -289,6 +299,17 @@ def test_few_contacts_in_a_row_have_their_names(file):
     assert all(bar.get_width() < 0.2 * np.ptp(axes.get_xlim()) for bar in axes.patches)
 
 
+def test_contacts_without_energy_and_slip_say_so_in_place_of_an_axis_of_nothing(file):
+    """As those of stops without friction: the axes went from 0 to 1."""
+    read = read_interface(file[0])
+    (point,) = points_of(read, (1.2,))
+    loads = np.stack((np.zeros(12), np.zeros(12), np.arange(12.0)))
+    _, energy, slip, force = draw_interface(read, [replace(point, contact_loads=loads)]).axes
+    for axes in (energy, slip):
+        assert [one.get_text() for one in axes.texts] == ["none"] and axes.get_yticks().tolist() == [0.0]
+    assert not force.texts and len(force.get_yticks()) > 1
+
+
 def test_an_open_contact_and_one_without_a_value_have_marks_of_their_own(file):
     """Both were white circles."""
     read = read_interface(file[0])
@@ -330,6 +351,7 @@ def test_the_page_has_names_of_contacts_and_coordinates_at_its_axes(file, tmp_pa
     assert '"title":{"text":"x"}' in plane and '"title":{"text":"z"}' in plane
     names = ",".join(f'"{name}"' for name in read.contacts)
     assert f'"ticktext":[{names}]' in row
+    assert ", asked: 1.2 rad" in row
 
 
 def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
@@ -356,6 +378,8 @@ def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
         f"at 3: drawn is the nearest point of the file, at {point_at(read, 3.0).modal_amplitude:.6g}. A"
         in said.err
     )
+    figure = draw_interface(read, [point_at(read, 3.0)])
+    assert "asked: 3" in figure.axes[0].get_title().split("\n")
     said = called("plot", "loop", path, "--amplitude", 20, "--json", "-o", tmp_path / "l.png")
     (loop,) = json.loads(said.out)["loops"]
     assert loop["frequency"] == point_at(read, 20.0).frequency

@@ -9,11 +9,13 @@ import pytest
 import xarray
 
 import fcm
+from fcm.plot.band import draw_bands
 from fcm.plot.read import DrawnCurve, read_response
 from fcm.response.sweep import trace
 from fcm.results.bands import bands_of, greatest_at
 from fcm.results.output import write_netcdf
 from fcm.results.scatter import scatter, summary_of
+from fcm.results.spread import spreads_of
 from fcm.results.summary import summary, without_nan
 from fcm.scene import scene_from_dict
 
@@ -290,6 +292,34 @@ def test_a_band_holds_its_share_of_the_curves(path, response):
     inside = ((values >= band.low) & (values <= band.high)).mean(axis=0)
     least = COUNT - 2 * np.ceil(0.1 * (COUNT - 1))  # percentiles lie between draws
     assert inside.min() * COUNT == pytest.approx(least) and np.isfinite(values).all()
+
+
+def test_a_band_knows_its_draws_and_the_percentages_of_its_ends(path):
+    """Curves without a point were among the draws that the picture told of."""
+    drawn = read_response(path)
+    first = drawn.curves[:COUNT]
+    (band,) = bands_of(first[1:], drawn.drawn, 0, (0.0, 95.0))
+    assert (band.draws, band.reached) == (COUNT - 1, (0.0, 100.0 if COUNT - 1 < 20 else 95.0))
+    title = draw_bands(drawn, 0, [band], (0.0, 95.0), None).axes[0].get_title(loc="right")
+    assert f" {COUNT - 1} draws" in title
+
+
+def test_spreads_are_over_the_draws_of_each_given_value():
+    rng = np.random.default_rng(3)
+    mu, n_0 = np.repeat([0.4, 0.3], 30), rng.normal(10.0, 1.0, 60)
+    peak, frequency = 2.0 * n_0 + mu, 1.0 + n_0 / 100.0
+    counted = np.ones(60, dtype=bool)
+    counted[::7] = False
+    found = spreads_of({"mu": mu, "n_0": n_0}, ("n_0",), [peak, frequency], counted)
+    assert [one.parameters for one in found] == [{"mu": 0.4}, {"mu": 0.3}]
+    for one in found:
+        own = counted & (mu == one.parameters["mu"])
+        for spread, values in zip(one.spreads, (peak, frequency), strict=True):
+            assert spread.count == own.sum() and spread.percents
+            assert spread.median == pytest.approx(np.median(values[own]))
+            assert (values[own] < spread.low).sum() == (values[own] > spread.high).sum() == 2
+    (whole,) = spreads_of({"n_0": n_0}, ("n_0",), [peak], counted)
+    assert whole.parameters == {} and whole.spreads[0].count == counted.sum()
 
 
 def test_the_greatest_stable_amplitude_of_a_curve_that_folds():

@@ -21,7 +21,7 @@ from fcm.cli.messages import Messages, pass_messages
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from fcm.cli.loop_cases import Case, PlanarCase
+    from fcm.cli.loop_cases import Case, NormalCase, PlanarCase
     from fcm.cli.loop_names import Harmonic
 
 OF_FILE = ("curves", "at", "amplitudes", "contact", "solution", "dimensionless")
@@ -158,11 +158,12 @@ def loop(
 
     The contact is given by ratios, or by its stiffness, friction, preload and motion. Any of them may be
     repeated, and every combination is drawn. Or it is a contact of FILE, at a point of a curve. FILE is what
-    `fcm respond -o FILE` wrote; the displacement counts from its mean.
+    `fcm respond -o FILE` wrote; the displacement counts from its mean. Of a contact without friction the
+    normal force is drawn, over the normal displacement.
 
     Below each loop are its force and the slip limits over a cycle. Transitions are marked with their angles.
     """
-    from fcm.cli.loop_cases import PlanarCase
+    from fcm.cli.loop_cases import NormalCase, PlanarCase
     from fcm.contact import Loop
 
     begin = time.perf_counter()
@@ -170,6 +171,9 @@ def loop(
     given = {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     _check(given, file is not None)
     cases = _cases(given, file, options, units, messages.info)
+    without_friction = isinstance(cases[0], NormalCase)
+    if without_friction:
+        _check_without_friction(given, len(cases))
     if len(cases) > 1 and isinstance(cases[0], PlanarCase):
         raise click.UsageError(f"{len(cases)} loops in a plane are too many for a picture: say which one.")
     if cosine and isinstance(cases[0], PlanarCase):
@@ -192,7 +196,13 @@ def loop(
         messages.info(_sentence(case, cosine))
     seconds = time.perf_counter() - begin
     located = any(not isinstance(case.loop, Loop) for case in cases)
-    how = "from events located exactly" if located else "from the closed form"
+    how = (
+        "the normal force"
+        if without_friction
+        else "from events located exactly"
+        if located
+        else "from the closed form"
+    )
     messages.info(f"{wrote(output)}: {how}, in {seconds:.2f} s")
 
 
@@ -202,7 +212,7 @@ def _cases(
     options: dict[str, Any],
     units: tuple[str, str] | None,
     tell: Callable[[str], None],
-) -> Sequence[Case | PlanarCase]:
+) -> Sequence[Case | PlanarCase | NormalCase]:
     """The loops of the one way, of three, in which they are given."""
     from fcm.cli.loop_cases import of_contact, of_file, of_ratios
 
@@ -242,6 +252,14 @@ def _check(given: set[str], of_file: bool) -> None:
         raise click.UsageError(f"{'; '.join(filter(None, wrong))}.")
 
 
+def _check_without_friction(given: set[str], count: int) -> None:
+    """A usage error on what the normal force of a contact without friction cannot have."""
+    wrong = [_useless(given, ("cosine", "dimensionless"), ": the contact has no friction, and so no loop")]
+    wrong.append(f"{count} normal forces are too many for a picture: say which one" if count > 1 else "")
+    if any(wrong):
+        raise click.UsageError(f"{'; '.join(filter(None, wrong))}.")
+
+
 def _useless(given: set[str], names: tuple[str, ...], why: str) -> str:
     """Message on given options that have no effect; empty if there are none."""
     wrong = [_option(name) for name in names if name in given]
@@ -254,11 +272,13 @@ def _option(name: str) -> str:
 
 
 def _drawn(
-    cases: Sequence[Case | PlanarCase], scaled: bool, units: tuple[str, str] | None, cosine: bool
+    cases: Sequence[Case | PlanarCase | NormalCase], scaled: bool, units: tuple[str, str] | None, cosine: bool
 ) -> Figure:
-    from fcm.cli.loop_cases import Case, PlanarCase
+    from fcm.cli.loop_cases import Case, NormalCase, PlanarCase
 
     first = cases[0]
+    if isinstance(first, NormalCase):
+        return _drawn_normal_force(first, units)
     if isinstance(first, PlanarCase):
         return _drawn_in_plane(first, scaled, units)
     return _drawn_on_lines([case for case in cases if isinstance(case, Case)], scaled, units, cosine)
@@ -272,6 +292,15 @@ def _drawn_in_plane(case: PlanarCase, scaled: bool, units: tuple[str, str] | Non
     if not scaled:
         drawn = replace(drawn, loop=case.dimensionless(), units=None, dimensionless=True)
     return draw_planar_loop(drawn)
+
+
+def _drawn_normal_force(case: NormalCase, units: tuple[str, str] | None) -> Figure:
+    from fcm.cli.loop_names import titles
+    from fcm.plot.normal_force import DrawnNormalForce, draw_normal_force
+
+    common, _ = titles([case])
+    title = "\n".join(filter(None, [common, ", ".join(filter(None, [case.note, "without friction"]))]))
+    return draw_normal_force(DrawnNormalForce(case.loop, title, units or case.units))
 
 
 def _drawn_on_lines(cases: list[Case], scaled: bool, units: tuple[str, str] | None, cosine: bool) -> Figure:
@@ -288,17 +317,21 @@ def _drawn_on_lines(cases: list[Case], scaled: bool, units: tuple[str, str] | No
     return draw_loops(drawn, axes, common)
 
 
-def _sentence(case: Case | PlanarCase, cosine: bool) -> str:
+def _sentence(case: Case | PlanarCase | NormalCase, cosine: bool) -> str:
     """The states of a loop and where each begins."""
-    from fcm.cli.loop_cases import PlanarCase
+    from fcm.cli.loop_cases import NormalCase, PlanarCase
     from fcm.contact.sampled import shown_degrees, transitions
 
+    names = ", ".join(filter(None, [*(name.plain for name in case.names if name.in_message), case.note]))
+    if isinstance(case, NormalCase):
+        begins = zip(case.states(), case.loop.angles.tolist(), strict=False)
+        where = ", ".join(f"{state} from {math.degrees(theta):.1f}°" for state, theta in begins)
+        greatest = max(case.loop.greatest_load, 0.0)
+        return f"{names}: no friction; normal force up to {greatest:.4g}, {where or case.states()[0]}"
     if isinstance(case, PlanarCase):
         begun = zip(case.loop.sequence, case.loop.angles.tolist(), strict=False)
         where = ", ".join(f"{state} at {math.degrees(theta):.1f}°" for state, theta in begun)
-        names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))
-        return f"{names}: {case.loop.sequence}{', ' if where else ''}{where}"
-    found = transitions(case.loop)
-    where = ", ".join(f"{one.states[1]} at {shown_degrees(one.theta, cosine):.1f}°" for one in found)
-    names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))
+    else:
+        found = transitions(case.loop)
+        where = ", ".join(f"{one.states[1]} at {shown_degrees(one.theta, cosine):.1f}°" for one in found)
     return f"{names}: {case.loop.sequence}{', ' if where else ''}{where}"

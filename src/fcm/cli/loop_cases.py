@@ -21,7 +21,7 @@ from fcm.rotational_dofs import unit_of as dof_unit
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
     from fcm.contact.plane.loop import PlanarLoop
-    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, PlaceOnCurve, PlanePoint
+    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, NormalPoint, PlaceOnCurve, PlanePoint
 
 
 class Case(Frozen):
@@ -108,6 +108,36 @@ class PlanarCase(Frozen):
         }
 
 
+class NormalCase(Frozen):
+    """The normal force of a contact without friction."""
+
+    loop: PeriodicLoop  # of no tangential motion, which sticks while the contact is closed
+    names: tuple[Name, ...]
+    note: str
+    facts: dict[str, Any]
+    units: tuple[str, str] | None
+
+    def record(self, _from_greatest: bool) -> dict[str, Any]:
+        """Output of ``--json`` for the normal force."""
+        loop = self.loop
+        return {
+            **self.facts,
+            "sequence": self.states(),
+            "transitions": [
+                {"to": "open" if state == "S" else "closed", "degrees": math.degrees(theta)}
+                for state, theta in zip(loop.sequence, loop.angles.tolist(), strict=False)
+            ],
+            "k_v": loop.k_v,
+            "n_0": loop.n_0,
+            "least_normal_force": max(loop.least_load, 0.0),
+            "greatest_normal_force": max(loop.greatest_load, 0.0),
+        }
+
+    def states(self) -> list[str]:
+        """States of the cycle in order."""
+        return ["open" if state == "S" else "closed" for state in self.loop.sequence]
+
+
 def of_ratios(n0_bars: Iterable[float], b_bars: Iterable[float], phases: Iterable[float]) -> list[Case]:
     """Every combination of dimensionless parameters."""
     from fcm.contact import hysteresis_loop
@@ -177,12 +207,12 @@ def of_file(
     places: Sequence[PlaceOnCurve | None],
     solution: int | None,
     tell: Callable[[str], None],
-) -> list[Case] | list[PlanarCase]:
+) -> list[Case] | list[PlanarCase] | list[NormalCase]:
     """The loops of a contact on curves of a response file, at places of each.
 
     Which contact was taken is told.
     """
-    from fcm.plot.loop_file import PlanePoint, busiest, points_at, read_loops
+    from fcm.plot.loop_file import NormalPoint, PlanePoint, busiest, points_at, read_loops
     from fcm.plot.read import read
 
     file = read_loops(path)
@@ -190,6 +220,7 @@ def of_file(
         tell(said)
     cases: list[Case] = []
     planar: list[PlanarCase] = []
+    normal: list[NormalCase] = []
     for curve, place in product(curves, places):
         points = points_at(file, curve, contact, place)
         if solution is not None and solution > len(points):
@@ -201,14 +232,28 @@ def of_file(
                 tell(said)
         for point in points:
             with read(path, "its loops cannot be drawn"):
-                if isinstance(point.motion, PlanePoint):
-                    planar.append(_in_plane(point, point.motion, file))
+                asked = _asked(point, place, file)
+                if isinstance(point.motion, NormalPoint):
+                    normal.append(_without_friction(point, point.motion, file, asked))
+                elif isinstance(point.motion, PlanePoint):
+                    planar.append(_in_plane(point, point.motion, file, asked))
                 else:
-                    cases.append(_on_a_line(point, point.motion, file))
-    return planar or cases
+                    cases.append(_on_a_line(point, point.motion, file, asked))
+    return normal or planar or cases
 
 
-def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict[str, Any]]:
+def _asked(point: LoopPoint, place: PlaceOnCurve | None, file: LoopFile) -> Name:
+    """The place asked for, where the point that is drawn is beside it: for the picture, see `not_at`."""
+    from fcm.plot.read import asked_beside
+
+    if place is None:
+        return Name("", "")
+    digits, unit = (4, "") if place.modal else (5, file.unit)
+    text = asked_beside(place.value, place.of(point), unit, digits)
+    return Name(text, text, in_message=False)
+
+
+def _said(point: LoopPoint, file: LoopFile, asked: Name) -> tuple[tuple[Name, ...], str, dict[str, Any]]:
     """The names of a point in a picture, what else is to be said of it, and for --json."""
     from fcm.plot.labels import curve_label
 
@@ -224,6 +269,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
         *((_peak(point, file),) if point.peak else ()),
         *(() if modal is None else (Name(f"modal amplitude {modal:.4g}", f"modal amplitude {modal:.4g}"),)),
         Name(f"{symbol} = {at}", f"level {at}" if unit == "level" else at),
+        asked,
     )
     if point.fundamental:
         names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
@@ -248,20 +294,30 @@ def _peak(point: LoopPoint, file: LoopFile) -> Name:
     return Name(text.replace("$", r"\$"), text)
 
 
-def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile) -> PlanarCase:
+def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile, asked: Name) -> PlanarCase:
     from fcm.contact import planar_loop
 
-    names, note, facts = _said(point, file)
+    names, note, facts = _said(point, file, asked)
     u_x, u_y, v = plane.motion
     mu, k_u, k_v, n_0 = plane.law
     loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0)
     return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions)
 
 
-def _on_a_line(point: LoopPoint, motion: LinePoint | None, file: LoopFile) -> Case:
+def _without_friction(point: LoopPoint, normal: NormalPoint, file: LoopFile, asked: Name) -> NormalCase:
+    from fcm.contact import periodic_loop
+
+    names, note, facts = _said(point, file, asked)
+    k_v, n_0 = normal.law
+    loop = periodic_loop([0.0], normal.motion, 1.0, 1.0, k_v, n_0)
+    own = {key: value for key, value in facts.items() if key not in ("a", "k_u a")}
+    return NormalCase(loop, names, note, own, file.dimensions)
+
+
+def _on_a_line(point: LoopPoint, motion: LinePoint | None, file: LoopFile, asked: Name) -> Case:
     from fcm.contact import hysteresis_loop, periodic_loop
 
-    names, note, facts = _said(point, file)
+    names, note, facts = _said(point, file, asked)
     ratios, a, force = (point.n0_bar, point.b_bar, point.phi), point.amplitude, point.force
     loop: Loop | PeriodicLoop
     if motion is None or not force > 0.0:

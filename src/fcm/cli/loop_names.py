@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fcm.units import unit_of_number
 
 if TYPE_CHECKING:
-    from fcm.cli.loop_cases import Case
+    from fcm.cli.loop_cases import Case, NormalCase
 
 WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: of two columns, of one, of one loop of several
 _SYMBOL = {
@@ -39,9 +39,10 @@ class Name(NamedTuple):
 
     drawn: str
     plain: str
+    in_message: bool = True
 
 
-def titles(cases: Sequence[Case]) -> tuple[str, list[str]]:
+def titles(cases: Sequence[Case | NormalCase]) -> tuple[str, list[str]]:
     """Title of a picture, with what all loops share, and titles of the panels, with what differs."""
     columns = list(zip(*(case.names for case in cases), strict=True))
     shared = {column[0] for column in columns if len(set(column)) == 1}

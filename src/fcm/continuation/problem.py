@@ -21,6 +21,13 @@ from fcm.continuation.path import FloatArray, Path, Status
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 PI = cython.declare(cython.double, 3.141592653589793)
 NAN = cython.declare(cython.double, float("nan"))
+RENAMED = {
+    "probe": "evaluate_residual",
+    "measure": "evaluate_scale",
+    "bound": "evaluate_margins",
+    "report": "evaluate_outputs",
+    "square": "squared_margin",
+}  # functions of a problem by their old names, by which they are not called
 ROOM = 256  # points of a store for which there is room at first
 
 
@@ -51,6 +58,7 @@ class Problem:
         rank: cython.int = 0,
         options: ProblemOptions = PROBLEM,
     ) -> None:
+        _refuse_old_names(type(self))
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
         self.labelled, self.unbounded = False, options.unbounded
         self.costly_size, self.difference_length, self.max_angle = (
@@ -128,6 +136,16 @@ class Problem:
         """The sign of the determinant of the equations, where a direction of their curve was solved for last:
         what was factored may be near to them only."""
         return 0.0
+
+
+def _refuse_old_names(kind: type[Problem]) -> None:
+    """Raise TypeError for a class that has a function of a problem by its old name alone."""
+    for old, new in RENAMED.items():
+        if hasattr(kind, old) and getattr(kind, new) is getattr(Problem, new):
+            raise TypeError(
+                f"{kind.__name__}.{old}: this function of a problem is {new} now, and {old} is not called. "
+                "Rename it; if it is a function of your own, give it another name"
+            )
 
 
 @cython.cclass

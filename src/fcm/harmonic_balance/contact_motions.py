@@ -29,10 +29,11 @@ class ContactMotions(Frozen):
 def contact_motions(system: System, z: FloatArray) -> ContactMotions | None:
     """Motions across contacts at points z (point, unknown + 1), and their friction in a plane.
 
-    None where each moves on a line in one harmonic, of which its loop says all.
+    None where each moves on a line in one harmonic and has friction: its loop says all.
     """
     scene, layout, z = system.scene, system.layout, np.ascontiguousarray(z)
-    if not scene.contacts or not (scene.planar or len(system.harmonics) > 1):
+    by_loops = not scene.planar and len(system.harmonics) == 1 and all(one.mu > 0.0 for one in scene.contacts)
+    if not scene.contacts or by_loops:
         return None
     shape = (len(z), layout.contacts, layout.directions, -1)
     motion = np.stack([layout.complex_ports(one) for one in z]).reshape(shape)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -57,24 +56,20 @@ def draw_bands(
         if wide(response.curves):
             axes.set_xscale("log")
         _finish(axes, bands, log)
-        axes.set_title(_said(response, span), loc="right", fontsize=8)
+        axes.set_title(_said(bands, span), loc="right", fontsize=8)
         say_unfinished(axes, response.unfinished)
         name_at_side(figure, axes.get_lines(), [band.parameters for band in bands], response.units)
     return figure
 
 
-def _said(response: DrawnResponse, span: tuple[float, float]) -> str:
+def _said(bands: Sequence[Band], span: tuple[float, float]) -> str:
     """What the band is, of how many draws, and how many its ends take."""
-    from fcm.results.bands import reached_by
     from fcm.results.quantile_interval import draws_needed
     from fcm.results.scatter import draws_beyond
 
-    draws = Counter(
-        tuple((key, value) for key, value in curve.parameters.items() if key not in response.drawn)
-        for curve in response.curves
-    )
-    count = min(draws.values())
-    if (reached := reached_by(count, span)) != span:
+    fewest = min(bands, key=lambda band: band.draws)
+    count, reached = fewest.draws, fewest.reached
+    if reached != span:
         own = " and ".join(f"{end:g}" for end, other in zip(span, reached, strict=True) if end != other)
         takes = max(draws_beyond(end) for end, other in zip(span, reached, strict=True) if end != other)
         ends = (f"{reached[0]:g} %" if reached[0] else "least", f"{reached[1]:g} %")

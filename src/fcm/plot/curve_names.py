@@ -84,8 +84,8 @@ def write_beside(
 def _find_room(
     axes: Axes, name: str, peak: tuple[float, float], taken: list[Bbox], pixels: FloatArray
 ) -> Annotation | None:
-    """The name at the first offset where it is free; its box joins those taken."""
-    frame = axes.get_window_extent()
+    """The name at the first offset where it is free, of ticks, too; its box joins those taken."""
+    frame = axes.get_window_extent().padded(-LAYOUT.tick * axes.figure.dpi / 72.0)
     for dx, dy, ha, va in _OFFSETS:
         text = axes.annotate(name, peak, (dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=8)
         box = text.get_window_extent().padded(LAYOUT.name_margin)

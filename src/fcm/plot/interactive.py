@@ -143,7 +143,7 @@ def contacts_page(
     shown = [_of_contacts(points, k, head, tops[k], places is None) for k, head in enumerate(heads)]
     frequencies = [
         {
-            "label": f"{one.curve} {place_of(file, one)}{_doubt(one.stable)}".strip(),
+            "label": f"{one.curve} {place_of(file, one)}{_doubt(one.stable)}{_beside(one.asked)}".strip(),
             "method": "restyle",
             "args": [{"visible": [j == i for j in range(len(points))]}],
         }
@@ -174,6 +174,10 @@ def _of_contacts(
 
 def _doubt(stable: float) -> str:
     return "" if stable == 1.0 else ", unstable" if stable == 0.0 else f", {STATES[2]}"
+
+
+def _beside(asked: str) -> str:
+    return f", {asked}" if asked else ""
 
 
 _LAYOUT: dict[str, Any] = {"template": "simple_white", "hovermode": "closest", "margin": {"t": 60, "r": 20}}

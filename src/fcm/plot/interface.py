@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,17 @@ from fcm.plot.dof import asked_for, greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, short_names, with_unit
 from fcm.plot.pairs import direction_name, plane_view
-from fcm.plot.read import LEVEL, FloatArray, curves_there, floats, on_curve, opened, swept_units, swept_values
+from fcm.plot.read import (
+    LEVEL,
+    FloatArray,
+    asked_beside,
+    curves_there,
+    floats,
+    on_curve,
+    opened,
+    swept_units,
+    swept_values,
+)
 from fcm.plot.reader_process import apart
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
 from fcm.quoting import quoted
@@ -80,6 +90,7 @@ class InterfacePoint(Frozen):
     curve: str = ""  # its name, where there are several
     swept: Mapping[str, float] = field(default_factory=dict)  # of a sweep, by short names
     modal_amplitude: float | None = None  # of a nonlinear mode, which is neither stable nor unstable
+    asked: str = ""  # the place asked for, where the nearest point is beside it
 
 
 @apart
@@ -166,9 +177,16 @@ def points_of(
             height = np.where(held, height, np.nan)
         return [_point(file, curve, int(np.nanargmax(height)))]
     if file.modal_amplitude is not None and amplitude:
-        along = file.modal_amplitude[curve]
-        return [_point(file, curve, _nearest(file, curve, along, one, "--amplitude")) for one in amplitude]
-    return [_point(file, curve, _nearest(file, curve, file.frequency[curve], one, "--at")) for one in at]
+        along, places, option, digits = file.modal_amplitude[curve], amplitude, "--amplitude", 4
+    else:
+        along, places, option, digits = file.frequency[curve], at, "--at", 6
+    found = []
+    for place in places:
+        k = _nearest(file, curve, along, place, option)
+        unit = file.unit if option == "--at" else ""
+        beside = asked_beside(place, float(along[k]), unit, digits)
+        found.append(replace(_point(file, curve, k), asked=beside))
+    return found
 
 
 def _nearest(file: InterfaceFile, curve: int, along: FloatArray, one: float, option: str) -> int:
@@ -337,6 +355,12 @@ def _in_row(file: InterfaceFile, points: Sequence[InterfacePoint], at: FloatArra
             grid[1 + row, column].bar(at, values[column], width=thick, color="#404040")
             grid[1 + row, column].set_yscale(kind)
             grid[1 + row, column].set_ylim(low_value, high_value)
+            if not values[column].any():
+                grid[1 + row, column].text(
+                    0.5, 0.5, "none", transform=grid[1 + row, column].transAxes, ha="center", va="center"
+                )
+        if not values.any():
+            grid[1 + row, 0].set_yticks([0.0])
         grid[1 + row, 0].set_ylabel("\n".join((title, f"({unit})" * bool(unit))), parse_math=False)
     grid[0, 0].set_yticks(range(len(STATES_OF_CONTACTS)), [word for word, *_ in STATES_OF_CONTACTS])
     grid[0, 0].set_ylim(-0.6, len(STATES_OF_CONTACTS) - 0.4)
@@ -380,7 +404,8 @@ def _head(file: InterfaceFile, point: InterfacePoint) -> str:
     unknown = ", stability unknown" if point.modal_amplitude is None else ""
     stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
     place = place_of(file, point).replace(", ", "\n")  # a film strip has narrow panels
-    return (f"{point.curve}\n" if point.curve else "") + f"{place}{stays}"
+    asked = f"\n{point.asked}" if point.asked else ""
+    return (f"{point.curve}\n" if point.curve else "") + f"{place}{stays}{asked}"
 
 
 def _in_plane(

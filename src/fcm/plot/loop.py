@@ -27,7 +27,7 @@ STATES: dict[str, tuple[str, dict[str, Any]]] = {  # name, and a look that survi
     "S": ("S separation", {"color": "0.45", "linestyle": (0, (0.9, 0.9)), "linewidth": 2.2}),
 }
 _LIMIT: dict[str, Any] = {"color": "0.6", "linewidth": 0.7, "linestyle": (0, (5, 2))}
-_MARK: dict[str, Any] = {"marker": "o", "markersize": 3.2, "markerfacecolor": "white", "markeredgewidth": 0.7}
+MARK: dict[str, Any] = {"marker": "o", "markersize": 3.2, "markerfacecolor": "white", "markeredgewidth": 0.7}
 _LOOP_HEIGHT, _TIME_HEIGHT = 1.75, 1.05  # [inch] of the two panels of a loop
 _LABELS, _LEGEND, _TITLE = 0.35, 0.75, 0.2  # [inch] of what is around them
 
@@ -211,7 +211,7 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes, limits:
     label = names.limit if limits else f"{names.limit}: beyond the panel"
     handles.append(Line2D([], [], label=label, **_LIMIT))
     if any(drawn.loop.angles.size for drawn in loops):
-        handles.append(Line2D([], [], label="transition", linestyle="", color="black", **_MARK))
+        handles.append(Line2D([], [], label="transition", linestyle="", color="black", **MARK))
     columns = 2 if len(loops) == 1 else len(handles)
     figure.legend(
         handles=handles, loc="outside lower center", ncols=columns, fontsize=LAYOUT.small_text,
@@ -226,6 +226,6 @@ def _mark_transitions(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
     texts = [f"{names.degrees(t.theta):.1f}°" for t in found]
     curve = np.concatenate([np.column_stack(drawn.points(part)) for part in parts(drawn.loop)])
     for x, y in points:
-        axes.plot([x], [y], color="black", linestyle="", zorder=3, **_MARK)
+        axes.plot([x], [y], color="black", linestyle="", zorder=3, **MARK)
     if len(texts) <= LAYOUT.loop_named:
         name_marks(axes, points, texts, curve, LAYOUT.small_text)

@@ -54,6 +54,13 @@ class LinePoint(Frozen):
     law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
 
 
+class NormalPoint(Frozen):
+    """The normal motion of a contact without friction, and what its normal force follows from."""
+
+    motion: npt.NDArray[np.complex128]  # (harmonic,), the mean first
+    law: tuple[float, float]  # k_v, n_0
+
+
 class PointIndex(NamedTuple):
     """A contact at a point of a curve, in the arrays of a file."""
 
@@ -72,8 +79,8 @@ class MotionFile(Frozen):
     law: FloatArray  # (4, curve, contact)
     directions: dict[str, Any]  # of each contact in a plane, by x, y and normal
 
-    def at(self, index: PointIndex, contact: str) -> PlanePoint | LinePoint | None:
-        """Motion at a point; None for a contact on a line that moves in one harmonic alone."""
+    def at(self, index: PointIndex, contact: str) -> PlanePoint | LinePoint | NormalPoint | None:
+        """Motion at a point; None for a contact with friction on a line that moves in one harmonic alone."""
         names = self.directions.get(contact)
         mean = self.mean[index]
         motion = np.zeros((mean.size, 1 + max(self.harmonics)), dtype=np.complex128)
@@ -81,6 +88,8 @@ class MotionFile(Frozen):
         waves = self.amplitude[index] * np.exp(1j * self.phase[index]) / 1j
         motion[:, list(self.harmonics)] = np.nan_to_num(waves)
         mu, k_u, k_v, n_0 = law = self.law[:, index.curve, index.contact].tolist()
+        if mu == 0.0 and not np.isnan(mean).any():
+            return NormalPoint(motion[-1], (k_v, n_0))
         if isinstance(names, dict):
             axes = str(names.get("x", "x")), str(names.get("y", "y"))
             return PlanePoint(motion, (mu, k_u, k_v, n_0), axes)
@@ -111,7 +120,7 @@ class LoopPoint(Frozen):
     harmonics: tuple[int, ...]  # of the motion
     states: str  # with all of them
     fundamental: bool  # whether the loop is that of the first of them, as the file has not the others
-    motion: PlanePoint | LinePoint | None = None  # in a plane, or in several harmonics
+    motion: PlanePoint | LinePoint | NormalPoint | None = None  # None: in one harmonic, with friction
     output: str = ""  # the degree of freedom whose peak is the default; see `LoopFile.column`
     displacement: float = float("nan")  # its amplitude
     peak: bool = False  # whether the point is this peak
@@ -259,14 +268,17 @@ def _point(file: LoopFile, index: PointIndex, solution: int, solutions: int, pea
     n0_bar, b_bar, phi, amplitude, force = file.loop[:, row, k, column].tolist()
     frequency, stable = float(file.frequency[row, k]), float(file.stable[row, k])
     name = file.contacts[column]
-    if not amplitude > 0.0:
+    motion = None if file.motions is None else file.motions.at(index, name)
+    if not amplitude > 0.0 and not isinstance(motion, NormalPoint):
         raise PlotError(
             f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
             + (f": that is the peak of {file.dofs[file.column]}; choose another by --at" if peak else "")
         )
-    motion = None if file.motions is None else file.motions.at(index, name)
-    if n0_bar == b_bar == 0.0:
-        raise PlotError(f"{file.path}: {name} has no friction, and so no loop")
+    if n0_bar == b_bar == 0.0 and not isinstance(motion, NormalPoint):
+        raise PlotError(
+            f"{file.path}: {name} has no friction, and so no loop, and the file has not its normal motion; "
+            "fcm respond -o writes it now"
+        )
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,

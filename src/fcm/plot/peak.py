@@ -177,8 +177,11 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         if worst is not None and peaks.blades is not None:
             draw_tuned_peaks(figure, upper, peaks.blades, worst, peaks.parameters[key])
         if peaks.random:
-            draw_scatter(drawn, peaks, key, known)
-            say_scatter(upper, peaks, key, column, known)
+            from fcm.results.spread import spreads_of  # and all that makes results
+
+            found = spreads_of(peaks.parameters, peaks.random, [values for _, values in drawn], known)
+            draw_scatter([axes for axes, _ in drawn], found, peaks, key)
+            say_scatter(upper, found, peaks, key, column)
         else:
             _mark_least(panels, peaks, key, column, known)
         _mark_unstable((upper, lower), peaks, key, column, known)

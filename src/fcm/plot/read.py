@@ -142,6 +142,16 @@ def on_curve(along: FloatArray, place: float) -> float:
     return place if np.nanmin(along) <= place <= np.nanmax(along) else np.nan
 
 
+def asked_beside(wanted: float, there: float, unit: str, digits: int) -> str:
+    """Words on the place asked for, for a title with that of the point; empty if the digits shown agree.
+
+    >>> asked_beside(120.0, 119.989, "Hz", 6), asked_beside(120.0, 119.989, "Hz", 3)
+    ('asked: 120 Hz', '')
+    """
+    told, shown = (f"{value:.{digits}g}" for value in (wanted, there))
+    return "" if told == shown else f"asked: {told} {'' if unit == LEVEL else unit}".rstrip()
+
+
 def wide(curves: Sequence[DrawnCurve]) -> bool:
     """Whether the frequencies span so much that only a logarithmic axis shows the resonances."""
     low, high = ends(curves)

@@ -37,6 +37,7 @@ class Layout(Frozen):
     pairs_height: float = 3.4  # [inch] of a row of panels with contacts
     direction_name: int = 30  # characters of a direction that fit beside an axis
     planar_height: float = 6.1  # [inch] of a planar loop and its forces
+    normal_force_height: float = 4.6  # [inch] of a normal force over its motion and over a cycle
     loop_alone: float = 1.25  # how much higher a loop alone is than one of a row
     plane_alone: float = 1.4  # height of a picture of one panel, relative to that of a row of two
     band_opacity: float = 0.28  # of a band, so that those of several curves are seen through one another

@@ -41,6 +41,8 @@ class Band(Frozen):
     low: FloatArray
     median: FloatArray
     high: FloatArray
+    draws: int  # how many curves it is of
+    reached: tuple[float, float]  # the percentages of low and high
 
 
 def bands_of(
@@ -103,7 +105,8 @@ def _band(
     found = np.full((3, places.size), np.nan)
     reached = reached_by(len(values), span)
     found[:, known] = np.nanpercentile(stack[:, known], (reached[0], 50.0, reached[1]), axis=0)
-    return Band(parameters, places, *found)
+    low, median, high = found
+    return Band(parameters, places, low, median, high, len(values), reached)
 
 
 def reached_by(count: int, span: tuple[float, float]) -> tuple[float, float]:

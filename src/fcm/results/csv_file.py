@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.files import replacing
 from fcm.results.contact_motions import csv_columns, csv_values
@@ -25,21 +26,48 @@ ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
 def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit.
 
-    Of the degrees of freedom those that the scene asks for, or all where it does not say.
+    Of the degrees of freedom those that the scene asks for, or all where it does not say. Errors that are
+    unknown at all points have no column.
     """
     shown = _shown(response)
+    columns, unknown = _columns(response, [response.dofs[i] for i in shown]), _unknown_errors(response)
+    kept = [i for i, column in enumerate(columns) if column not in unknown]
+    planar = [i for i, name in enumerate(response.contacts) if name in response.directions]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(_columns(response, [response.dofs[i] for i in shown]))
+        writer.writerow([columns[i] for i in kept])
         for number, curve in enumerate(response.curves):
-            planar = [i for i, name in enumerate(response.contacts) if name in response.directions]
-            writer.writerows([number, *row] for row in _rows(curve, response.frequency_unit, planar, shown))
+            for row in _rows(curve, response.frequency_unit, planar, shown):
+                whole = [number, *row]
+                writer.writerow([whole[i] for i in kept])
 
 
 def _shown(response: Response) -> list[int]:
     """Places of the degrees of freedom that the scene asks for."""
     asked = [i for i, dof in enumerate(response.dofs) if dof in response.output]
     return asked or list(range(len(response.dofs)))
+
+
+def _unknown_errors(response: Response) -> set[str]:
+    """Names of the columns of errors that are known at no point of any curve; none without points."""
+    names = [
+        *(f"{kind} {dof}" for kind in ERRORS for dof in response.dofs),
+        *(f"{kind}_error {name}" for name in response.contacts for kind, _ in CYCLE),
+        "table_error",
+        "truncation_error",
+    ]
+    known = [_known_errors(curve) for curve in response.curves if np.isfinite(curve.frequency).any()]
+    if not known:
+        return set()
+    return {name for name, told in zip(names, np.any(known, axis=0), strict=True) if not told}
+
+
+def _known_errors(curve: Curve) -> npt.NDArray[np.bool_]:
+    """Whether each error of a curve is known at a point, in the order of `_unknown_errors`."""
+    of_contacts = curve.cycle_error.reshape(curve.frequency.size, -1)
+    of_point = curve.table_error, curve.truncation_error
+    every = np.column_stack((curve.error, curve.same_frequency_error, of_contacts, *of_point))
+    return np.logical_not(np.isnan(every).all(axis=0))
 
 
 def _columns(response: Response, dofs: Sequence[str]) -> list[str]:

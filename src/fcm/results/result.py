@@ -89,7 +89,7 @@ class Curve:
     )
     mode: NonlinearMode | None = None
     sensitivity: Sensitivities | None = None  # of the peaks
-    across: ContactMotions | None = None  # motions of the contacts, in a plane or in several harmonics
+    across: ContactMotions | None = None  # motions of the contacts, see `contact_motions`
     cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
     error_at_frequency: FloatArray | None = None  # (point, dof) at peaks, too; None: as error
 

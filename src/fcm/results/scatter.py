@@ -149,29 +149,6 @@ def ranges(values: npt.NDArray[np.float64]) -> FloatArray:
     return np.stack((np.fmin.reduce(known, axis=0), np.fmax.reduce(known, axis=0)))
 
 
-class Spread(Frozen):
-    """The middle of some draws, and how far they scatter."""
-
-    count: int
-    low: float
-    median: float
-    high: float
-    percents: bool  # whether the ends are the outer of `PERCENTS`; else they are the extremes
-
-
-def spread_of(values: FloatArray) -> Spread:
-    """The spread of values (draw,), ignoring NaN: by percentiles, or of few draws from end to end.
-
-    >>> spread_of(np.arange(3.0))
-    Spread(count=3, low=0.0, median=1.0, high=2.0, percents=False)
-    """
-    known = values[np.isfinite(values)]
-    enough = known.size >= max(map(draws_beyond, OUTER))
-    low, high = OUTER if enough else (0.0, 100.0)
-    ends = np.percentile(known, (low, 50.0, high)) if known.size else np.full(3, np.nan)
-    return Spread(known.size, float(ends[0]), float(ends[1]), float(ends[2]), enough)
-
-
 def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
     """Entries for `fcm respond --json`, with frequencies in `unit`."""
 

@@ -84,7 +84,8 @@ def _length(weights: Weights, dofs: Names, node: str = "") -> float:
     """The length of a direction; 0 where weights are not those of one node, or of the motion between two.
 
     Rotations have lever arms for weights. Where a node has no row along an axis, a length below 1 may be of
-    a direction that leaves it out, and is 0 as well.
+    a direction that leaves it out, and is 0 as well. Names without an axis say neither which degrees of
+    freedom are perpendicular, nor that a weight is no lever arm: 0.2 of one may be right.
 
     >>> dofs = Names(("1x", "1y", "1z", "1rz", "2x", "u", "v"))
     >>> _length({"1x": 1.0, "2x": -1.0}, dofs), _length({"1x": 3.0, "1y": 4.0, "1rz": 9.0}, dofs)
