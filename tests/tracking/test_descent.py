@@ -43,7 +43,8 @@ def test_the_way_down_ends_where_a_higher_peak_appears_that_was_not_followed():
 
 
 class Tried:
-    """Responses to a number from 0 to 1, some without a peak, in the order in which they are looked at."""
+    """Responses to a number from 0 to 1, some without a peak, in the order in which they are looked at, and 2
+    from then on."""
 
     span, options = (0.0, 1.0), SEARCH
 
@@ -51,7 +52,8 @@ class Tried:
         self.heights, self.visited_values = list(heights), {}
 
     def greatest_at(self, value):
-        self.visited_values[value] = PieceHeight(self.heights.pop(0), 0.0, np.zeros(0), 0)
+        height = self.heights.pop(0) if self.heights else 2.0
+        self.visited_values[value] = PieceHeight(height, 0.0, np.zeros(0), 0)
 
 
 def test_trials_where_some_responses_have_no_peak():
@@ -73,6 +75,18 @@ def test_trials_about_the_second_lowest_value_may_find_the_lowest():
     found = by_trials(Valleys())
     assert found.kind == "trials" and found.between[0] < 0.6 < found.between[1]
     assert found.value < 0.9
+
+
+def test_trials_go_on_at_the_lowest_until_its_neighbours_are_about_as_high():
+    """Above 0.08 the peak does not depend on the number: trials there lead nowhere."""
+
+    class Steep(Tried):
+        def greatest_at(self, value):
+            height = 1.0 + min(abs(value - 0.01), 0.07)
+            self.visited_values[value] = PieceHeight(height, 0.0, np.zeros(0), 0)
+
+    found = by_trials(Steep())
+    assert found.value < 1.01 and abs(found.s - 0.01) < 0.01
 
 
 class Straight:

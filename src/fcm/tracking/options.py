@@ -314,12 +314,14 @@ class TrialOptions(Frozen):
     ----------
     values : int
         Number of values over the range that are tried first, both ends among them.
-    minima, closer_values : int, int
-        Number of local minima of these values that are refined, and most further values for each.
+    minima, refinements, closer_values : int, int, int
+        Number of local minima of these values that are refined; most refinements, the others at the least
+        that is known then; and most further values for each.
     min_distance : float
         Distance of two values, relative to the range, at which a refinement ends.
-    same_height : float
-        Relative difference of two peaks up to which they are as high.
+    same_height, close_height : float
+        Relative difference of two peaks up to which they are as high; and up to which the least is not
+        refined further beside its neighbours.
     min_flat : float
         Width of a stretch of peaks as high, relative to the range, from which on they do not depend on the
         number.
@@ -327,9 +329,11 @@ class TrialOptions(Frozen):
 
     values: int = 5
     minima: int = 2
+    refinements: int = 5
     closer_values: int = 4
     min_distance: float = 1e-4
     same_height: float = 1e-9
+    close_height: float = 0.01
     min_flat: float = 0.2
 
 

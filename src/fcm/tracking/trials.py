@@ -1,7 +1,8 @@
 """The least peak by trials: of ordinary curves alone, where the peaks cannot be followed.
 
 First at values of the number over all of its range, then ever nearer to the lowest of those that are lower
-than their neighbours. A lower one between two of them would be missed, so what is said is between which.
+than their neighbours, and to the lowest of all until it is about as high as its neighbours. A lower one
+between two of them would be missed, so what is said is between which.
 """
 
 from __future__ import annotations
@@ -21,7 +22,11 @@ def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
     options = search.options.tracking.trials
     for value in np.linspace(low, high, options.values).tolist():
         _greatest(search, value)
-    for lowest in _local_minima(search)[: options.minima]:
+    apart = [s for s in _local_minima(search) if not _is_flat(search, s, options.same_height)]
+    for k in range(options.refinements):
+        lowest = apart[k] if k < min(len(apart), options.minima) else _local_minima(search)[0]
+        if k >= options.minima and _is_flat(search, lowest, options.close_height):
+            break
         minimize_scalar(
             lambda value: _greatest(search, float(value)),
             bounds=_neighbours(search, lowest),
@@ -98,6 +103,12 @@ def _local_minima(search: LowestPeakSearch) -> list[float]:
     around = np.pad(height, 1, constant_values=np.inf)
     lowest = np.flatnonzero((height <= around[:-2]) & (height <= around[2:]))
     return [tried[i] for i in lowest[np.argsort(height[lowest], kind="stable")]]
+
+
+def _is_flat(search: LowestPeakSearch, s: float, tolerance: float) -> bool:
+    """Whether a value that was tried, and its neighbours, have peaks of the same height to a tolerance."""
+    heights = [search.visited_values[one].value for one in {s, *_neighbours(search, s)}]
+    return max(heights) - min(heights) <= tolerance * max(heights)
 
 
 def _neighbours(search: LowestPeakSearch, s: float) -> tuple[float, float]:
