@@ -346,6 +346,33 @@ def test_where_the_highest_peak_ends_the_next_one_is_the_least():
     assert (found.best.value, found.best.kind, found.checked) == (1.3, "end", True)
 
 
+class Lost(LowestPeakSearch):
+    """A peak that falls, and is followed to 3 alone; the response has it beyond as well, or it ends there."""
+
+    def __init__(self, goes_on):
+        self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
+        self.visited_values, self.visited, self.goes_on = {}, set(), goes_on
+        self.setup = SimpleNamespace(span=self.span, options=TRACKING)
+        self.pieces = [SimpleNamespace(s=np.array(ends)) for ends in ((1.0, 3.0), self.span)]
+
+    def best(self):
+        return EnvelopeMinimum(3.0, 1.8, (), "corner")
+
+    def visit(self, value):
+        falls = value <= 3.0 or self.goes_on
+        height = 2.4 - 0.2 * value if falls else 2.0
+        self.visited.add(value)
+        self.visited_values[value] = PieceHeight(height, 0.0, np.zeros(0), 0)
+        return height
+
+
+@pytest.mark.parametrize("goes_on", [True, False])
+def test_a_least_at_the_end_of_what_was_followed_is_looked_at_beyond(goes_on):
+    """Where following was lost it is no least."""
+    found = Lost(goes_on).run()
+    assert (found.best.s, found.best.kind, found.checked) == (3.0, "corner", not goes_on)
+
+
 class Line:
     """A piece of a curve of peaks that are as high as the number."""
 

@@ -115,7 +115,12 @@ class LowestPeakSearch:
             if checked and (
                 top >= best.value * (1.0 - self.options.height_tolerance) or len(self.curves) == before
             ):
-                break  # else a higher one is there; or lower ones, where the followed one ends
+                beyond = [s for s in self._beyond_end(best) if s not in self.visited]
+                for value in beyond:
+                    self.visit(value)
+                if not beyond:
+                    break  # else a higher one is there; or lower ones, where the followed one ends
+                continue
             if seen:
                 break  # a higher one that could not be followed
         checked = checked and not self._unknown(best) and not self._lower(best)
@@ -153,6 +158,15 @@ class LowestPeakSearch:
         """Values at which the response was traced and is lower than the least of what was followed."""
         below = 0.0 if best is None else best.value * (1.0 - self.options.height_tolerance)
         return [s for s, top in self.visited_values.items() if 0.0 < top.value < below]
+
+    def _beyond_end(self, best: EnvelopeMinimum | None) -> list[float]:
+        """Values next to a least that is at the end of what was followed, where that may have been lost."""
+        if best is None or best.kind != "corner":
+            return []
+        near = self.setup.options.envelope.bracket * (self.span[1] - self.span[0])
+        ends = (end for piece in self.pieces for end in ((piece.s[0], -near), (piece.s[-1], near)))
+        beyond = (float(end + step) for end, step in ends if abs(end - best.s) < near)
+        return [s for s in beyond if self.span[0] < s < self.span[1]]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
         """The least peak of the responses traced until now, and its number; None where none has a peak."""
