@@ -34,10 +34,11 @@ Jacobian = Callable[[], FloatArray]  # (unknown, unknown + 1) of a problem as it
 
 class BranchPoint(Frozen):
     """z (unknown + 1,); starts: solutions on either side of the branch there, which lie on branches that
-    leave it."""
+    leave it; direction (unknown + 1,): in which they do, of any length."""
 
     z: FloatArray
     starts: tuple[FloatArray, ...]
+    direction: FloatArray
 
 
 def branch_points(
@@ -70,7 +71,9 @@ def branch_point_at(
 ) -> BranchPoint:
     """The branch point between point i of a path of a problem and the next."""
     z = sign_change_at(problem, path, i, options)
-    return BranchPoint(z, tuple(_leaving(problem, jacobian, z, path, i, options)))
+    singular = _direction(problem, jacobian, z, path, i)
+    starts = tuple(_leaving(problem, z, singular, path, options))
+    return BranchPoint(z, starts, singular * np.asarray(problem.scale))
 
 
 def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptions = BRANCHING) -> FloatArray:
@@ -88,12 +91,9 @@ def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptio
     return z
 
 
-def _leaving(
-    problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: int, options: BranchingOptions
-) -> Iterator[FloatArray]:
-    """Solutions on both sides of a branch point that follows point i of a path, off the path, at the least
-    distance at which there are any. The path's direction is that of its chord: it has no one tangent there.
-    """
+def _direction(problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: int) -> FloatArray:
+    """The singular vector of a branch point that follows point i of a path, in scaled unknowns, across the
+    path. The path's direction is that of its chord: it has no one tangent there."""
     problem.evaluate_scale(z)
     problem.evaluate(z)
     scale = np.array(problem.scale)
@@ -102,8 +102,16 @@ def _leaving(
     matrix = np.vstack((jacobian() * scale / scale[:-1, None], t))
     singular = np.linalg.svd(matrix)[2][-1]
     singular -= (singular @ t) * t
-    singular /= np.linalg.norm(singular)
-    newton = Newton(problem)
+    across: FloatArray = singular / np.linalg.norm(singular)
+    return across
+
+
+def _leaving(
+    problem: Problem, z: FloatArray, singular: FloatArray, path: Path, options: BranchingOptions
+) -> Iterator[FloatArray]:
+    """Solutions on both sides of a branch point of a path, off the path, at the least distance at which there
+    are any."""
+    scale, newton = np.array(problem.scale), Newton(problem)
     for distance in options.distances:
         found = list[FloatArray]()
         for way in (distance, -distance):

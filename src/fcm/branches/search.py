@@ -81,7 +81,7 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
         )
         start = at_its_frequency(system, z)
         if start is not None:
-            found = _with_branches_of(system, found, BranchPoint(symmetric, (start,)))
+            found = _with_branches_of(system, found, BranchPoint(symmetric, (start,), start - symmetric))
     return replace(found, symmetry_lost_in_level=tuple(lost)) if lost else found
 
 

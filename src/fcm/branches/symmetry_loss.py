@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from fcm.branches.branch_points import BranchPoint, branch_point_at, sign_change_at, sign_changes
+from fcm.branches.branch_points import branch_point_at, sign_change_at, sign_changes
 from fcm.branches.force_level import LEVEL_REACH
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.symmetry import is_symmetric
@@ -66,8 +66,8 @@ def _loss_of(
     changes = sign_changes(finer.path.orientation)
     for i in (i for ends in _differing(finer, coarser, options) for i in ends if i in changes):
         point = branch_point_at(balance, partial(jacobian_of, balance), finer.path, i, options)
-        by = _changes(whole, point)
-        if whole.harmonics[int(by.argmax())] % 2 == 0 and by.any():
+        by = np.abs(whole.layout.complex_ports(point.direction)[:, 1:]).max(axis=0)
+        if whole.harmonics[int(by.argmax())] % 2 == 0:
             frequencies.append(float(point.z[-1]))
             change = np.maximum(change, by / by.max())
     lacking = set[int]()
@@ -114,13 +114,6 @@ def _places(judged: Sequence[_Judged], steps: Sequence[int], options: BranchingO
         for path, system in ((one.path, one.system) for one in judged):
             if 0 <= i < len(path.z) - 1 and path.orientation[i] * path.orientation[i + 1] < 0.0:
                 yield float(sign_change_at(system.new_balance(), path, i, options)[-1])
-
-
-def _changes(system: System, point: BranchPoint) -> FloatArray:
-    """Changes of the displacements of each harmonic (harmonic,) where branches leave a point."""
-    ports = [system.layout.complex_ports(one - point.z)[:, 1:] for one in point.starts]
-    change: FloatArray = np.max([np.abs(one).max(axis=0) for one in ports], axis=0, initial=0.0)
-    return change
 
 
 def _with_more(system: System, more: System, path: Path, options: BranchingOptions) -> _Judged:

@@ -169,7 +169,7 @@ def large_errors(summary: Mapping[str, Any]) -> str:
 
     >>> curve = {"large_errors": [{"from": 59.5, "to": 60.6, "error": 0.286}], "parameters": {}}
     >>> print(large_errors({"curves": [curve], "frequency_unit": "Hz"}).split(". ")[0])
-    errors of points are up to 28.6 % of the amplitude between 59.5 and 60.6 Hz
+    errors of points are up to 29 % of the amplitude between 59.5 and 60.6 Hz
     >>> large_errors({"curves": [curve | {"short_of_accuracy": "it takes more"}]})
     ''
     """
