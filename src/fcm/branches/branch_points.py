@@ -71,9 +71,9 @@ def branch_point_at(
 ) -> BranchPoint:
     """The branch point between point i of a path of a problem and the next."""
     z = sign_change_at(problem, path, i, options)
-    singular = _direction(problem, jacobian, z, path, i)
-    starts = tuple(_leaving(problem, z, singular, path, options))
-    return BranchPoint(z, starts, singular * np.asarray(problem.scale))
+    across = _across(problem, jacobian, z, path, i)
+    direction = across * np.asarray(problem.scale)
+    return BranchPoint(z, tuple(_leaving(problem, z, across, path, options)), direction)
 
 
 def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptions = BRANCHING) -> FloatArray:
@@ -91,7 +91,7 @@ def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptio
     return z
 
 
-def _direction(problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: int) -> FloatArray:
+def _across(problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: int) -> FloatArray:
     """The singular vector of a branch point that follows point i of a path, in scaled unknowns, across the
     path. The path's direction is that of its chord: it has no one tangent there."""
     problem.evaluate_scale(z)
@@ -107,7 +107,7 @@ def _direction(problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, 
 
 
 def _leaving(
-    problem: Problem, z: FloatArray, singular: FloatArray, path: Path, options: BranchingOptions
+    problem: Problem, z: FloatArray, across: FloatArray, path: Path, options: BranchingOptions
 ) -> Iterator[FloatArray]:
     """Solutions on both sides of a branch point of a path, off the path, at the least distance at which there
     are any."""
@@ -115,8 +115,8 @@ def _leaving(
     for distance in options.distances:
         found = list[FloatArray]()
         for way in (distance, -distance):
-            newton.scale[:], newton.row[:] = scale, singular
-            newton.z[:] = z + way * scale * singular
+            newton.scale[:], newton.row[:] = scale, across
+            newton.z[:] = z + way * scale * across
             if newton.correct(distance) and newton.moved < options.max_deviation * distance:
                 start = np.array(newton.z)
                 found += [] if contains(path, start, problem) else [start]
