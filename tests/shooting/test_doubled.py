@@ -30,7 +30,7 @@ def cascade():
     """The branches of one, two and four periods of a scene, and the problems that they solve."""
     scene = replace(fcm.load_scene(SCENES / "irregular.toml"), frequency_range=(1.2, 1.25))
     resumable, problem = ResumablePaths(scene.frequency_range, Report(lambda *_: None)), OrbitProblem(scene)
-    paths, _ = explore(problem, resumable)
+    paths, *_ = explore(problem, resumable)
     found = [(problem, [samples(problem, path) for path in paths])]
     for _ in range(2):
         once, branches = found[-1]

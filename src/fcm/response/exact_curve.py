@@ -174,11 +174,11 @@ class _CurveFollower(Frozen):
             for problem, found in self.before:
                 resumable.take(ReinstatedContacts(problem, problems[0]).saved_paths(found.found(problem)))
             self.before[:] = [(problems[0], resumable)]
-            paths, without = explore(
+            explored = explore(
                 problems[0], resumable, resumable.poll, self.clock.share(self.search), self.uncertain
             )
-            reason = incomplete(scene, paths, without)
-            groups.append(OrbitBranches(problems[0], paths))
+            reason = incomplete(scene, explored.paths, explored.missing)
+            groups.append(OrbitBranches(problems[0], explored.paths, mirrored=explored.mirrored))
             while 2 * problems[-1].repeats <= self.periods and not reason:
                 problem = DoubledPeriodProblem(problems[-1])
                 problems.append(problem)

@@ -16,12 +16,14 @@ from fcm.shooting.problem import OrbitProblem
 class OrbitBranches(Frozen):
     """The paths of a problem of exact motions.
 
-    Of doubled periods, once: those of half of them, at whose flips they end.
+    Of doubled periods, once: those of half of them, at whose flips they end. mirrored: number of paths whose
+    mirror images are left out.
     """
 
     problem: OrbitProblem
     paths: Sequence[Path]
     once: OrbitBranches | None = None
+    mirrored: int = 0
     cut_off: bool = False  # there is no time left to find what lies between the points
 
     @cached_property

@@ -61,6 +61,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     if lost := lost_by(least).tolist():  # other motions beside such points are of no use
         raise NotKeptError(tuple(lost), reason)
     curve = replace(_curve(scene.whole(), points, reason, search), folds=folds, bifurcations=changes)
+    curve.mirrored = sum(group.mirrored for group in groups)
     if curve.orbits is not None:
         curve.orbits.periods = sum(group.problem.periods for group in groups)
         last = groups[-1].points

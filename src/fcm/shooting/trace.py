@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import islice
+from itertools import islice, pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from fcm.branches.branch_points import branch_points_of
+from fcm.branches.branch_points import branch_points_of, sign_changes
+from fcm.branches.mirror_images import symmetric_half
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
 from fcm.continuation.all_branches import Branches, Follow, Following, contains
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.force_level import LevelMotions, level_motions
 from fcm.shooting.harmonic_balance_branches import converged_balance, passes
@@ -101,13 +104,21 @@ def trace_orbits(
     )
 
 
+class Explored(NamedTuple):
+    """All branches of a scene, and how many of them have a mirror image that is not among them."""
+
+    paths: list[Path]
+    missing: str
+    mirrored: int
+
+
 def explore(
     problem: OrbitProblem,
     along: Follow = follow,
     poll: Poll = never_interrupt,
     most: float = np.inf,
     uncertain: UncertainFrequencies | None = None,
-) -> tuple[list[Path], str]:
+) -> Explored:
     """All branches of a scene as paths, and a sentence on what is missing, else ''.
 
     uncertain takes the frequencies of the balance that leads to them.
@@ -143,7 +154,9 @@ def explore(
         f"no exact motion was found from the stable branch of harmonic balance at {with_unit(scene, one)}"
         for one in dict.fromkeys(lost)
     ]
-    return list(paths), "; ".join([*_by_cause([missed[end] for end in ends]), *told, *bounded.given_up])
+    missing = "; ".join([*_by_cause([missed[end] for end in ends]), *told, *bounded.given_up])
+    kept, mirrored = search.without_images(paths)
+    return Explored(kept, missing, mirrored)
 
 
 def _by_cause(reasons: Sequence[str]) -> list[str]:
@@ -173,6 +186,7 @@ class _BranchSearch:
     """Search for further branches of a problem.
 
     unreached: frequencies [rad/s] and amplitudes of the balance, from where it led to no motion as high.
+    images: two mirror images at each branch point at which a branch of unsymmetric motions leaves.
     """
 
     problem: OrbitProblem
@@ -180,6 +194,7 @@ class _BranchSearch:
     bounded: BranchBudget
     uncertain: UncertainFrequencies
     unreached: list[tuple[float, float]] = field(default_factory=list)
+    images: list[Sequence[FloatArray]] = field(default_factory=list)
 
     def with_others(self, paths: tuple[Path, ...], apart: bool) -> tuple[Path, ...]:
         """Paths with those that the converged balance and the level of the forces lead to.
@@ -240,26 +255,71 @@ class _BranchSearch:
             points = branch_points_of(problem, lambda: np.array(problem.jacobian), fresh, options)
             for point in islice(self.bounded.each(points), left):
                 left -= 1
-                for z in self._without_image(point.starts, paths, options):
-                    if not self.too_many_broken(paths):  # so near the path, Newton's method leads to that
-                        paths = self._with_branches_through(paths, z)
+                if self.too_many_broken(paths):
+                    break
+                paths = self._with_leaving(paths, point.starts, options)
             if len(paths) == known or not left:
                 break
         return paths
 
-    def _without_image(
-        self, starts: Sequence[FloatArray], paths: Sequence[Path], options: BranchingOptions
-    ) -> Sequence[FloatArray]:
-        """One of two starts with the same amplitudes, as those of mirror images; none where the other is
-        known."""
+    def _with_leaving(
+        self, paths: tuple[Path, ...], starts: Sequence[FloatArray], options: BranchingOptions
+    ) -> tuple[Path, ...]:
+        """Paths with the branches through starts at a branch point, unless they have them already.
+
+        So near another path Newton's method leads to that. Two starts with the same amplitudes are images.
+        """
+        problem = self.problem
+        if not self._are_images(starts, options):
+            for z in starts:
+                paths = self._with_branches_through(paths, z)
+            return paths
+        self.images.append(starts)
+        if any(contains(path, z, problem) for path in paths for z in starts):
+            return paths
+        new = self._with_branches_through(paths, starts[0])[len(paths) :]
+        return (*paths, *(part for one in new for part in self._new_parts(one, paths)))
+
+    def without_images(self, paths: Sequence[Path]) -> tuple[list[Path], int]:
+        """Paths with one of two that are mirror images, and half of one that is its own; and how many images
+        are left out."""
+        kept, mirrored = dict(enumerate(paths)), 0
+        for starts in self.images:
+            one, other = (
+                next((k for k, path in kept.items() if contains(path, z, self.problem)), None) for z in starts
+            )
+            if one is None or other is None:  # it was left out
+                continue
+            half = symmetric_half(kept[one]) if one == other else kept[one]
+            mirrored += half is not kept[one] or one != other
+            kept[one] = half
+            if one != other:
+                del kept[other]
+        return list(kept.values()), mirrored
+
+    def _new_parts(self, path: Path, paths: Sequence[Path]) -> list[Path]:
+        """The parts of a path between its branch points that no other path has, joined where they meet."""
+        ends = [0, *(i + 1 for i in sign_changes(path.orientation)), len(path.z)]
+        middles = [(first + end) // 2 for first, end in pairwise(ends)]
+        new = [not any(contains(one, path.z[i], self.problem) for one in paths) for i in middles]
+        if all(new):
+            return [path]
+        inner = {0, len(middles)}.isdisjoint
+        return [
+            replace(
+                path.part(np.arange(ends[first], ends[end])),
+                status=Status.COMPLETE if path.status.is_whole or inner((first, end)) else path.status,
+            )
+            for first, end in runs(np.array(new))
+        ]
+
+    def _are_images(self, starts: Sequence[FloatArray], options: BranchingOptions) -> bool:
+        """Whether there are two starts, with the same amplitudes."""
         amplitudes = [shot.amplitude for z in starts if (shot := self.problem.shot(z)) is not None]
         if len(amplitudes) < 2:
-            return starts
+            return False
         off = np.abs(np.subtract(*amplitudes)).max(initial=0.0)
-        if off > options.motion_tolerance * np.max(amplitudes):
-            return starts
-        known = any(contains(path, starts[1], self.problem) for path in paths)
-        return () if known else starts[:1]
+        return bool(off <= options.motion_tolerance * np.max(amplitudes))
 
     def too_many_broken(self, paths: Sequence[Path]) -> bool:
         """Whether so many paths have come to no end that no more are looked for."""
