@@ -48,9 +48,14 @@ def is_symmetric(system: System, path: Path, options: BranchingOptions = BRANCHI
     undriven = [h not in system.linear.driven for h in system.harmonics if h % 2]
     if not any(undriven):
         return False
-    rows = [parts_of(system, z) for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]]
-    symmetric = all((even < options.min_residual * odd.max()).all() for even, odd in rows)
-    return symmetric and any((odd[undriven] > options.min_residual * odd.max()).any() for _, odd in rows)
+    has_odd = False
+    for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]:
+        even, odd = parts_of(system, z)
+        least = options.min_residual * odd.max()
+        if not (even < least).all():
+            return False
+        has_odd |= bool((odd[undriven] > least).any())
+    return has_odd
 
 
 def broken_symmetries(

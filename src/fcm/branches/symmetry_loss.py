@@ -40,12 +40,12 @@ def symmetry_loss(system: System, found: Traced, options: BranchingOptions = BRA
     """Places where branches of a system leave symmetric ones by even harmonics that it lacks."""
     few = len(system.scene.contacts) < system.option(LEVEL_REACH).min_contacts
     most = int((options.even_factor if few else 1.0) * system.harmonics[-1])
-    whole = system.with_harmonics(tuple(sorted({*system.harmonics, *range(2, most + 1, 2)})))
-    if whole.harmonics == system.harmonics or not system.scene.contacts:
+    every = tuple(sorted({*system.harmonics, *range(2, most + 1, 2)}))
+    if every == system.harmonics or not system.scene.contacts:
         return SymmetryLoss()
     frequencies, harmonics = list[float](), set[int]()
     for path in (one for one in found.branches.paths if is_symmetric(system, one, options)):
-        omega, lacking = _loss_of(system, whole, path, options)
+        omega, lacking = _loss_of(system, system.with_harmonics(every), path, options)
         frequencies += omega
         harmonics |= lacking
     for level_omega, even in found.symmetry_lost_in_level:
