@@ -32,6 +32,10 @@ class InternalResonance(NamedTuple):
     harmonic: int  # the one with most power
     share: float  # of the power, that further harmonics have at most
 
+    def summary(self, unit: str) -> dict[str, Any]:
+        """Entries for `fcm respond --json`, frequencies in unit."""
+        return self._asdict() | {"frequency": in_unit(np.array(self.frequency), unit).tolist()}
+
 
 class MotionOfMode(Frozen):
     """The motion at a point of a nonlinear mode."""
@@ -92,14 +96,7 @@ class NonlinearMode:
                 for one in self.resonances
             ],
             "not_met": [{"level": level, "why": why} for level in self.levels if (why := self._unmet(level))],
-            **({"internal_resonance": self._internal(unit)} if self.internal else {}),
-        }
-
-    def _internal(self, unit: str) -> dict[str, Any]:
-        """The internal resonance as `summary` has it."""
-        assert self.internal is not None
-        return self.internal._asdict() | {
-            "frequency": in_unit(np.array(self.internal.frequency), unit).tolist()
+            **({"internal_resonance": self.internal.summary(unit)} if self.internal else {}),
         }
 
     def _unmet(self, level: float) -> str:

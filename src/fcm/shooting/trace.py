@@ -267,7 +267,8 @@ class _BranchSearch:
     ) -> tuple[Path, ...]:
         """Paths with the branches through starts at a branch point, unless they have them already.
 
-        So near another path Newton's method leads to that. Two starts with the same amplitudes are images.
+        So near another path Newton's method leads to that. Two starts with the same amplitudes are taken for
+        images: elsewhere amplitudes change to either side by opposite amounts.
         """
         problem = self.problem
         if not self._are_images(starts, options):
