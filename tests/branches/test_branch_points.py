@@ -109,6 +109,17 @@ def test_symmetry_that_is_lost_within_two_steps_is_not_missed():
     assert all(min(abs(one - omega) for omega in there) < 1e-3 for one in lost.frequencies)
 
 
+def test_of_a_curve_with_one_harmonic_symmetry_is_lost_too():
+    """One harmonic has the accuracy; beside its symmetric motion a march settles at an unsymmetric one."""
+    scene, omega = KINDS["stops"](5004), 0.6 + 1.4 / 3.0
+    rest = State(np.array([0.3, 0.1]), np.zeros(2), np.zeros(2))
+    marched = next(iter(simulate(scene, omega, 400, rest).measures(last=1))).amplitude
+    one = System(scene, (1,))
+    assert symmetry_loss(one, traced(one)).harmonics == (2,)
+    curve = traced_curve(scene, Request(None, 1e-2))
+    assert on_branch(curve, omega, marched) and curve.mirrored
+
+
 @pytest.mark.slow
 def test_a_branch_point_that_the_sixth_harmonic_alone_makes_is_not_missed():
     """Every march from a random state at 0.8333 rad/s settles at one of two mirrored motions. With the second

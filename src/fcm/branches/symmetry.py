@@ -15,6 +15,7 @@ import numpy.typing as npt
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import Path
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -43,19 +44,13 @@ def parts_of(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def is_symmetric(system: System, path: Path, options: BranchingOptions = BRANCHING) -> bool:
-    """Whether the motions of a path are symmetric, and not linear, of which each is: they have odd harmonics
-    that are not driven."""
-    undriven = [h not in system.linear.driven for h in system.harmonics if h % 2]
-    if not any(undriven):
-        return False
-    has_odd = False
-    for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]:
+    """Whether the motions of a path are symmetric, and not all of them linear, of which each is."""
+    some = np.arange(0, len(path.z), max(len(path.z) // options.symmetry_points, 1))
+    for z in path.z[some]:
         even, odd = parts_of(system, z)
-        least = options.min_residual * odd.max()
-        if not (even < least).all():
+        if not (even < options.min_residual * odd.max()).all():
             return False
-        has_odd |= bool((odd[undriven] > least).any())
-    return has_odd
+    return not reported_at(system, path.z[some], path.direction[some]).linear.all()
 
 
 def broken_symmetries(

@@ -28,13 +28,13 @@ if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
     from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from cython.cimports.fcm.contact.periodic.motion import MIXED, TWO_PI
+    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.closed_form import PI
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
     from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from fcm.contact.periodic.motion import MIXED, TWO_PI
+    from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from fcm.continuation.problem import NONE
 
 
@@ -167,12 +167,16 @@ class KernelLaw(Law):
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def take_forces(self, forces: cython.double[::1]) -> cython.void:
-        """Take the forces of the kernel, less the preload that the structure at rest balances."""
+    def take_forces(self, forces: cython.double[::1], kind: cython.int, behaviour: cython.int) -> cython.void:
+        """Take the forces of the kernel, less the preload that the structure at rest balances; and of which
+        kind its cycle and its load are."""
         i: cython.Py_ssize_t
         for i in range(self.force.shape[0]):
             self.force[i] = forces[i]
         self.force[self.directions - 1] -= max(self.n_0, 0.0)
+        # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
+        smooth: cython.bint = behaviour == CLOSED and not self.mu * self.k_u > 0.0
+        self.nonlinear = kind == MIXED and not smooth
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -216,8 +220,7 @@ class LineLaw(KernelLaw):
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
-        self.take_forces(self.kernel.forces)
-        self.nonlinear = self.kernel.kind == MIXED
+        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour)
         return 0
 
     @cython.ccall

@@ -10,12 +10,12 @@ from fcm.harmonic_balance.contact_law import KernelLaw
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.margins import SLIPS
-    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
+    from cython.cimports.fcm.contact.periodic.motion import MIXED, TWO_PI
     from cython.cimports.fcm.contact.plane.cycle import STUCK
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
 else:
     from fcm.contact.periodic.margins import SLIPS
-    from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
+    from fcm.contact.periodic.motion import MIXED, TWO_PI
     from fcm.contact.plane.cycle import STUCK
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
 
@@ -45,10 +45,7 @@ class PlanarLaw(KernelLaw):
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
-        self.take_forces(self.kernel.forces)
-        # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
-        smooth: cython.bint = self.kernel.cycle.behaviour == CLOSED and not self.mu * self.k_u > 0.0
-        self.nonlinear = self.kernel.kind == MIXED and not smooth
+        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour)
         return 0
 
     @cython.ccall
