@@ -104,7 +104,7 @@ def _newton(balance, x, omega, known):
             slope = slope * factor + size * (-2.0 * (x - one) / square**2)
             size *= factor
         share = 1.0 / (1.0 - float(slope @ step) / size) if known else 1.0
-        length = abs(share) * np.linalg.norm(step)
+        length = abs(share) * np.linalg.norm(step) or 1.0
         x = x + step * share * min(1.0, max(np.linalg.norm(x), 1.0) / length)
         if np.linalg.norm(step) < 1e-10 * max(np.linalg.norm(x), 1.0):
             return x

@@ -122,6 +122,10 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert ". No branch was looked for between 5 and 5.05. --method" in said
     del curves[1]["may_not_be_unique"], curves[1]["no_stable_motion_not_looked_at"]
+    curves[1]["may_wedge"] = True
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
+    assert ", or sticks by friction that slip has left, as friction may press its contacts together. " in said
+    del curves[1]["may_wedge"]
     ring = nothing_stable(
         {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "exact_motion": InTime.RING.value}
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -65,6 +66,19 @@ def test_contacts_shake_down_from_the_force_on_at_which_they_would_slip(share):
     forces = tuple(replace(one, amplitude=share * onset * one.amplitude) for one in scene.forces)
     found = traced_curve(replace(scarcely, forces=forces), Request((1,), 1e-2))
     assert np.isfinite(found.shakedown_at) == (share > 1.0)
+
+
+def test_where_a_curve_is_unstable_it_is_said_that_its_contact_may_wedge():
+    """From rest the exact motion slips once and then sticks, at an amplitude that no branch has."""
+    scene, omega = fcm.load_scene(Path(__file__).parent / "scenes/wedge.toml").each_curve()[0], 1.2
+    curve = traced_curve(scene, Request((1, 2, 3), 1e-2))
+    first, last = (simulate(scene, omega, 300).measures(last=2)[k].amplitude for k in (0, 1))
+    assert np.allclose(first, last, rtol=1e-9)
+    passings, _ = passings_at(curve, omega)
+    assert len(passings) and (passings.min(axis=0) > 3.0 * last).all()
+    assert curve.may_wedge and curve.summary()["may_wedge"]
+    smooth = tuple(replace(one, mu=0.1) for one in scene.contacts)
+    assert not traced_curve(replace(scene, contacts=smooth), Request((1,), 1e-2)).may_wedge
 
 
 def _onset(scene, omega):

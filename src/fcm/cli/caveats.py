@@ -325,6 +325,8 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     ways = f"{', '.join(before)}{', ' if more else ' and '}{last}" if before else last
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
+    if not other and found[0].get("may_wedge"):
+        other = ", or sticks by friction that slip has left, as friction may press its contacts together"
     shows = f"{how} shows the motion there" if (how := _how(summary)) else "More harmonics may find one"
     return (
         f"no stable motion was found {ways} {unit}{more}{which}, so no steady amplitude is known there. The "

@@ -23,7 +23,7 @@ from fcm.accuracy.stability_validity import unreliable_points
 from fcm.accuracy.unchecked_response import ResponseInterrupted, UncheckedResponse, points_of
 from fcm.at_rest import RestOptions
 from fcm.branches.options import FOLDS
-from fcm.branches.shakedown import shakedown_at
+from fcm.branches.shakedown import may_wedge, shakedown_at
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark, Path, Status
 from fcm.continuation.follow import Progress
@@ -251,6 +251,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         folds_uncertain_at=list(found.traced.folds_lost),
         symmetry_lost=list(found.traced.symmetry_lost),
         shakedown_at=np.nan if quick else shakedown_at(system, points.z[:, -1], words),
+        may_wedge=not quick and bool((stable == 0.0).any()) and not system.own_laws and may_wedge(scene),
         levels=[one.omega for one in found.traced.found],
         folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
         isolated=tuple(k for k, path in enumerate(paths) if _is_isolated(path)),

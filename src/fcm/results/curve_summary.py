@@ -61,6 +61,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out[condensed.linear] = True
     if np.isfinite(curve.shakedown_at):
         out["shakedown_at"] = float(in_unit(curve.shakedown_at, unit))
+    if curve.may_wedge:
+        out["may_wedge"] = True
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {

@@ -71,6 +71,7 @@ class Curve:
     folds_uncertain_at: list[float] = field(default_factory=list)  # [rad/s] from where no folds were followed
     symmetry_lost: list[float] = field(default_factory=list)  # [rad/s] by harmonics that are not balanced
     shakedown_at: float = np.nan  # [rad/s] where a contact that sticks would slip if it began unstressed
+    may_wedge: bool = False  # motions are unstable, and contacts may stick that friction presses together
     levels: list[float] | None = None  # [rad/s] at which the level of the forces was followed, if known
     folds_between: tuple[float, float] | None = None  # levels of the forces, see `fcm.branches.isolas`
     not_confirmed: int = 0  # points of unknown stability, where those that may be looked at did not suffice
