@@ -22,7 +22,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.peak_errors import PeakErrors, peak_errors
 from fcm.accuracy.peaks import rise_between_points, tops_of_reference
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
-from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_curve import Indices, ReferenceCurve
 from fcm.accuracy.reference_errors import with_reference_errors
 from fcm.accuracy.reference_harmonics import reference_harmonics
 from fcm.accuracy.reference_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
@@ -130,12 +130,12 @@ def errors_along(
     if elsewhere != more:  # only with these it is followed
         reference.stretches.budget = Budget(0.0)
     change = reference.displacements(np.concatenate((reference.distinct_points(special), folds, met)))
-    followed = reference.follow_stretches(change)
+    reference.follow_stretches(change)
     compared = reference.compared_quantities(change)
-    shift = reference.shifts(compared, followed)
-    contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
+    shift = reference.shifts(compared)
+    contact_loads, greatest = contact_load_errors(reference, compared, shift, folds)
     shift = shift[:, : len(size)]
-    of_peaks = peak_errors(reference, change, followed)
+    of_peaks = peak_errors(reference, change)
     plain = _at_frequency(reference, shift, change)
     error = plain.copy()
     error[of_peaks.point, of_peaks.dof] = of_peaks.height / reference.unit[of_peaks.point, of_peaks.dof]
@@ -144,13 +144,13 @@ def errors_along(
     error = raised
     error[folds] = at_frequency[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
     comes: Mask = ~np.any(np.isnan(error), axis=1)
-    height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, followed, met, of_peaks)
+    height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, met, of_peaks)
     unit, amplitude = reference.unit, quantities.amplitude
     at_rest = amplitude <= np.finfo(float).eps * unit  # but for rounding
     for one in (error, at_frequency):
         one *= unit / np.where(at_rest, unit, amplitude)
     system.work.add(reference.seconds())
-    of_folds = _of_folds(reference, folds, change, followed)
+    of_folds = _of_folds(reference, folds, change)
     reference.release()
     return Errors(
         amplitude=error,
@@ -167,8 +167,8 @@ def errors_along(
         contact_loads=contact_loads,
         greatest=greatest,
         contacts=contacts,
-        pieces=reference.pieces(compared, followed),
-        motions=reference.motions(followed),
+        pieces=reference.pieces(compared),
+        motions=reference.motions(),
     )
 
 
@@ -349,7 +349,6 @@ def _set_errors_of_peaks(
     error: FloatArray,
     shift: FloatArray,
     change: FloatArray,
-    followed: list[FollowedStretch],
     met: Indices,
     of_peaks: PeakErrors,
 ) -> tuple[FloatArray, Mask, FloatArray]:
@@ -363,7 +362,7 @@ def _set_errors_of_peaks(
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
     own, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
-    tops = tops_of_reference(reference, change[:, 1:], shift, followed, met)
+    tops = tops_of_reference(reference, change[:, 1:], shift, met)
     height, settles = np.array([every[-1].height for every in tops]), ~reference.linear[own]
     inside = (own > 0) & (own < len(path.z) - 1)
     now = amplitude[own, d] + np.where(inside, rise_between_points(reference, np.zeros_like(unit), own), 0.0)
@@ -385,9 +384,7 @@ def _set_errors_of_peaks(
     return height, np.isfinite(height) | ~settles, frequency
 
 
-def _of_folds(
-    reference: ReferenceCurve, folds: Indices, change: FloatArray, followed: list[FollowedStretch]
-) -> FloatArray:
+def _of_folds(reference: ReferenceCurve, folds: Indices, change: FloatArray) -> FloatArray:
     """Relative errors (fold,) of the frequencies of folds.
 
     Each is the distance to the reference's fold beside it. Where the reference was followed and has as many
@@ -402,7 +399,7 @@ def _of_folds(
             error[k] = abs(own / parameter[fold] - 1.0)
         elif np.isfinite(of_reference[fold]):
             error[k] = abs(change[fold, 0])
-    for one in followed:
+    for one in reference.followed:
         mine = (one.first <= folds) & (folds < one.end)
         of_reference = np.concatenate(
             [np.empty(0), *(p.path.parameter[p.path.where(Mark.FOLD)] for p in one.pieces)]

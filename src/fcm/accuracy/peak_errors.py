@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_curve import Indices, ReferenceCurve
 from fcm.accuracy.reference_stretch import ReferencePiece
 from fcm.frozen import Frozen
 from fcm.local_maxima import local_maxima
@@ -47,7 +47,7 @@ class _Tops(NamedTuple):
     frequency: FloatArray
 
 
-def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[FollowedStretch]) -> PeakErrors:
+def peak_errors(reference: ReferenceCurve, change: FloatArray) -> PeakErrors:
     """Errors of all peaks of a curve where displacements (point, 1 + dof) or the reference are known."""
     curve, place = reference.amplitude, reference.place
     parameter = reference.path.parameter
@@ -60,7 +60,7 @@ def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[Fo
             top = _displaced_top(moved, i, low, high)
             if top is not None:
                 rows.append((i, d, top))
-            elif (found := _followed_top(reference, followed, d, i)) is not None:
+            elif (found := _followed_top(reference, d, i)) is not None:
                 beside.append((i, d, *found))
     point, dof, to = np.array(rows, dtype=np.intp).reshape(-1, 3).T
     further = np.array(beside, dtype=np.float64).reshape(-1, 4).T
@@ -92,9 +92,7 @@ def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None
     return top if low < top < high and not np.isnan(around).any() else None
 
 
-def _followed_top(
-    reference: ReferenceCurve, followed: list[FollowedStretch], d: int, i: int
-) -> tuple[float, float] | None:
+def _followed_top(reference: ReferenceCurve, d: int, i: int) -> tuple[float, float] | None:
     """Height and frequency of the nearest peak of the followed reference, beside the peak at point i; or
     None.
 
@@ -103,7 +101,7 @@ def _followed_top(
     here = np.array((reference.amplitude[i, d], reference.path.parameter[i]))
     found = [
         top
-        for one in followed
+        for one in reference.followed
         if one.first <= i < one.end
         for piece in one.pieces
         for top in _tops_of(piece, d)

@@ -117,6 +117,7 @@ class ReferenceCurve:
     linear (point,): where no contact slips or separates, so that nothing is displaced.
     contact_loads (point, 4 contact): of its contacts.
     ends_before (point,): whose frequency the reference passes less often, as it turns back.
+    followed: the stretches beside which it was followed, see `follow_stretches`.
     """
 
     def __init__(
@@ -150,6 +151,7 @@ class ReferenceCurve:
         self.change = np.zeros((count, 1 + dofs))
         self.reference_unknowns = np.full((count, len(prolongation.newton.z)), np.nan)  # where it was found
         self.known, self.ends_before = self.linear.copy(), np.zeros_like(self.linear)
+        self.followed = list[FollowedStretch]()
         self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
@@ -413,11 +415,11 @@ class ReferenceCurve:
         )
         return more.view(np.bool_)
 
-    def follow_stretches(self, change: FloatArray) -> list[FollowedStretch]:
-        """The stretches without displacements, with the reference's pieces followed; highest first."""
+    def follow_stretches(self, change: FloatArray) -> None:
+        """Follows the reference beside the stretches without displacements; highest first."""
         found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
-        return [
+        self.followed = [
             FollowedStretch(first, end, self.stretches.between(first - 1, end, self.reference_unknowns))
             for first, end in found
         ]
@@ -472,7 +474,7 @@ class ReferenceCurve:
             np.hstack((change, every[:, 1:])),
         )
 
-    def shifts(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> FloatArray:
+    def shifts(self, compared: ComparedQuantities) -> FloatArray:
         """Differences (point, column) from curve to reference at equal frequency, in their unit.
 
         NaN where the reference does not reach that frequency.
@@ -482,25 +484,23 @@ class ReferenceCurve:
             self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
         )
         shift[np.isnan(change).any(axis=1)] = np.nan
-        self._fill_beyond_folds(compared, followed, shift)
-        for one in followed:
+        self._fill_beyond_folds(compared, shift)
+        for one in self.followed:
             self._fill_from_pieces(one, compared, shift)
         return shift
 
-    def _fill_beyond_folds(
-        self, compared: ComparedQuantities, followed: list[FollowedStretch], shift: FloatArray
-    ) -> None:
+    def _fill_beyond_folds(self, compared: ComparedQuantities, shift: FloatArray) -> None:
         """Fills points without a shift at which the reference turns back before the frequency of the curve.
 
         Filled are those whose frequency curve and reference pass but once. Those that the reference passes
         less often, where all of it is known, are remembered.
         """
         missing = np.isnan(shift).any(axis=1) & np.isfinite(compared.change).all(axis=1)
-        whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in followed)
+        whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in self.followed)
         rows, own = np.flatnonzero(missing), self.path.parameter
         if not whole or not rows.size:
             return
-        pieces, of_curve = self.pieces(compared, followed), passings(own, own[rows])
+        pieces, of_curve = self.pieces(compared), passings(own, own[rows])
         of_reference = sum((passings(one.frequency, own[rows]) for one in pieces), np.zeros_like(of_curve))
         self.ends_before[rows] = of_reference < of_curve
         some = rows[(of_curve == 1) & (of_reference == 1)]
@@ -551,17 +551,17 @@ class ReferenceCurve:
             if piece is not None:
                 yield piece
 
-    def pieces(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> tuple[CurvePiece, ...]:
+    def pieces(self, compared: ComparedQuantities) -> tuple[CurvePiece, ...]:
         """All known pieces of the reference: through displaced points, and along followed stretches."""
         missed: Mask = np.any(np.isnan(compared.change), axis=1)
         through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
-        along = [self._of_piece(piece) for one in followed for piece in one.pieces]
+        along = [self._of_piece(piece) for one in self.followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
 
-    def motions(self, followed: list[FollowedStretch]) -> KnownMotions:
+    def motions(self) -> KnownMotions:
         """All motions of the reference that were found, in order along each piece of its curve."""
         found = [self.reference_unknowns[np.isfinite(self.reference_unknowns).all(axis=1)]]
-        found += [piece.path.z for one in followed for piece in one.pieces]
+        found += [piece.path.z for one in self.followed for piece in one.pieces]
         return KnownMotions(self.stretches.finer.harmonics, tuple(one for one in found if len(one) > 1))
 
     def _displaced(self, compared: ComparedQuantities, rows: slice) -> CurvePiece | None:
