@@ -7,6 +7,7 @@ import tomllib
 from dataclasses import replace
 from importlib.resources import files
 from math import pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -341,10 +342,11 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
         kernel, width = planar_contact(harmonics, harmonics), 3 + 6 * len(harmonics)
         for kind in ("slip", "start"):
             x = rng.standard_normal(width)
-            found = onset(PlanarLaw(kernel, **numbers), x, kind, harmonics)
+            found = onset(PlanarLaw(kernel, SimpleNamespace(**numbers)), x, kind, harmonics)
 
             def value(at, kind=kind, harmonics=harmonics, kernel=kernel, **other):
-                return onset(PlanarLaw(kernel, **(numbers | other)), at, kind, harmonics).value
+                law = PlanarLaw(kernel, SimpleNamespace(**(numbers | other)))
+                return onset(law, at, kind, harmonics).value
 
             h = 1e-6
             slope = [(value(x + h * one) - value(x - h * one)) / (2.0 * h) for one in np.eye(width)]
@@ -355,10 +357,10 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
 
 def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
     x = np.array([0.1, 0.3, 1.0, 0.2, 0.4, -0.5])
-    numbers = (0.5, 1.3, 0.7, 4.0)
-    line = onset(LineLaw(periodic_contact((1,), (1,)), *numbers), x, "slip", (1,))
+    contact = SimpleNamespace(mu=0.5, k_u=1.3, k_v=0.7, n_0=4.0)
+    line = onset(LineLaw(periodic_contact((1,), (1,)), contact), x, "slip", (1,))
     oblique = np.array([0.06, 0.08, 0.3, 0.6, 0.12, 0.8, 0.16, 0.4, -0.5])
-    plane = onset(PlanarLaw(planar_contact((1,), (1,)), *numbers), oblique, "slip", (1,))
+    plane = onset(PlanarLaw(planar_contact((1,), (1,)), contact), oblique, "slip", (1,))
     assert plane.value == pytest.approx(line.value, rel=1e-12)
     assert plane.by_number == pytest.approx(line.by_number, abs=1e-7)
 

@@ -23,6 +23,7 @@ from fcm.contact.closed_form import CoefficientLaw
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Margins, Measures
 from fcm.harmonic_balance import options
+from fcm.model.scene import Contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
@@ -72,13 +73,11 @@ class Law:
         width: cython.int,
         directions: cython.int,
         margins: cython.int,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
+        contact: Contact,
     ) -> None:
         self.width, self.directions, self.margins = width, directions, margins
-        self.mu, self.k_u, self.k_v, self.n_0, self.nonlinear = mu, k_u, k_v, n_0, False
+        self.mu, self.k_u, self.k_v, self.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
+        self.nonlinear = False
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
@@ -141,12 +140,9 @@ class KernelLaw(Law):
         kernel: Any,
         directions: cython.int,
         margins: cython.int,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
+        contact: Contact,
     ) -> None:
-        Law.__init__(self, kernel.unknowns, directions, margins, mu, k_u, k_v, n_0)
+        Law.__init__(self, kernel.unknowns, directions, margins, contact)
         self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
 
     @cython.ccall
@@ -201,13 +197,10 @@ class LineLaw(KernelLaw):
     def __init__(
         self,
         kernel: PeriodicContact,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
+        contact: Contact,
     ) -> None:
         self.kernel, self.bounds = kernel, Margins(kernel.cycle)
-        KernelLaw.__init__(self, kernel, 2, self.bounds.most, mu, k_u, k_v, n_0)
+        KernelLaw.__init__(self, kernel, 2, self.bounds.most, contact)
         self.state = kernel.cycle.state
         self.measures: Measures | None = None  # made when it is asked for
 
@@ -276,12 +269,9 @@ class SingleHarmonicLaw(Law):
     def __init__(
         self,
         coefficients: CoefficientLaw,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
+        contact: Contact,
     ) -> None:
-        Law.__init__(self, 6, 2, 5, mu, k_u, k_v, n_0)
+        Law.__init__(self, 6, 2, 5, contact)
         self.coefficients = coefficients
         self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))
         self.least, self.most = 0.0, 0.0  # see `limits`

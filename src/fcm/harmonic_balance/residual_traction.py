@@ -29,7 +29,7 @@ from fcm.harmonic_balance.contact_law import Law, LineLaw
 from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray
+from fcm.model.scene import Contact, FloatArray
 
 if TYPE_CHECKING:
     from fcm.harmonic_balance.planar_law import PlanarLaw
@@ -83,8 +83,8 @@ TRACTION = TractionOptions()
 class FixedTractionContact(Law):
     """A contact that always sticks, with a mean friction force (direction,) that is given."""
 
-    def __init__(self, law: LineLaw | PlanarLaw) -> None:
-        super().__init__(law.width, law.directions, law.margins, law.mu, law.k_u, law.k_v, law.n_0)
+    def __init__(self, contact: Contact, law: LineLaw | PlanarLaw) -> None:
+        super().__init__(law.width, law.directions, law.margins, contact)
         self.kernel, self.mean = law.kernel, np.zeros(law.directions - 1)
         springs = np.append(np.full(law.directions - 1, law.k_u), law.k_v)
         waves = np.tile(np.repeat(springs, 2), (law.width - law.directions) // (2 * law.directions))
@@ -114,7 +114,8 @@ class _FixedTractionBalance:
         self.system, self.options = system, options
         self.balance: Balance = system.new_balance()
         self.free = system.exact_laws(system.harmonics)
-        self.laws = [FixedTractionContact(law) for law in self.free]  # type: ignore[arg-type]
+        each = zip(system.scene.contacts, self.free, strict=True)
+        self.laws = [FixedTractionContact(contact, law) for contact, law in each]  # type: ignore[arg-type]
         self.fix(np.zeros(0, dtype=np.intp), np.zeros((0, 0)))
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)

@@ -175,7 +175,7 @@ def _forces(
     contact: Contact, u: complex, v: complex, u_mean: float, v_mean: float
 ) -> tuple[tuple[complex, complex], tuple[float, float], float]:
     """Balanced friction and normal force of a contact: fundamentals, means, and friction at the angle 0."""
-    law = SingleHarmonicLaw(ClosedForm(), contact.mu, contact.k_u, contact.k_v, contact.n_0)
+    law = SingleHarmonicLaw(ClosedForm(), contact)
     x = np.array([u_mean, v_mean, u.real, u.imag, v.real, v.imag])
     law.evaluate(x, 0)
     mean_u, mean_v, *parts = (float(f) for f in law.force)
