@@ -16,7 +16,7 @@ import pytest
 
 import fcm
 from fcm.response import curve_batches, trace
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.response.mode import ModeRequest, trace_modes
 from fcm.run import Checkpoint, CheckpointError, Execution, ExecutorPlace, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
@@ -464,7 +464,7 @@ def test_the_progress_of_one_mode_or_level_moves_with_its_span(of):
     if of == "mode":
         trace_modes(scene, ModeRequest(1, (0.1, 100.0)), execution, harmonics=1)
     else:
-        trace_levels(scene, [1.2], (0.0, 2.0), execution, harmonics=1)
+        trace_levels(scene, LevelRequest([1.2], (0.0, 2.0)), execution, harmonics=1)
     assert shown == sorted(shown) and shown[-1] <= 1.0
     first = [share for share in dict.fromkeys(shown) if share < 0.4]
     assert len(first) > 5 and max(np.diff(first)) < 0.2

@@ -23,9 +23,9 @@ from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.response.mode import ModeRequest, trace_modes
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.results.csv_file import write_csv
 from fcm.scene import scene_from_dict
 from fcm.stability.floquet import multipliers
@@ -111,7 +111,7 @@ def test_motions_against_a_march(oscillators, omega, sequence):
     found = amplitudes(scene, omega, 9)[2]
     moves = marched > 0.0
     assert found[moves] == pytest.approx(marched[moves], rel=1e-4)
-    response = trace_levels(scene, [omega], (0.9, 1.1), harmonics=(1, 2, 3))
+    response = trace_levels(scene, LevelRequest([omega], (0.9, 1.1)), harmonics=(1, 2, 3))
     point = np.abs(response.curves[0].level - 1.0).argmin()
     assert response.curves[0].regime[point, 0] == sequence
 
@@ -279,7 +279,7 @@ def test_what_the_file_says_of_a_contact_in_a_plane():
 
 
 def test_each_quantity_of_a_contact_in_a_plane_has_one_column(tmp_path):
-    response = trace_levels(ELLIPSE.scene((0.9, 1.1)), [1.0], (0.5, 1.0), harmonics=(1,))
+    response = trace_levels(ELLIPSE.scene((0.9, 1.1)), LevelRequest([1.0], (0.5, 1.0)), harmonics=(1,))
     write_csv(response, tmp_path / "plane.csv")
     with (tmp_path / "plane.csv").open(newline="", encoding="utf-8") as file:
         heads, *rows = csv.reader(file)
@@ -316,7 +316,10 @@ def test_the_bundled_damper_and_what_one_direction_misses():
 def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of_a_line():
     data = single("yang1998-n5", response={"frequency": [1.1, 1.4], "max_step": 0.1})
     line, plane = (scene_from_dict(one) for one in (data, with_still(data)))
-    levels = [trace_levels(one, [1.2], (0.2, 1.5), harmonics=(1, 2, 3)).curves[0] for one in (line, plane)]
+    levels = [
+        trace_levels(one, LevelRequest([1.2], (0.2, 1.5)), harmonics=(1, 2, 3)).curves[0]
+        for one in (line, plane)
+    ]
     assert levels[1].level_folds == pytest.approx(levels[0].level_folds, rel=1e-9)
     assert levels[1].amplitude[-1][:2] == pytest.approx(levels[0].amplitude[-1], rel=1e-9)
     modes = [
@@ -329,7 +332,10 @@ def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of
     assert peaks[1].sensitivity.values[0, 0, : numbers.size] == pytest.approx(
         peaks[0].sensitivity.values[0, 0], rel=1e-6, abs=1e-9
     )
-    tracks = [track(one, "folds", "contact.shroud.n_0", (4.9, 5.1), harmonics=(1,)) for one in (line, plane)]
+    tracks = [
+        track(one, TrackRequest("folds", "contact.shroud.n_0", (4.9, 5.1)), harmonics=(1,))
+        for one in (line, plane)
+    ]
     ends = [sorted(float(curve.frequency[-1]) for curve in one.tracking.curves) for one in tracks]
     assert ends[1] == pytest.approx(ends[0], rel=1e-9)
 

@@ -26,6 +26,7 @@ from fcm.cli.terminal import plain
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
+    from fcm.response.track import TrackRequest
     from fcm.run import Execution
 
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
@@ -105,7 +106,7 @@ def check_options(
 def tracked(
     messages: Messages,
     scene: Scene,
-    wanted: tuple[str, str, tuple[float, float]],
+    asked: TrackRequest,
     execution: Execution,
     options: dict[str, Any],
 ) -> Response:
@@ -113,7 +114,7 @@ def tracked(
     from fcm.response.track import SpanError, track
 
     try:
-        response = track(scene, *wanted, execution, **options)
+        response = track(scene, asked, execution, **options)
     except SpanError as error:
         raise error.named("--from", "--to") from None
     messages.clear()

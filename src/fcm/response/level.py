@@ -22,6 +22,7 @@ from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
@@ -48,17 +49,23 @@ from fcm.scene.errors import counted
 from fcm.units import EXCITATION, UNIT, in_unit
 
 
+class LevelRequest(Frozen):
+    """Curves that are asked for over a span of levels of the forces, at frequencies in the scene's unit."""
+
+    frequencies: Sequence[float]
+    span: tuple[float, float]
+
+
 def trace_levels(
     scene: Scene,
-    at: Sequence[float],
-    span: tuple[float, float],
+    asked: LevelRequest,
     execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """Trace a curve for each curve of the scene and each frequency, in the scene's unit.
+    """Trace a curve for each curve of the scene and each frequency.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
     with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
@@ -73,7 +80,7 @@ def trace_levels(
     KeyboardInterrupt
         If nothing is finished then; else what is finished is returned.
     """
-    low, high = span
+    (low, high), at = asked.span, asked.frequencies
     if fault := level_fault(low, high):
         raise ResponseError(f"level is from {low:g} to {high:g}: {fault}")
     if not all(np.isfinite(f) and f > 0.0 for f in at):
@@ -88,11 +95,11 @@ def trace_levels(
     tasks = [
         (
             _without(curve, omega, NOT_BEGUN, Cause.INTERRUPTED),
-            partial(_level_curve, curve, request, omega, span),
+            partial(_level_curve, curve, request, omega, asked.span),
         )
         for curve, omega in ways
     ]
-    of_curves = (request, tuple(at), span, anonymous(scene.each_curve()))
+    of_curves = (request, tuple(at), asked.span, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("level", *of_curves)
     curves = [without_rounding(one) for one in one_by_one(tasks, execution, mark)]
     response = Response.of(scene, curves, "level of the forces")
