@@ -163,8 +163,8 @@ class ReferenceCurve:
         """
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
-        even = np.arange(0, count, self.options.point_interval)
-        first = distinct_values(special, even, np.array([0, count - 1]), changes, changes + 1)
+        spaced = np.arange(0, count, self.options.point_interval)
+        first = distinct_values(special, spaced, np.array([0, count - 1]), changes, changes + 1)
         self.find(first)
         before, after = first[:-1], first[1:]
         while len(before):
@@ -189,8 +189,8 @@ class ReferenceCurve:
 
     def is_same_curve(self) -> bool:
         """Whether the reference is found from most of a few points spread evenly along the curve."""
-        even = np.arange(0, len(self.known), self.options.point_interval)
-        some = even[:: max(len(even) // self.options.probes, 1)].copy()
+        spaced = np.arange(0, len(self.known), self.options.point_interval)
+        some = spaced[:: max(len(spaced) // self.options.probes, 1)].copy()
         self.find(some)
         return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.min_found)
 
@@ -379,8 +379,7 @@ class ReferenceCurve:
         prolongation, path = self.finding.prolongation, self.path
         if self.linear[i] or not prolongation.find_at_frequency(self._guesses[i], True):
             return None
-        even = path.orientation[i] * path.direction[i, -1]
-        if not prolongation.newton.orientation * prolongation.newton.tangent[-1] * even > 0.0:
+        if not prolongation.newton.orientation * prolongation.newton.tangent[-1] * path.parity[i] > 0.0:
             return None
         return np.array(prolongation.found[1:])
 
@@ -506,9 +505,9 @@ class ReferenceCurve:
         some = rows[(of_curve == 1) & (of_reference == 1)]
         if not some.size:
             return
-        now, even = compared.value[some], np.zeros(len(some))
+        now, parity = compared.value[some], np.zeros(len(some))
         by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
-        shift[some] = (nearest(pieces, own[some], even, by) - now) / compared.unit[some]
+        shift[some] = (nearest(pieces, own[some], parity, by) - now) / compared.unit[some]
 
     def _fill_from_pieces(
         self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray
@@ -524,17 +523,17 @@ class ReferenceCurve:
         while end < len(shift) and missing[end]:
             end += 1
         rows = np.arange(first, end)
-        omega, sign = self.path.parameter[rows], np.sign(self.path.direction[rows, -1])
+        omega, parity = self.path.parameter[rows], self.path.parity[rows]
         number = np.full(len(rows), -1, dtype=np.intc)
         if (self.path.mark[first:end] & Mark.FOLD).any():
             number = self._passing_numbers(one, rows)
-        now, even = compared.value[rows], self.path.orientation[rows] * sign
+        now = compared.value[rows]
         dofs = self.amplitude.shape[1]  # by which the same motion is known
         by = np.ascontiguousarray(now[:, :dofs])
         for way in (map(self._of_piece, one.pieces), self._pieces_near(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
             for other in way:
-                found = (other.values_at(omega, even, by, number) - now) / compared.unit[rows]
+                found = (other.values_at(omega, parity, by, number) - now) / compared.unit[rows]
                 off, before = (np.abs(x[:, :dofs]).max(axis=1) for x in (found, new))
                 nearer = ~(off >= before) & own
                 nearer &= np.isfinite(found).all(axis=1)

@@ -43,7 +43,7 @@ class CurvePiece(Frozen):
     def values_at(
         self,
         omega: FloatArray,
-        even: FloatArray,
+        parity: FloatArray,
         target: FloatArray,
         number: npt.NDArray[np.intc] | None = None,
     ) -> FloatArray:
@@ -55,7 +55,7 @@ class CurvePiece(Frozen):
         found, every = np.empty((len(omega), self.value.shape[1])), np.full(len(omega), -1, dtype=np.intc)
         which = every if number is None else number
         self.curve.values_at_crossings(
-            self.orientation, self.value, self.slope, omega, even, target, which, found
+            self.orientation, self.value, self.slope, omega, parity, target, which, found
         )
         return found
 
@@ -105,14 +105,14 @@ def piece_through(
 
 
 def nearest(
-    pieces: Iterable[CurvePiece], omega: FloatArray, even: FloatArray, target: FloatArray
+    pieces: Iterable[CurvePiece], omega: FloatArray, parity: FloatArray, target: FloatArray
 ) -> FloatArray:
     """Values (place, column) of the nearest motion among all pieces at frequencies omega (place,).
 
-    The nearest to target values (place, dof) of those that are as even, else of all; NaN where there is none.
+    The nearest to target values (place, dof) of the same parity, else of all; NaN where there is none.
     """
     known = tuple(pieces)
-    found = _nearest(known, omega, even, target)
+    found = _nearest(known, omega, parity, target)
     none = np.isnan(found).any(axis=1)
     if none.any():
         found[none] = _nearest(known, omega[none], np.zeros(int(none.sum())), target[none])
@@ -120,14 +120,14 @@ def nearest(
 
 
 def _nearest(
-    pieces: tuple[CurvePiece, ...], omega: FloatArray, even: FloatArray, target: FloatArray
+    pieces: tuple[CurvePiece, ...], omega: FloatArray, parity: FloatArray, target: FloatArray
 ) -> FloatArray:
-    """Values (place, column) of the nearest motion with parity `even`; of any where that is zero."""
+    """Values (place, column) of the nearest motion of a parity; of any where that is zero."""
     best, dofs = np.full((len(omega), pieces[0].value.shape[1]), np.nan), target.shape[1]
-    omega, even = np.ascontiguousarray(omega), np.ascontiguousarray(even)
+    omega, parity = np.ascontiguousarray(omega), np.ascontiguousarray(parity)
     target = np.ascontiguousarray(target)
     for piece in pieces:
-        other = piece.values_at(omega, even, target)
+        other = piece.values_at(omega, parity, target)
         off, before = (np.abs(one[:, :dofs] - target).max(axis=1) for one in (other, best))
         nearer = np.isfinite(off) & ~(off >= before)
         best[nearer] = other[nearer]

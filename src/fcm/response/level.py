@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, evenness, stable_at_levels
+from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, stable_at_levels
 from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.required_harmonics import dofs_of_interest
 from fcm.branches.force_level import LevelRange, level_curve
@@ -218,13 +218,13 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     z[:, -1] = omega
     X, mean, amplitude = recorded_at_levels(system, z, level)
     X = 1j * X
-    first, even = X[:, system.harmonics.index(1)], evenness(path)[inside]
+    first, parity = X[:, system.harmonics.index(1)], path.parity[inside]
     loop = loops(system, z)
     words, contact_loads = cycles(system, z, loop)
-    points = LevelPoints(z, level, amplitude, contact_loads, even)
+    points = LevelPoints(z, level, amplitude, contact_loads, parity)
     error, contact_load_errors = errors_at_levels(system, points)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
-    stable = stable_at_levels(system, z, even)
+    stable = stable_at_levels(system, z, parity)
     # with more harmonics there may be no solution where it is not
     known = truncation <= system.option(VALIDITY).max_error
     lost = no_steady_states(system, z, level)
