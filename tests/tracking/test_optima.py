@@ -13,7 +13,7 @@ from fcm.response.options import OPTIMUM
 from fcm.response.track import TrackRequest, track
 from fcm.results.output import write_netcdf
 from fcm.results.tracked import Optimal
-from fcm.run import Checkpoint
+from fcm.run import CheckpointFile
 from fcm.scene import load_scene
 from fcm.scene.load import scene_from_dict
 from fcm.tracking.options import SEARCH
@@ -95,7 +95,7 @@ def sought(scene, left, harmonics=None, **kept):
     """The optima of so many searches, whether the next was interrupted, and how many were begun."""
     Known.left, Known.begun = left, 0
     tasks = [Known(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
-    with Checkpoint(scene.with_name("kept"), **kept) as checkpoint:
+    with CheckpointFile(scene.with_name("kept"), **kept) as checkpoint:
         return *optima(tasks, harmonics, checkpoint, None), Known.begun
 
 

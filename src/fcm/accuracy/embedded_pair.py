@@ -40,7 +40,7 @@ from fcm.stability.known_motions import KnownMotions
 Mask = npt.NDArray[np.bool_]
 
 
-class Errors(Frozen):
+class PathErrors(Frozen):
     """Relative errors of a path, estimated by the embedded pair; NaN where the pair gives no error.
 
     amplitude (point, dof): by how much the reference differs: at a peak in height, elsewhere at the same
@@ -83,7 +83,7 @@ class Errors(Frozen):
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
     motions: KnownMotions | None = field(default=None, repr=False)
 
-    def part(self, rows: npt.NDArray[np.intp]) -> Errors:
+    def part(self, rows: npt.NDArray[np.intp]) -> PathErrors:
         """The errors restricted to some points of the path."""
         names = ("amplitude", "at_frequency", "truncation", "is_same_curve", "ends_before", "contact_loads")
         arrays: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
@@ -101,7 +101,7 @@ def errors_along(
     quantities: ReportedQuantities | None = None,
     options: PairOptions = PAIR,
     budget: Budget | None = None,
-) -> Errors:
+) -> PathErrors:
     """Errors of the points of a path of a system's balance; quantities is what is reported along it, if
     known.
 
@@ -152,7 +152,7 @@ def errors_along(
     system.work.add(reference.seconds())
     of_folds = _of_folds(reference, folds, change)
     reference.release()
-    return Errors(
+    return PathErrors(
         amplitude=error,
         at_frequency=at_frequency,
         truncation=_truncation(np.where(np.isnan(error), at_frequency, error), amplitude),
@@ -174,12 +174,12 @@ def errors_along(
 
 def _same_error(
     system: System, reported: ReportedPath, contacts: ContactRecord, share: FloatArray, error: float
-) -> Errors:
+) -> PathErrors:
     """Errors of a path that all have one value: 0 where the reference equals the curve, or NaN."""
     path, amplitude = reported.path, reported.quantities.amplitude
     every, exact = np.full_like(amplitude, error), not np.isnan(error)
     contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), error)
-    return Errors(
+    return PathErrors(
         amplitude=every,
         at_frequency=every,
         truncation=every[:, 0],
@@ -198,14 +198,14 @@ def _same_error(
     )
 
 
-def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> Errors:
+def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> PathErrors:
     """Errors of a path with every entry unknown (NaN); `quantities` is what is reported along the path."""
     contacts, nan = ContactRecord.at(system, path.z), np.nan
     none, unseen = np.full_like(quantities.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
     contact_loads = np.full_like(contacts.contact_loads, nan)
     dofs, folds = np.full(none.shape[1], nan), np.full(len(path.where(Mark.FOLD)), nan)
     share = np.zeros(max(system.harmonics))
-    return Errors(
+    return PathErrors(
         none, none, none[:, 0], unseen, unseen, dofs, dofs, dofs, folds, share, system.harmonics,
         contact_loads, np.full(contact_loads.shape[1:], nan), contacts,
     )  # fmt: skip
@@ -215,10 +215,10 @@ def with_nearest(
     system: System,
     paths: Sequence[Path],
     quantities: Sequence[ReportedQuantities],
-    errors: Sequence[Errors],
+    errors: Sequence[PathErrors],
     first: int = 0,
     options: PairOptions = PAIR,
-) -> tuple[Errors, ...]:
+) -> tuple[PathErrors, ...]:
     """Errors of the paths of a response, with the nearest motions where the reference's own branch has none.
 
     Where that branch does not come to a frequency, the error is the distance to the nearest motion of the
@@ -244,8 +244,8 @@ def with_nearest(
         if not rows.size or not pieces:
             continue
         now, error, contact_loads = amplitude[rows], every[k].amplitude.copy(), every[k].contact_loads.copy()
-        even = path.parity[rows]
-        there = nearest(pieces, path.parameter[rows], even, now)
+        parity = path.parity[rows]
+        there = nearest(pieces, path.parameter[rows], parity, now)
         off = np.abs(there[:, :dofs] - now)
         error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
         at_frequency = every[k].at_frequency.copy()
@@ -268,7 +268,7 @@ def with_nearest(
     return tuple(every)
 
 
-def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
+def _with_greatest(errors: PathErrors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> PathErrors:
     """Errors of a path whose unknown peak errors are filled from the greatest amplitudes of all pieces.
 
     amplitude is (point, dof). The `height` of the reference is the greatest of the path's own pieces.
@@ -410,7 +410,7 @@ def _of_folds(reference: ReferenceCurve, folds: Indices, change: FloatArray) -> 
 
 
 def _with_nearest_folds(
-    path: Path, amplitude: FloatArray, errors: Errors, pieces: Sequence[CurvePiece], options: PairOptions
+    path: Path, amplitude: FloatArray, errors: PathErrors, pieces: Sequence[CurvePiece], options: PairOptions
 ) -> FloatArray:
     """Errors (fold,), with unknown ones replaced by the relative distance in frequency to the nearest fold.
 

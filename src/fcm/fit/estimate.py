@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import t as student
 
-from fcm.fit.least_squares_rows import Rows
+from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import Parameters
 from fcm.frozen import Frozen
@@ -42,7 +42,9 @@ class Estimate(Frozen):
     alike: tuple[tuple[int, int, float], ...]
 
 
-def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: FitOptions = FIT) -> Estimate:
+def estimated(
+    parameters: Parameters, values: FloatArray, rows: ResidualRows, options: FitOptions = FIT
+) -> Estimate:
     """Estimates from the rows of residuals at the best-fit numbers."""
     rates = parameters.rates(values)
     J = rows.rates * rates

@@ -39,7 +39,7 @@ QUANTITIES = {
 }
 
 
-class Mark(NamedTuple):
+class DrawnRun(NamedTuple):
     """One run: processor time [s], error, whether this is only a limit, whether its curves are complete."""
 
     seconds: float
@@ -54,7 +54,7 @@ class Panel(Frozen):
     reference: str
     own_error: float | None
     max_step: float  # of the reference
-    lines: Mapping[tuple[str, bool], list[Mark]]  # by the method and whether its points are corrected
+    lines: Mapping[tuple[str, bool], list[DrawnRun]]  # by the method and whether its points are corrected
 
 
 class Accuracy(Frozen):
@@ -84,7 +84,7 @@ def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
 
 
 def _panel(summary: Any, reference: str, quantity: str) -> Panel:
-    lines: dict[tuple[str, bool], list[Mark]] = {}
+    lines: dict[tuple[str, bool], list[DrawnRun]] = {}
     for run in sorted(summary["runs"], key=lambda run: -run["max_step"]):
         if run["corrected"] and not run["left_out"]:
             continue  # the same line once more
@@ -96,7 +96,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
         error, below = shown["errors"][quantity], shown["below"].get(quantity)
         if error or below:
             seconds, complete = _number(run["processor_seconds"]), bool(run["complete"])
-            mark = Mark(seconds, _number(error or below), error is None, complete)
+            mark = DrawnRun(seconds, _number(error or below), error is None, complete)
             lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
     one = summary["references"][reference]
     own = one["own_error"][quantity]

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from fcm.files import NETCDF, no_file
 from fcm.frozen import Frozen
 from fcm.plot.blades import ALSO as OF_BLADES
-from fcm.plot.blades import ENVELOPE, Blades, blades_of
+from fcm.plot.blades import ENVELOPE, DrawnBlades, blades_of
 from fcm.plot.dof import asked_for, column_of, greatest_column, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import with_unit
@@ -86,7 +86,7 @@ class DrawnResponse(Frozen):
         default_factory=Unfinished
     )  # of all curves, those without a point among them
     fitted: tuple[FittedNumber, ...] = ()  # that a fit found
-    blades: Blades | None = None  # of a mistuned ring, whose envelopes are the last columns
+    blades: DrawnBlades | None = None  # of a mistuned ring, whose envelopes are the last columns
 
     def column(self, dof: str | None, envelope: bool = True) -> int:
         """The place of a degree of freedom; by default that of `leading_column`.
@@ -173,7 +173,7 @@ class _Variables(dict[str, Any]):
         raise ValueError(f"it has no variable {name}")
 
 
-class Held:
+class OpenDataset:
     """An open netCDF dataset: variables by name, and its attributes as attributes of the object."""
 
     def __init__(self, dataset: Any) -> None:
@@ -188,8 +188,11 @@ class Held:
 
 @contextmanager
 def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = ()) -> Iterator[Any]:
-    """The open netCDF dataset, see `Held`; PlotError if it has not the variables needed, or if they, or
-    others that are read where they are there, are laid out otherwise."""
+    """The open netCDF dataset, see `OpenDataset`.
+
+    PlotError if it has not the variables needed, or if they, or others that are read where they are there,
+    are laid out otherwise.
+    """
     from netCDF4 import Dataset
 
     if what := no_file(path):
@@ -208,7 +211,7 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
             raise PlotError(f"{path}: not {kind}: it has no variable {names}{_hint(dataset)}")
         with read(path, f"not {kind}"):
             check_layout(dataset.variables, (*needed, *also))
-            yield Held(dataset)
+            yield OpenDataset(dataset)
 
 
 def _cause(error: BaseException) -> str:

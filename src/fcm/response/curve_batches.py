@@ -25,7 +25,7 @@ from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
 from fcm.results.result import DEFECT, NOT_BEGUN, Curve
 from fcm.run import (
-    Checkpoint,
+    CheckpointFile,
     Compute,
     Factory,
     Interrupted,
@@ -33,9 +33,9 @@ from fcm.run import (
     Progress,
     Report,
     Results,
+    compute_batches,
     fingerprint,
     place_for,
-    sweep,
 )
 
 Group = Sequence[Scene]
@@ -60,7 +60,7 @@ _BY_POINT = (
 )
 
 
-class Work(Frozen):
+class CurveTask(Frozen):
     """The task that traces a group of curves."""
 
     request: Request
@@ -197,7 +197,7 @@ class CurveBatches:
     """The place where curves are computed and kept: the same for everything that one run computes."""
 
     jobs: int  # processes of this machine
-    checkpoint: Checkpoint | None
+    checkpoint: CheckpointFile | None
     place: Factory | None = None  # instead: an executor or a cluster
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 
@@ -219,7 +219,7 @@ class CurveBatches:
             whole = fingerprint(mark, [anonymous(batch) for batch in batches])
             kept = self.checkpoint.results(whole, (*KINDS, *states), lambda i, found: fit(batches, i, found))
         place = self.place or place_for(self.jobs if len(batches) > 1 else 1)
-        outcome = sweep(compute, batches, place, kept, progress)
+        outcome = compute_batches(compute, batches, place, kept, progress)
         if outcome.lost:
             warnings.warn(outcome.lost, stacklevel=2)
         curves: list[Curve] = []

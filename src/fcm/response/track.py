@@ -19,21 +19,21 @@ from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
-from fcm.response.tracked_work import KINDS, STATES, TrackedScene, TrackedWork
+from fcm.response.tracking_task import KINDS, STATES, TrackedScene, TrackingTask
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
 from fcm.run import (
     IN_THIS_PROCESS,
-    Checkpoint,
+    CheckpointFile,
     Execution,
     Factory,
     Lost,
     Outcome,
     Progress,
     Results,
+    compute_batches,
     fingerprint,
     place_for,
-    sweep,
 )
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import Number, number_of
@@ -124,8 +124,8 @@ def track(
     with execution.checkpoint() as checkpoint:
         if what == "peaks":
             response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
-        work = TrackedWork(number, what, span, chosen, request.options)
-        outcome = _swept(work, curves, checkpoint, place, execution.progress)
+        task = TrackingTask(number, what, span, chosen, request.options)
+        outcome = _swept(task, curves, checkpoint, place, execution.progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
         if request.harmonics is None:
@@ -145,18 +145,18 @@ def _untracked(every: int, tracked: int) -> list[str]:
 
 
 def _swept(
-    work: TrackedWork,
+    task: TrackingTask,
     scenes: Sequence[Scene],
-    checkpoint: Checkpoint | None,
+    checkpoint: CheckpointFile | None,
     place: Factory,
     progress: Progress | None,
 ) -> Outcome:
     """The results of each scene, as far as the run came."""
     batches, kept = [(replace(one, curves=()),) for one in scenes], Results()
     if checkpoint is not None:
-        mark = fingerprint("tracked", work, [replace(one, name="", title="") for (one,) in batches])
+        mark = fingerprint("tracked", task, [replace(one, name="", title="") for (one,) in batches])
         kept = checkpoint.results(mark, (*KINDS, *STATES), lambda i, found: _fits(len(batches), i, found))
-    outcome = sweep(work, batches, place, kept, progress)
+    outcome = compute_batches(task, batches, place, kept, progress)
     if outcome.lost:
         warnings.warn(outcome.lost, stacklevel=2)
     return outcome

@@ -21,7 +21,7 @@ from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.measured_units import force_unit, length_unit, motion_unit, ratio_of
 from fcm.scene.names import motion_of
-from fcm.scene.uff_functions import Axis, Function, Place
+from fcm.scene.uff_functions import Axis, Function, Location
 from fcm.scene.uff_qualifiers import UNKNOWN, Qualifiers
 from fcm.units import PER_TIME, QUANTITIES
 
@@ -69,8 +69,8 @@ def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit
         value=columns["amplitude"] * np.exp(1j * (np.zeros_like(omega) if phase is None else phase)),
         phased=phase is not None,
         per_reference=bool(lower),
-        response=Place(),
-        reference=Place(),
+        response=Location(),
+        reference=Location(),
         ordinate=Axis("", unit),
         denominator=Axis(),
         system=None,
@@ -169,7 +169,7 @@ def _compare_places(file: ComparedFile, function: Function, dof: str) -> None:
             file.ask(f"has {what} {other}, and {own} {name}. Is it the right file?")
 
 
-def _elsewhere(place: Place, dof: str, dofs: Sequence[str]) -> str:
+def _elsewhere(place: Location, dof: str, dofs: Sequence[str]) -> str:
     """Where a place is, if it is another degree of freedom by node and direction, or by name; else empty."""
     if motion_of(dof):
         return place.dof if place.dof != motion_of(dof) else ""

@@ -26,7 +26,7 @@ from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import rates_of
-from fcm.sensitivity.peak import Kind, Peak, Unknown, moved_by
+from fcm.sensitivity.peak import Peak, PeakKind, Unknown, moved_by
 
 
 class Sensitivities(Frozen):
@@ -36,7 +36,7 @@ class Sensitivities(Frozen):
     values: FloatArray  # (number,)
     height: FloatArray  # (dof, number) derivative of the peak's height
     frequency: FloatArray  # (dof, number) and of its frequency [rad/s]
-    kind: tuple[Kind, ...]  # (dof,)
+    kind: tuple[PeakKind, ...]  # (dof,)
     why: tuple[Unknown, ...]  # (dof,) of derivatives that are unknown by every number
     why_by_number: tuple[tuple[Unknown, ...], ...]  # (dof, number) of those of a known kind
 
@@ -116,10 +116,10 @@ def sensitivities(
             found = height[point.dof, k], frequency[point.dof, k] = point.derivatives(rates, moved)
             if not np.isfinite(found).all():
                 why_by_number[point.dof][k] = Unknown.LOST
-    kind, why = [Kind.UNKNOWN] * dofs, [Unknown.AT_REST] * dofs
+    kind, why = [PeakKind.UNKNOWN] * dofs, [Unknown.AT_REST] * dofs
     for point in points:
         kind[point.dof], why[point.dof] = point.kind, point.why
-        if point.kind is Kind.UNKNOWN:
+        if point.kind is PeakKind.UNKNOWN:
             why_by_number[point.dof] = [Unknown.NOTHING] * len(numbers)
     values = np.array([number.value(scene) for number in numbers])
     keys = tuple(number.key for number in numbers)

@@ -26,8 +26,8 @@ from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.work_budget import BranchBudget, UncertainFrequencies
 from fcm.stability.unstable_ranges import unstable_stretches
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
-from fcm.time_domain.system import System
 from fcm.units import UNIT
 
 Progress = Callable[[float, str], None]
@@ -387,7 +387,7 @@ def orbits_in_unstable_ranges(
     parts = [(path.parameter, np.array([_stable(problem, z) for z in path.z])) for path in paths]
     for low, high in unstable_stretches(parts, scene.frequency_range)[: problem.options.stability.max_ranges]:
         try:
-            orbit = approached(System(scene, 0.5 * (low + high)), poll, problem.options)
+            orbit = approached(EquationsOfMotion(scene, 0.5 * (low + high)), poll, problem.options)
             if orbit.stable:
                 yield first_point(problem, orbit, poll)
         except SimulationError:  # it does not become periodic, or is not determined

@@ -28,9 +28,9 @@ from fcm.shooting.traction_continuation import (
     sticking_contacts,
     with_traction,
 )
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 from fcm.units import spoken
 
 
@@ -88,7 +88,7 @@ def family(
     >>> bool(found.spread.max() < 1e-9)  # nothing else feels it
     True
     """
-    system = System(scene, frequency)
+    system = EquationsOfMotion(scene, frequency)
     x = np.concatenate((state.q, state.velocity, state.friction))
     found = converged(Shot(system, x, resting_at(system, x), periods), poll=poll, options=options)
     if found is None:

@@ -32,7 +32,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, sin
 
-from fcm.time_domain.equations import Matrices
+from fcm.time_domain.constant_matrices import Matrices
 from fcm.time_domain.options import TIME, FlowOptions
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
