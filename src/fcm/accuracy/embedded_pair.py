@@ -321,8 +321,8 @@ def _spectrum(
     The share of a harmonic is its greatest amplitude without feedback relative to size (dof,), at special
     points. A harmonic that meets a mode and leads there counts as well.
     """
-    further, place = FurtherHarmonics(system), lengths(path)
-    special = special[distinct(place[special], options.peak_spacing * (place[-1] - place[0]))]
+    further, arc = FurtherHarmonics(system), lengths(path)
+    special = special[distinct(arc[special], options.peak_spacing * (arc[-1] - arc[0]))]
     met: Indices = further.resonances(path.z, quantities.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
     if met.size:  # there it leads, however small the motion is

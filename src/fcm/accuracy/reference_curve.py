@@ -53,9 +53,9 @@ class ReferenceTop(NamedTuple):
     point: int
     piece: ReferencePiece | None = None
 
-    def place(self, reference: ReferenceCurve) -> float:
+    def arc(self, reference: ReferenceCurve) -> float:
         """Arc length along the piece, or along the curve."""
-        return float((reference if self.piece is None else self.piece).place[self.point])
+        return float((reference if self.piece is None else self.piece).arc[self.point])
 
 
 class FollowedStretch(Frozen):
@@ -115,6 +115,7 @@ class ReferenceCurve:
     degree of freedom that hardly moves, a part of the greatest amplitude, as its own rounding would hide the
     others.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
+    arc (point,): arc length along the path, in scaled coordinates.
     contact_loads (point, 4 contact): of its contacts.
     ends_before (point,): whose frequency the reference passes less often, as it turns back.
     followed: the stretches beside which it was followed, see `follow_stretches`.
@@ -145,14 +146,14 @@ class ReferenceCurve:
         self.errors_at_tops = list[tuple[ReferenceTop, tuple[FloatArray, float]]]()
         self.failed, self.before = budget.seconds / self.each, prolongation.newton.evaluations
         count, dofs = self.amplitude.shape
-        self.place, self.weight = np.zeros((2, count))
-        arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
+        self.arc, self.weight = np.zeros((2, count))
+        arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.arc)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
         self.reference_unknowns = np.full((count, len(prolongation.newton.z)), np.nan)  # where it was found
         self.known, self.ends_before = self.linear.copy(), np.zeros_like(self.linear)
         self.followed = list[FollowedStretch]()
-        self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
+        self.filled = PartialInterpolant(self.arc, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) to the reference, computed at some points and interpolated
@@ -200,7 +201,7 @@ class ReferenceCurve:
         Of many degrees of freedom each has its own peak; what the reference has at one is interpolated to the
         next.
         """
-        return points[distinct(self.place[points], self._near)]
+        return points[distinct(self.arc[points], self._near)]
 
     def release(self) -> None:
         """Returns the prolongations to the cache, for the next curve."""
@@ -289,11 +290,11 @@ class ReferenceCurve:
         amplitude. The points compared lie normal to the reference, at the nearest point that has both; at an
         end of the curve at its frequency. Tops closely together have the errors of the first.
         """
-        place = top.place(self)
+        arc = top.arc(self)
         beside = (
             found
             for one, found in self.errors_at_tops
-            if one.piece is top.piece and abs(one.place(self) - place) <= self._near
+            if one.piece is top.piece and abs(one.arc(self) - arc) <= self._near
         )
         found = next(beside, None)
         if found is None:
@@ -431,7 +432,7 @@ class ReferenceCurve:
         before, after = first - 1, end
         if (self.path.mark[max(before, 0) : after + 1] & Mark.FOLD).any():
             return False
-        if before < 0 or after == len(change) or self.place[after] - self.place[before] > self._near:
+        if before < 0 or after == len(change) or self.arc[after] - self.arc[before] > self._near:
             return False
         one, other = change[before], change[after]
         most = max(np.abs(one).max(), np.abs(other).max(), self.options.negligible_displacement)
@@ -443,7 +444,7 @@ class ReferenceCurve:
 
     @property
     def _near(self) -> float:
-        return float(self.options.peak_spacing * (self.place[-1] - self.place[0]))
+        return float(self.options.peak_spacing * (self.arc[-1] - self.arc[0]))
 
     def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
         """Amplitudes and contact loads of the curve with their changes to the reference, interpolated
@@ -463,12 +464,12 @@ class ReferenceCurve:
         found[there, 1:] = (of_reference - self.contact_loads[there]) / unit[there]
         found[np.isnan(found[:, 0])] = np.nan
         every = np.empty_like(found)
-        PartialInterpolant(self.place, found, self.known.view(np.uint8), self.options.distance).interpolate(
+        PartialInterpolant(self.arc, found, self.known.view(np.uint8), self.options.distance).interpolate(
             np.arange(len(change)), every
         )
         return ComparedQuantities(
             np.hstack((self.amplitude, self.contact_loads)),
-            np.hstack((self.quantities.growth, rates(self.contact_loads, self.place))),
+            np.hstack((self.quantities.growth, rates(self.contact_loads, self.arc))),
             np.hstack((self.unit, unit)),
             np.hstack((change, every[:, 1:])),
         )
@@ -480,7 +481,7 @@ class ReferenceCurve:
         """
         path, change = self.path, compared.change
         shift = shifted(
-            self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
+            self.arc, path.z, path.direction, compared.value, compared.growth, compared.unit, change
         )
         shift[np.isnan(change).any(axis=1)] = np.nan
         self._fill_beyond_folds(compared, shift)
@@ -568,7 +569,7 @@ class ReferenceCurve:
         change = compared.change[rows]
         omega = self.path.parameter[rows] * (1.0 + change[:, 0])
         value = compared.value[rows] + compared.unit[rows] * change[:, 1:]
-        return piece_through(self.place[rows], omega, self.path.orientation[rows], value)
+        return piece_through(self.arc[rows], omega, self.path.orientation[rows], value)
 
     def _of_piece(self, piece: ReferencePiece) -> CurvePiece:
         return curve_piece(self.stretches.finer, piece)

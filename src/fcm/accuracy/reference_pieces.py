@@ -72,31 +72,31 @@ def piece_of(reported: ReportedPath) -> CurvePiece:
     """The `CurvePiece` of a followed path."""
     path, quantities, contact_loads = reported.path, reported.quantities, reported.contact_loads
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
-    place = lengths(path)
+    arc = lengths(path)
     return CurvePiece(
-        ReferenceCurveData(place, parameter, rate),
+        ReferenceCurveData(arc, parameter, rate),
         parameter,
         np.ascontiguousarray(path.orientation),
         np.hstack((quantities.amplitude, contact_loads)),
-        np.hstack((quantities.growth, rates(contact_loads, place))),
+        np.hstack((quantities.growth, rates(contact_loads, arc))),
     )
 
 
 def piece_through(
-    place: FloatArray, omega: FloatArray, orientation: FloatArray, value: FloatArray
+    arc: FloatArray, omega: FloatArray, orientation: FloatArray, value: FloatArray
 ) -> CurvePiece | None:
-    """A curve piece through points with given places, frequencies, orientations and values.
+    """A curve piece through points with given arc lengths, frequencies, orientations and values.
 
-    Places, frequencies and orientations are (point,), values (point, column). Of coincident points the first
+    All but the values are (point,), these (point, column). Of coincident points the first
     is used. None if fewer than two remain.
     """
-    apart = np.append(True, np.diff(place) > 0.0)
+    apart = np.append(True, np.diff(arc) > 0.0)
     if np.count_nonzero(apart) < 2:
         return None
-    place, omega, orientation, value = place[apart], omega[apart], orientation[apart], value[apart]
-    rate = np.gradient(np.column_stack((omega, value)), place, axis=0)
+    arc, omega, orientation, value = arc[apart], omega[apart], orientation[apart], value[apart]
+    rate = np.gradient(np.column_stack((omega, value)), arc, axis=0)
     return CurvePiece(
-        ReferenceCurveData(place, omega, np.ascontiguousarray(rate[:, 0])),
+        ReferenceCurveData(arc, omega, np.ascontiguousarray(rate[:, 0])),
         omega,
         np.ascontiguousarray(orientation),
         np.ascontiguousarray(value),
@@ -141,23 +141,23 @@ def lengths(path: Path) -> FloatArray:
     return length
 
 
-def rates(values: FloatArray, place: FloatArray) -> FloatArray:
+def rates(values: FloatArray, arc: FloatArray) -> FloatArray:
     """Rates of change (point, column) along a curve: difference quotients of the neighbours."""
-    k = np.arange(len(place))
-    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(place) - 1)
-    step = place[after] - place[before]
+    k = np.arange(len(arc))
+    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(arc) - 1)
+    step = arc[after] - arc[before]
     found: FloatArray = (values[after] - values[before]) / np.where(step > 0.0, step, 1.0)[:, None]
     return found
 
 
-def distinct(place: FloatArray, near: float) -> npt.NDArray[np.intp]:
-    """Indices of the places, in order, that lie farther than `near` behind the last one taken.
+def distinct(arc: FloatArray, near: float) -> npt.NDArray[np.intp]:
+    """Indices of the arc lengths, in order, that lie farther than `near` behind the last one taken.
 
     >>> distinct(np.array([0.0, 0.1, 0.4, 0.6]), 0.3).tolist()
     [0, 2]
     """
     found = list[int]()
-    for k, at in enumerate(place.tolist()):
-        if not found or at - place[found[-1]] > near:
+    for k, at in enumerate(arc.tolist()):
+        if not found or at - arc[found[-1]] > near:
             found.append(k)
     return np.array(found, dtype=np.intp)

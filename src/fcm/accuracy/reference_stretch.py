@@ -45,7 +45,7 @@ class ReferencePiece(Frozen):
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
 
     @cached_property
-    def place(self) -> FloatArray:
+    def arc(self) -> FloatArray:
         """Arc lengths (point,) along the piece."""
         return lengths(self.path)
 
