@@ -48,8 +48,8 @@ def measured():
 CALLED_BACK = [
     ("Flows", "next_power", cycle),
     ("Flows", "spell", moved),
-    ("Integrals", "reach", measured),
-    ("Scan", "reach", measured),
+    ("Integrals", "fill_ahead", measured),
+    ("Scan", "fill_ahead", measured),
     ("Scan", "values", measured),
 ]
 

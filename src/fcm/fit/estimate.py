@@ -60,10 +60,10 @@ def estimated(
     spread = np.sqrt(np.where(np.isnan(np.diag(covariance)), np.inf, np.diag(covariance)))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(spread, spread)
-    reach = student.ppf(0.5 + 0.5 * options.confidence, freedom) * spread
+    half_width = student.ppf(0.5 + 0.5 * options.confidence, freedom) * spread
     x = parameters.unknowns(values)
     with np.errstate(over="ignore", invalid="ignore"):
-        ends = np.column_stack((parameters.values(x - reach), parameters.values(x + reach)))
+        ends = np.column_stack((parameters.values(x - half_width), parameters.values(x + half_width)))
         ends[ends[:, 0] < parameters.low, 0] = np.nan
         ends[ends[:, 1] > parameters.high, 1] = np.nan
     without = np.ones(count)

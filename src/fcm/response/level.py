@@ -192,10 +192,10 @@ def _followed(system: System, omega: float, span: tuple[float, float], tell: Tel
     except RestError as error:
         return _without(system.scene, omega, str(error))
     # what folds back into the span from beyond it is part of the curve
-    reach = (span[0], max(span[1], highest_linear_limit(system, omega)))
-    beyond = (reach[1] - reach[0]) / (span[1] - span[0])
+    followed = (span[0], max(span[1], highest_linear_limit(system, omega)))
+    beyond = (followed[1] - followed[0]) / (span[1] - span[0])
     levels = LevelRange(
-        reach, system.scene.max_step, (1.0, span[1]), progress=lambda share: tell.covered(share * beyond)
+        followed, system.scene.max_step, (1.0, span[1]), progress=lambda share: tell.covered(share * beyond)
     )
     path = level_curve(system, omega, levels)
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))

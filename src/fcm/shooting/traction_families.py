@@ -253,10 +253,10 @@ def member_at_start(
     begin, end = -residual_of(shot), shot.system.k_u * wanted
     done, share = 0.0, 1.0
     while done < 1.0 and share > options.family.min_step:
-        reach = min(done + share, 1.0)
-        new = with_traction(shot, begin + reach * (end - begin), poll=poll, options=options)
+        at = min(done + share, 1.0)
+        new = with_traction(shot, begin + at * (end - begin), poll=poll, options=options)
         if new is None:
             share *= 0.25
         else:
-            shot, done, share = new, reach, 2.0 * share
+            shot, done, share = new, at, 2.0 * share
     return shot if done == 1.0 else None

@@ -442,7 +442,7 @@ def push(
 class ForcedFlows(FlowSeries):
     """`refresh` computes the force columns of a flow for `omega` [rad/s] and one step; see `FlowArrays`.
 
-    Those for more are made where they are needed, by `reach`.
+    Those for more are made where they are needed, by `fill_columns`.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
@@ -461,7 +461,7 @@ class ForcedFlows(FlowSeries):
         self._one_step(slot)
         self._sized(slot)
         self.reached[slot] = 0
-        self.reach(slot, 0)
+        self.fill_columns(slot, 0)
         self.made_for[slot] = self.omega
         return 0
 
@@ -563,7 +563,7 @@ class ForcedFlows(FlowSeries):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1, check=False)
-    def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
+    def fill_columns(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
         """Computes the missing columns of the forces over 1, 2, 4 ... 2**last steps."""
         t: cython.double
         h: cython.Py_ssize_t
@@ -950,7 +950,7 @@ class Flows(ExitFunctions):
         cosine: cython.double
         c: cython.double
         s: cython.double
-        self.reach(slot, j)
+        self.fill_columns(slot, j)
         for i in range(n):
             self.whole[i] = 0.0
         for h in range(self.waves):

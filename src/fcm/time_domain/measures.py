@@ -251,7 +251,7 @@ class Integrals(Walk):
             for i in range(self.flows.size):
                 self.ahead[0, i] = self._there[0, i]
             with cython.gil:
-                self.reach(slot)
+                self.fill_ahead(slot)
             for k in range(self.span):
                 self._gather(self.ahead, k)
             for i in range(self.flows.size):
@@ -455,7 +455,7 @@ class Scan(Walk):
         count: cython.Py_ssize_t = 0
         if self.span > 0 and left >= self.span:
             with cython.gil:
-                self.reach(slot)
+                self.fill_ahead(slot)
                 self.values(slot)
             return self.span
         self._rows_at(slot, 0)

@@ -216,9 +216,9 @@ class Walk:
                 self.at += 1
         return 0
 
-    def reach(self, slot: cython.Py_ssize_t) -> None:
+    def fill_ahead(self, slot: cython.Py_ssize_t) -> None:
         """Fills the rows of `ahead` after the first, doubling the number of steps each time."""
-        self.flows.reach(slot, DOUBLINGS)
+        self.flows.fill_columns(slot, DOUBLINGS)
         n, y = self.flows.linear, np.asarray(self.ahead)
         powers, waves = np.asarray(self.flows.power)[slot], self.flows.waves
         forced = (
