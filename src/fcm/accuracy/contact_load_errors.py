@@ -11,10 +11,7 @@ from fcm.model.scene import FloatArray
 
 
 def contact_load_errors(
-    reference: ReferenceCurve,
-    compared: ComparedQuantities,
-    shift: FloatArray,
-    folds: npt.NDArray[np.intp],
+    reference: ReferenceCurve, compared: ComparedQuantities, shift: FloatArray, folds: npt.NDArray[np.intp]
 ) -> tuple[FloatArray, FloatArray]:
     """Relative errors of contact forces, slip and energy: (point, contact, 4), and of their greatest
     (contact, 4).

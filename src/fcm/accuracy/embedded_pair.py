@@ -285,9 +285,7 @@ def _with_greatest(errors: PathErrors, amplitude: FloatArray, pieces: Sequence[C
     shared = np.where(errors.is_same_curve[tops], 0.0, off.max() / (top.max() or 1.0))
     error = np.maximum(off / np.where(top > 0.0, top, 1.0), shared)
     return replace(
-        errors,
-        height=np.where(unknown, own, errors.height),
-        peak=np.where(unknown, error, errors.peak),
+        errors, height=np.where(unknown, own, errors.height), peak=np.where(unknown, error, errors.peak)
     )
 
 

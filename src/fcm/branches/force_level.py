@@ -224,8 +224,7 @@ def few_harmonics(system: System) -> int:
     layout, options = system.layout, system.option(LEVEL_CURVE)
     means, each = layout.directions, layout.stride
     return min(
-        max((options.few_unknowns // max(layout.contacts, 1) - means) // each, 1),
-        options.few_harmonics,
+        max((options.few_unknowns // max(layout.contacts, 1) - means) // each, 1), options.few_harmonics
     )
 
 

@@ -75,11 +75,7 @@ def _options(messages: Messages, asked: Asked) -> ResponseOptions:
 
 def _balanced(messages: Messages, asked: Asked) -> dict[str, Any]:
     """Options of a calculation by harmonic balance."""
-    return {
-        "harmonics": asked.harmonics,
-        "accuracy": asked.accuracy,
-        "options": _options(messages, asked),
-    }
+    return {"harmonics": asked.harmonics, "accuracy": asked.accuracy, "options": _options(messages, asked)}
 
 
 def _tracked(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:

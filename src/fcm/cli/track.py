@@ -30,10 +30,7 @@ if TYPE_CHECKING:
     from fcm.run import Execution
 
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
-_SAID = {
-    UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
-    UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}",
-}
+_SAID = {UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}", UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}"}
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
     "at": "every frequency of the range is looked at",
@@ -104,11 +101,7 @@ def check_options(
 
 
 def tracked(
-    messages: Messages,
-    scene: Scene,
-    asked: TrackRequest,
-    execution: Execution,
-    options: dict[str, Any],
+    messages: Messages, scene: Scene, asked: TrackRequest, execution: Execution, options: dict[str, Any]
 ) -> Response:
     """The curves that were asked for."""
     from fcm.response.track import SpanError, track

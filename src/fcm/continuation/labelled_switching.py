@@ -177,8 +177,7 @@ class LabelledSwitching:
             return Status.STALLED
         if self.store.count > count:
             follower.limit_step(
-                step * clipped(step_factor(self.options, error, cubic), self.options.min_factor, longer),
-                True,
+                step * clipped(step_factor(self.options, error, cubic), self.options.min_factor, longer), True
             )
             follower.limit_step(step * longer, False)
             self.departures, self.departure = 0, 0.0

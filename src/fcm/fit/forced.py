@@ -314,12 +314,7 @@ class Nearest:
 
 
 def sampled(
-    scene: Scene,
-    like: Measured,
-    level: float,
-    count: int,
-    harmonics: tuple[int, ...],
-    options: FitOptions,
+    scene: Scene, like: Measured, level: float, count: int, harmonics: tuple[int, ...], options: FitOptions
 ) -> Measured:
     """Points of the response as if they had been measured, over the range of a data set and where that was.
 

@@ -69,11 +69,7 @@ class Law:
     """
 
     def __init__(
-        self,
-        width: cython.int,
-        directions: cython.int,
-        margins: cython.int,
-        contact: Contact,
+        self, width: cython.int, directions: cython.int, margins: cython.int, contact: Contact
     ) -> None:
         self.width, self.directions, self.margins = width, directions, margins
         self.mu, self.k_u, self.k_v, self.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
@@ -135,13 +131,7 @@ class Law:
 class KernelLaw(Law):
     """A law with the forces of a kernel, exact for a motion of any harmonics; contacts may share it."""
 
-    def __init__(
-        self,
-        kernel: Any,
-        directions: cython.int,
-        margins: cython.int,
-        contact: Contact,
-    ) -> None:
+    def __init__(self, kernel: Any, directions: cython.int, margins: cython.int, contact: Contact) -> None:
         Law.__init__(self, kernel.unknowns, directions, margins, contact)
         self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
 
@@ -194,11 +184,7 @@ class LineLaw(KernelLaw):
     """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
     is."""
 
-    def __init__(
-        self,
-        kernel: PeriodicContact,
-        contact: Contact,
-    ) -> None:
+    def __init__(self, kernel: PeriodicContact, contact: Contact) -> None:
         self.kernel, self.bounds = kernel, Margins(kernel.cycle)
         KernelLaw.__init__(self, kernel, 2, self.bounds.most, contact)
         self.state = kernel.cycle.state
@@ -266,11 +252,7 @@ class SingleHarmonicLaw(Law):
     Its coefficients are a law's: the closed form, or a table.
     """
 
-    def __init__(
-        self,
-        coefficients: CoefficientLaw,
-        contact: Contact,
-    ) -> None:
+    def __init__(self, coefficients: CoefficientLaw, contact: Contact) -> None:
         Law.__init__(self, 6, 2, 5, contact)
         self.coefficients = coefficients
         self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))

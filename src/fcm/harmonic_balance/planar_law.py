@@ -28,11 +28,7 @@ class PlanarLaw(KernelLaw):
     """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
     is."""
 
-    def __init__(
-        self,
-        kernel: PlanarContact,
-        contact: Contact,
-    ) -> None:
+    def __init__(self, kernel: PlanarContact, contact: Contact) -> None:
         self.kernel, self.bounds = kernel, PlanarMargins(kernel.cycle)
         KernelLaw.__init__(self, kernel, 3, self.bounds.most, contact)
         self.measures = PlanarMeasures(kernel.cycle)

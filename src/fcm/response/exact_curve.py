@@ -259,11 +259,7 @@ def _too_stiff(scene: Scene, options: ExactOptions) -> tuple[str, float | None]:
 
 
 def _visited(
-    scene: Scene,
-    at: tuple[float, ...],
-    report: Report,
-    options: ExactOptions,
-    shooting: ShootingOptions,
+    scene: Scene, at: tuple[float, ...], report: Report, options: ExactOptions, shooting: ShootingOptions
 ) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), options)

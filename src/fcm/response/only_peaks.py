@@ -47,11 +47,7 @@ class PeaksOnly(Frozen):
 
 
 def peaks_only(
-    scene: Scene,
-    known: list[OrbitRecord],
-    report: Report,
-    poll: Poll,
-    shooting: ShootingOptions = SHOOTING,
+    scene: Scene, known: list[OrbitRecord], report: Report, poll: Poll, shooting: ShootingOptions = SHOOTING
 ) -> PeaksOnly | None:
     """The peaks, folds and jumps of a scene; None where the balance has others.
 

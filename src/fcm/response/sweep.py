@@ -136,12 +136,7 @@ class _Sweep:
     """The sweeps of a run, each with less left out; they share one progress bar."""
 
     def __init__(
-        self,
-        scene: Scene,
-        method: str,
-        table: Table | None,
-        request: Request,
-        curves: CurveBatches,
+        self, scene: Scene, method: str, table: Table | None, request: Request, curves: CurveBatches
     ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
         self.request, self.peaks_only = request, request.options.sweep.peaks_only

@@ -109,14 +109,10 @@ def curve_fields(response: Response) -> dict[str, Field]:
             {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
         ),
         "peak_frequency_error": Field(
-            by_dof,
-            peaks[..., 5],
-            {"long_name": "estimated error of peak_frequency, relative", "units": "1"},
+            by_dof, peaks[..., 5], {"long_name": "estimated error of peak_frequency, relative", "units": "1"}
         ),
         "peak_stable": Field(
-            by_dof,
-            peaks[..., 3],
-            {"long_name": "stable of the greatest amplitude", "units": "1"},
+            by_dof, peaks[..., 3], {"long_name": "stable of the greatest amplitude", "units": "1"}
         ),
         "peak_residual_change": Field(
             by_dof,

@@ -47,10 +47,7 @@ MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] 
     "resonant_level": (
         _of_mode("resonant_level"),
         (),
-        {
-            "long_name": "level of the scene's forces with which the resonance has the amplitude",
-            "units": "1",
-        },
+        {"long_name": "level of the scene's forces with which the resonance has the amplitude", "units": "1"},
     ),
     "steady_state": (
         lambda c: c.frequency if c.mode is None else c.mode.steady.astype(float),

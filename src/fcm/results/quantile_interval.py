@@ -54,11 +54,7 @@ def draws_needed(percent: float) -> float:
 
 
 def intervals(
-    values: FloatArray,
-    errors: FloatArray,
-    percents: tuple[float, ...],
-    confidence: float,
-    left_out: int = 0,
+    values: FloatArray, errors: FloatArray, percents: tuple[float, ...], confidence: float, left_out: int = 0
 ) -> FloatArray:
     """Intervals (percent, 2) of percentiles of values with relative errors, NaN where an end is unknown.
 

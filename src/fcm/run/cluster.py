@@ -151,10 +151,7 @@ class Workers:
             return
         asked_by = identity()
         answers = self.client.run(
-            identity,
-            workers=new,
-            on_error="return",
-            callback_timeout=self.options.scheduler_answer,
+            identity, workers=new, on_error="return", callback_timeout=self.options.scheduler_answer
         )
         for address, found in answers.items():
             self.fits[address] = found == asked_by

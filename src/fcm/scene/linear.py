@@ -144,10 +144,7 @@ def _of_ring(
     only = [own.place[name] for name in output]
     sectors = int(parts["cyclic"][0]["sectors"])
     draft, notes = modal_of_ring(
-        top,
-        LoadedRing(matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed),
-        only,
-        ends,
+        top, LoadedRing(matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed), only, ends
     )
     if draft is None:
         return parts, notes

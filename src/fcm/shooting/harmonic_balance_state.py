@@ -19,11 +19,7 @@ from fcm.time_domain.state import State
 
 
 def harmonic_state(
-    scene: Scene,
-    frequency: float,
-    amplitude: npt.ArrayLike,
-    phase: npt.ArrayLike,
-    mean: npt.ArrayLike,
+    scene: Scene, frequency: float, amplitude: npt.ArrayLike, phase: npt.ArrayLike, mean: npt.ArrayLike
 ) -> State:
     """The state at the forces' angle 0 of the motion mean + amplitude sin(omega t + phase) (section 4.3).
 

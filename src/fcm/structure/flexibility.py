@@ -79,8 +79,7 @@ def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
     far = options.massless_ratio**2 * (highest or 1.0)
     least = np.maximum(
-        options.min_energy * _static(structure, kept, loads, rest, np.inf),
-        options.min_energy**2 * static,
+        options.min_energy * _static(structure, kept, loads, rest, np.inf), options.min_energy**2 * static
     )
     newest = _of_energy_1(
         structure,

@@ -52,13 +52,7 @@ class Reduced(Frozen):
     unclear: float = 0.0  # see `rigid_body.unclear_below`
 
 
-def reduced(
-    K: Matrix,
-    M: Matrix,
-    loads: FloatArray,
-    top: float,
-    selection: ModeSelection,
-) -> Reduced:
+def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, selection: ModeSelection) -> Reduced:
     """Reduces a structure to modes for loads (row, load) up to the angular frequency top.
 
     For the selection's other rows the error of their displacement is estimated as well.

@@ -228,18 +228,14 @@ def slip_geometry(b_bar: cython.double[::1], phi: cython.double[::1]) -> np.ndar
     return rows
 
 
-def weights(
-    f: float,
-) -> tuple[float, float, float, float]:
+def weights(f: float) -> tuple[float, float, float, float]:
     """Weights of the four coefficients of a cubic B-spline at a fraction f of an interval."""
     g: float = 1.0 - f
     third: float = (1.0 + 3.0 * f * (1.0 + f * (1.0 - f))) / 6.0
     return g * g * g / 6.0, (4.0 + 3.0 * f * f * (f - 2.0)) / 6.0, third, f * f * f / 6.0
 
 
-def slopes(
-    f: float,
-) -> tuple[float, float, float, float]:
+def slopes(f: float) -> tuple[float, float, float, float]:
     """Derivatives of the four B-spline weights by f."""
     g: float = 1.0 - f
     return -0.5 * g * g, f * (1.5 * f - 2.0), 0.5 + f * (1.0 - 1.5 * f), 0.5 * f * f
@@ -258,13 +254,7 @@ class Cubic:
         self.coefficients = coefficients.reshape(-1).data
 
     def evaluate(
-        self,
-        u: float,
-        x: float,
-        z: float,
-        gradient: bool,
-        out: cython.double[::1],
-        at: cython.Py_ssize_t,
+        self, u: float, x: float, z: float, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t
     ) -> None:
         """Values of the three at (u, x, z), in nodes, to out[at:], then their derivatives by u, x and z."""
         i: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, u)

@@ -613,11 +613,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def free(
-        self,
-        slot: cython.Py_ssize_t,
-        j: cython.Py_ssize_t,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
+        self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t
     ) -> cython.void:
         """Adds to `whole` the result of 2**j free steps (without forces) from row k of y."""
         n: cython.Py_ssize_t = self.linear

@@ -76,12 +76,7 @@ class Powers(Walk):
     """
 
     def __init__(
-        self,
-        flows: Flows,
-        wave: FloatArray,
-        static: FloatArray,
-        damper: FloatArray,
-        everywhere: bool = True,
+        self, flows: Flows, wave: FloatArray, static: FloatArray, damper: FloatArray, everywhere: bool = True
     ) -> None:
         Walk.__init__(self, flows)
         self._everywhere = everywhere
@@ -374,11 +369,7 @@ class Rows:
     @cython.nogil
     @cython.exceptval(check=False)
     def all(
-        self,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
-        out: cython.double[:, ::1],
-        b: cython.Py_ssize_t,
+        self, y: cython.double[:, ::1], k: cython.Py_ssize_t, out: cython.double[:, ::1], b: cython.Py_ssize_t
     ) -> cython.void:
         """Products of all rows with row k of y, written to row b of out."""
         p: cython.Py_ssize_t

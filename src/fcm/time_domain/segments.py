@@ -85,11 +85,7 @@ class Segments:
                 out[i] = max(out[i], fabs(self.y[k, i]))
         return greatest
 
-    def scale(
-        self,
-        per_unit: cython.double[::1],
-        flows: FlowArrays,
-    ) -> FloatArray:
+    def scale(self, per_unit: cython.double[::1], flows: FlowArrays) -> FloatArray:
         """Sizes of the displacements, velocities and friction forces: (2 modes + contacts,).
 
         A mode's is the greatest displacement by the one that its shape gives, a contact's the greatest of its

@@ -124,14 +124,7 @@ class Slider(Events):
         self.pieces = self.slipping = self.span = self.span_cause = 0
         self.span_begin = self.w = 0.0
 
-    def add(
-        self,
-        state: cython.int,
-        event: cython.int,
-        theta: float,
-        rest: float,
-        cause: cython.int,
-    ) -> None:
+    def add(self, state: cython.int, event: cython.int, theta: float, rest: float, cause: cython.int) -> None:
         """Appends a piece, unless the last one has the same state."""
         i: cython.int = self.pieces
         if i > 0 and self.state[i - 1] == state:

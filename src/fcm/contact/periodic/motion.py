@@ -113,13 +113,7 @@ class Motion(Nodes):
         self.at = np.zeros((REACH, self.many))
 
     def load(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
+        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> cython.int:
         """Takes a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
         self.taken = self.sampled = False

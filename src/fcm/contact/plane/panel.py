@@ -106,13 +106,7 @@ class PlaneMotion:
         self.moving = 0
 
     def load(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
+        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> cython.int:
         """Takes a contact and returns OPEN, CLOSED or MIXED; UNKNOWN where a number is not finite."""
         k: cython.int
@@ -323,14 +317,7 @@ class Panel:
                 self.columns[STAGES * j + i] = self.slopes[i + 1, j + 1]
 
     def solve(
-        self,
-        theta: float,
-        length: float,
-        left: float,
-        e_x: float,
-        e_y: float,
-        rate: float,
-        bend: float,
+        self, theta: float, length: float, left: float, e_x: float, e_y: float, rate: float, bend: float
     ) -> bool:
         """Solves a panel from a direction on, with predicted alpha' and alpha''; False if it is too long."""
         i: cython.int
