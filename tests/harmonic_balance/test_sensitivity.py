@@ -14,7 +14,7 @@ from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict
 from fcm.sensitivity.parameter_derivatives import rates_of
 from fcm.sensitivity.peak import PeakKind
-from fcm.sensitivity.peaks import numbers_of, settled
+from fcm.sensitivity.peaks import numbers_of, unswept
 
 STEP = 1e-3  # of a number
 
@@ -262,7 +262,7 @@ def test_phases_count_from_two_forces_on():
             "response": {"frequency": [0.7, 1.7]},
         }
     )
-    assert not any("phase" in number.key for number in numbers_of(settled(one)))
+    assert not any("phase" in number.key for number in numbers_of(unswept(one)))
 
 
 def test_nothing_is_said_of_peaks_that_are_not_reported():
@@ -326,7 +326,7 @@ def test_rates_by_a_number_of_contacts_are_those_of_the_whole_system(key, harmon
     modal = {"dofs": ["u", "v", "w"], "frequency": [1.0, 3.0, 10.0], "damping": 0.01, "shapes": shapes}
     contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.2, "k_u": 1.0, "k_v": 1.0, "n_0": 3.0}
     force, response = [{"dof": "w", "amplitude": 1.0}], {"frequency": [0.7, 1.7]}
-    scene = settled(
+    scene = unswept(
         scene_from_dict({"modal": modal, "contact": [contact], "force": force, "response": response})
     )
     system = System(scene, harmonics)

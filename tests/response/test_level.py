@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fcm.branches import force_level
-from fcm.branches.force_level import LevelRange, level_curve, resonances, solutions
+from fcm.branches.force_level import LevelRange, level_curve, linear_resonances, solutions
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.shared_levels import clear, shared_curve
 from fcm.continuation import Status
@@ -73,7 +73,7 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
     scene = random_scene(112)
     (curve,) = trace(scene).curves
     system = System(scene)
-    for frequency in (*scene.frequency_range, *resonances(system)):
+    for frequency in (*scene.frequency_range, *linear_resonances(system)):
         end = highest_linear_limit(system, frequency)
         linear = min(0.9 * lowest_linear_limit(system, frequency), 1.0)  # from where the response begins, too
         exactly = level_curve(system, frequency, LevelRange((0.0, end), linear=linear))
@@ -133,7 +133,7 @@ def test_a_passing_that_long_steps_lead_across_is_found():
     scene = random_scene(13)
     scene = replace(scene, forces=tuple(replace(one, amplitude=5.0 * one.amplitude) for one in scene.forces))
     system = System(scene)
-    for frequency in (*resonances(system), 1.1800850503105396):
+    for frequency in (*linear_resonances(system), 1.1800850503105396):
         path = level_curve(system, frequency, LevelRange((0.0, highest_linear_limit(system, frequency))))
         passings = path.z[path.parameter == 1.0, :-1]
         found = solutions(system, frequency)

@@ -357,7 +357,7 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
 
 def level_frequencies(system: System, peaks: Sequence[float] = ()) -> tuple[float, ...]:
     """The frequencies at which the level is followed; peaks: those of a response with fewer harmonics."""
-    span, inside = system.scene.frequency_range, resonances(system)
+    span, inside = system.scene.frequency_range, linear_resonances(system)
     known = np.array([span[0], *inside, span[1]])
     widest = int(np.diff(known).argmax())
     found = (*span, *inside, float(known[widest : widest + 2].mean()))
@@ -415,7 +415,7 @@ def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple
     return system.harmonics if same else few
 
 
-def resonances(system: System) -> list[float]:
+def linear_resonances(system: System) -> list[float]:
     """Natural frequencies within the range, with all contacts stuck, as at rest, and all open, in order; of
     forces at other harmonics these divided by them."""
     low, high = system.scene.frequency_range

@@ -68,10 +68,10 @@ class Outputs:
 
     def write(self, response: Response, to_json: bool) -> dict[str, Any]:
         """Write all files and print the summary; the curves are then no longer kept."""
-        from fcm.results.condensed_curves import with_condensed
+        from fcm.results.curve_extracts import with_extracts
         from fcm.results.summary import summary
 
-        response = replace(response, curves=[with_condensed(curve) for curve in response.curves])
+        response = replace(response, curves=[with_extracts(curve) for curve in response.curves])
         result = summary(response)
         try:
             for path, write in self._files(response):

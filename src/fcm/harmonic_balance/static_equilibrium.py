@@ -172,7 +172,7 @@ class AtRest(NamedTuple):
     adrift: FloatArray
 
 
-def at_rest(system: System) -> AtRest:
+def equilibrium(system: System) -> AtRest:
     """The equilibrium of a system under its static loads; zeros without any.
 
     Raises

@@ -159,9 +159,9 @@ class System(Frozen):
     @cached_property
     def _at_rest(self) -> AtRest:
         """The equilibrium under static loads, see `harmonic_balance.static_equilibrium`."""
-        from fcm.harmonic_balance.static_equilibrium import at_rest  # which balances a system
+        from fcm.harmonic_balance.static_equilibrium import equilibrium  # which balances a system
 
-        return at_rest(self)
+        return equilibrium(self)
 
     @property
     def rest(self) -> FloatArray:

@@ -48,7 +48,7 @@ class DrawnRun(NamedTuple):
     complete: bool
 
 
-class Panel(Frozen):
+class AccuracyPanel(Frozen):
     """Runs against one reference: of each method its marks, from long steps to short ones."""
 
     reference: str
@@ -62,7 +62,7 @@ class Accuracy(Frozen):
 
     title: str
     quantity: str
-    panels: tuple[Panel, ...]
+    panels: tuple[AccuracyPanel, ...]
 
 
 @apart
@@ -83,7 +83,7 @@ def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
     return Accuracy(title, quantity, known)
 
 
-def _panel(summary: Any, reference: str, quantity: str) -> Panel:
+def _panel(summary: Any, reference: str, quantity: str) -> AccuracyPanel:
     lines: dict[tuple[str, bool], list[DrawnRun]] = {}
     for run in sorted(summary["runs"], key=lambda run: -run["max_step"]):
         if run["corrected"] and not run["left_out"]:
@@ -100,7 +100,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
             lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
     one = summary["references"][reference]
     own = one["own_error"][quantity]
-    return Panel(reference, None if own is None else _number(own), _number(one["max_step"]), lines)
+    return AccuracyPanel(reference, None if own is None else _number(own), _number(one["max_step"]), lines)
 
 
 def _number(value: Any) -> float:
@@ -128,7 +128,7 @@ def draw_accuracy(accuracy: Accuracy) -> Figure:
     return figure
 
 
-def _draw_panel(axes: Axes, panel: Panel) -> None:
+def _draw_panel(axes: Axes, panel: AccuracyPanel) -> None:
     for (method, corrected), marks in panel.lines.items():
         marker, colour = STYLES.get(method, OTHER)
         label = method if corrected else f"{method}, as it is"

@@ -17,8 +17,8 @@ from fcm.model.scene import Scene
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.results.cause import Cause
-from fcm.results.condensed_curves import CondensedCurve, without_points
 from fcm.results.contact_maxima import Greatest
+from fcm.results.curve_extracts import CurveExtract, without_points
 from fcm.results.jumps import FrequencySweep, Jump, UnknownStability
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
@@ -42,7 +42,7 @@ Group = Sequence[Scene]
 KINDS = (
     Cause,
     Curve,
-    CondensedCurve,
+    CurveExtract,
     ContactMotions,
     Orbits,
     Stuck,
@@ -130,7 +130,7 @@ def anonymous(scenes: Group) -> list[Scene]:
     ]
 
 
-def fit(groups: Sequence[Group], number: int, results: Any) -> bool:
+def are_curves_of(groups: Sequence[Group], number: int, results: Any) -> bool:
     """Whether results that were read from a file can be the curves of the group with this number."""
     if not 0 <= number < len(groups) or not isinstance(results, list):
         return False
@@ -217,7 +217,9 @@ class CurveBatches:
         kept = Results()
         if self.checkpoint is not None:
             whole = fingerprint(mark, [anonymous(batch) for batch in batches])
-            kept = self.checkpoint.results(whole, (*KINDS, *states), lambda i, found: fit(batches, i, found))
+            kept = self.checkpoint.results(
+                whole, (*KINDS, *states), lambda i, found: are_curves_of(batches, i, found)
+            )
         place = self.place or place_for(self.jobs if len(batches) > 1 else 1)
         outcome = compute_batches(compute, batches, place, kept, progress)
         if outcome.lost:

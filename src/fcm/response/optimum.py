@@ -19,7 +19,7 @@ from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.response.tracking_task import STATES
-from fcm.results.condensed_curves import condense, without_points
+from fcm.results.curve_extracts import extract_of, without_points
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, TrackedCurve, Tracking
@@ -219,7 +219,7 @@ def _with(harmonics: tuple[int, ...]) -> str:
 
 def _missed_peak(found: Optimal, curve: Curve) -> tuple[str, float] | None:
     """The highest peak of a minimised quantity in the response that was not followed."""
-    ends, higher = (curve.condensed or condense(curve)).ends, list[tuple[float, str]]()
+    ends, higher = (curve.extract or extract_of(curve)).ends, list[tuple[float, str]]()
     for name in found.minimised:
         what, _, dof = name.partition(".")
         peak = curve.peaks[dof]

@@ -164,7 +164,7 @@ def with_base(parts: Parts) -> Parts:
     return with_displacements(parts, {BASE: parts["modal"]["participation"]}) if parts["base"] else parts
 
 
-def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
+def with_exact_rigid_modes(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
     """The parts with frequencies that are the rounding of rigid-body modes set to 0."""
     frequency = parts["modal"]["frequency"]
     bodies = len(parts["contact"]) + 1  # that are held together by contacts alone

@@ -361,7 +361,7 @@ def mistuned_modes(modal: Part, whole: Part, unit: float) -> Part:
     }
 
 
-def turned(draft: Part, whole: Part) -> list[Part]:
+def standing_drafts(draft: Part, whole: Part) -> list[Part]:
     """A force on all sectors, which travels around, as two drafts that stand: that of the sines, and cosines.
 
     sin(h w t + p + h k phi) = cos(h k phi) sin(h w t + p) + sin(h k phi) sin(h w t + p + pi / 2)

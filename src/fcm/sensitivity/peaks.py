@@ -44,7 +44,7 @@ class Sensitivities(Frozen):
 def numbers_of(scene: Scene) -> list[Number]:
     """The numbers of a scene by which peaks have derivatives: contacts, forces, loads, modes.
 
-    Contacts of one group are moved together. The scene is that of one curve, `settled`.
+    Contacts of one group are moved together. The scene is that of one curve, `unswept`.
     """
     assert scene.draft is not None
     parts = scene.draft.parts
@@ -71,7 +71,7 @@ def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:
     return [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
 
 
-def settled(scene: Scene) -> Scene:
+def unswept(scene: Scene) -> Scene:
     """The scene of one curve as if nothing had been swept: its values are those of the curve."""
     draft = scene.draft
     if not isinstance(draft, Draft):
@@ -98,7 +98,7 @@ def sensitivities(
     options : SensitivityOptions, optional
         Steps and tolerances.
     """
-    scene = settled(scene)
+    scene = unswept(scene)
     system = System(scene, harmonics)
     points = [Peak(system, d, z, edge, options) for d, z, edge in peaks]
     numbers = numbers_of(scene)

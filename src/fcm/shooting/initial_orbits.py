@@ -259,11 +259,11 @@ def _from_rest(
 
 def inner_resonances(scene: Scene) -> list[float]:
     """Natural frequencies inside the range, contacts all stuck and all open; none without a balance."""
-    from fcm.branches.force_level import resonances
+    from fcm.branches.force_level import linear_resonances
     from fcm.harmonic_balance.system import System
 
     scene = scene.whole()
-    return resonances(System(scene)) if scene.modal.frequency.all() and scene.contacts else []
+    return linear_resonances(System(scene)) if scene.modal.frequency.all() and scene.contacts else []
 
 
 def _add_distinct(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:

@@ -36,7 +36,7 @@ from fcm.contact.plane.options import PlanarOptions
 from fcm.contact.plane.radau import radau
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
     from cython.cimports.fcm.contact.plane.panel import (
         apply_eight,
         face_eight,
@@ -45,7 +45,7 @@ if cython.compiled:
         turn_of_eight,
     )
 else:
-    from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
+    from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
     from fcm.contact.plane.radau import STAGES
 
 
@@ -87,7 +87,7 @@ class PlaneMotion:
         self.options = given = options
         self.smooth, self.faint = given.smooth_radius, given.min_motion
         numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
-        self.normal = Motion(harmonics)
+        self.normal = LineMotion(harmonics)
         self.highest, self.stages = max(harmonics, default=0), stages
         self.number, self.order = numbers, numbers.astype(np.float64)
         self.re = np.zeros((ROWS, max(self.count, 1)))
