@@ -14,7 +14,7 @@ from fcm.continuation import Mark
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.response.mode import ModeRequest, trace_modes
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
@@ -110,7 +110,7 @@ def test_the_greatest_of_a_curve_beside_that_of_many_harmonics(preload):
 def test_at_levels_and_of_a_mode_beside_many_harmonics():
     """The same motion with more harmonics: at the level 1; of the mode at the same modal amplitude."""
     one = fcm.load_scene("yang1998-n5")
-    few, many = (trace_levels(one, [1.3], (0.5, 1.5), harmonics=n).curves[0] for n in (1, 15))
+    few, many = (trace_levels(one, LevelRequest([1.3], (0.5, 1.5)), harmonics=n).curves[0] for n in (1, 15))
     here, there = (curve.cycle[curve.level == 1.0][0] for curve in (few, many))
     told = few.cycle_error[few.level == 1.0][0]
     assert told == pytest.approx(np.abs(there / here - 1.0), rel=0.5)

@@ -30,9 +30,10 @@ def test_as_many_neighbours_of_the_highest_point_are_looked_at_as_is_asked(neigh
         unit=np.ones((9, 1)),
         known=np.arange(9) == 6,
         change=np.hstack((np.zeros((9, 1)), change)),
-        place=np.arange(9.0),
+        arc=np.arange(9.0),
         quantities=SimpleNamespace(growth=np.zeros((9, 1))),
         path=SimpleNamespace(mark=np.zeros(9, dtype=np.int64)),
+        followed=[],
     )
 
     def find(points):
@@ -40,7 +41,7 @@ def test_as_many_neighbours_of_the_highest_point_are_looked_at_as_is_asked(neigh
 
     reference.find = find
     none = np.zeros(0, dtype=np.intp)
-    ((*_, top),) = tops_of_reference(reference, change, change, [], none)
+    ((*_, top),) = tops_of_reference(reference, change, change, none)
     assert top.height == found
 
 

@@ -223,14 +223,14 @@ def test_a_lower_peak_has_the_error_of_its_height_not_that_at_its_frequency():
 
 def test_peaks_that_are_displaced_are_tops_of_parabolas_between_minima():
     """One peak a(s) = 2 - (s - 1)^2, of the reference 2.5 - (s - 1.2)^2, whose frequency is 10 % more."""
-    place = np.linspace(0.0, 2.0, 9)
-    curve, there = 2.0 - (place - 1.0) ** 2, 2.5 - (place - 1.2) ** 2
-    path = SimpleNamespace(parameter=1.0 + place)
+    arc = np.linspace(0.0, 2.0, 9)
+    curve, there = 2.0 - (arc - 1.0) ** 2, 2.5 - (arc - 1.2) ** 2
+    path = SimpleNamespace(parameter=1.0 + arc)
     reference = SimpleNamespace(
-        amplitude=curve[:, None], place=place, path=path, unit=np.ones((9, 1)), options=PAIR
+        amplitude=curve[:, None], arc=arc, path=path, unit=np.ones((9, 1)), options=PAIR, followed=[]
     )
     change = np.transpose((np.full(9, 0.1), there - curve))
-    found = peak_errors(reference, change, [])
+    found = peak_errors(reference, change)
     assert found.point.tolist() == [4] and found.dof.tolist() == [0]
     assert found.height == pytest.approx([0.5])
     assert found.frequency == pytest.approx([1.1 * 2.2 / 2.0 - 1.0])

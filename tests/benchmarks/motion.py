@@ -24,9 +24,9 @@ from fcm.scene import Contact, Force, Modal, Scene
 from fcm.shooting import Shooting, periodic
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.simulation import march
 from fcm.time_domain.state import entry
-from fcm.time_domain.system import System
 
 FREQUENCIES = np.linspace(0.7, 1.7, 40)
 STEPS = (100, 200, 400)  # in a cycle
@@ -174,7 +174,7 @@ def large(contacts: int = 4, modes: int = 50) -> Scene:
 def of_a_period(name: str, scene: Scene, omega: float) -> None:
     """One period, the flows of a new frequency, the derivative, all that Newton's method needs."""
     orbit, problem = periodic(scene, omega), Shooting(scene)
-    system, frequencies = System(scene, omega), itertools.count()
+    system, frequencies = EquationsOfMotion(scene, omega), itertools.count()
     y, states = entry(system, orbit.state)
     segments, _, _ = march(system, y, states, system.period)
     kernel, last = system.march(), len(segments) - 1

@@ -10,7 +10,7 @@ import pytest
 
 from fcm.accuracy.refinement import every_branch, with_errors
 from fcm.accuracy.unchecked_response import unchecked_response
-from fcm.branches.fold_continuation import Ending, Folds, folds_from
+from fcm.branches.fold_continuation import FoldCurveEnding, Folds, folds_from
 from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.isolas import level_one_crossings
 from fcm.branches.options import FoldOptions, LevelCurveOptions, LevelOptions
@@ -113,7 +113,7 @@ def test_where_two_curves_of_folds_touch_the_one_leads_to_the_other(preload, con
         w for w in level_frequencies(system) if any(turn.unfinished for turn in solutions(system, w).folds)
     )
     (curve,) = (curve for turn, curve in folds_of(system, omega) if turn.unfinished)
-    assert curve is not None and set(curve.endings) == {Ending.LEVEL}
+    assert curve is not None and set(curve.endings) == {FoldCurveEnding.LEVEL}
     turns = sorted(turn.level for turn in solutions(system, 1.255, np.inf).folds)
     met = np.array(levels_at(curve, 1.255))
     assert len(turns) == 2 and all(np.abs(met / level - 1.0).min() < 1e-2 for level in turns)
@@ -135,7 +135,7 @@ def test_a_curve_of_folds_along_thin_strips_meets_every_turn_of_the_level(
     contact = replace(one.contacts[0], mu=mu, n_0=preload)
     system = System(replace(one, contacts=(contact,), forces=one.forces[:1]), condensation=condensation)
     (curve,) = (curve for turn, curve in folds_of(system, 1.20695) if turn.unfinished)
-    assert curve is not None and curve.endings == (Ending.LEVEL, Ending.LEVEL)
+    assert curve is not None and curve.endings == (FoldCurveEnding.LEVEL, FoldCurveEnding.LEVEL)
     for omega in frequencies:
         turns = sorted(turn.level for turn in solutions(system, omega, np.inf).folds)
         assert sorted(levels_at(curve, omega)) == pytest.approx(turns, rel=5e-3)
@@ -149,7 +149,7 @@ def test_a_closed_curve_of_folds_beside_another_is_followed_once_round():
     turns = sorted(turn.level for turn in solutions(system, 1.28, np.inf).folds)
     assert len(turns) == 2
     for _, curve in folds_of(system, 1.28):
-        assert curve is not None and curve.endings == (Ending.CLOSED, Ending.CLOSED)
+        assert curve is not None and curve.endings == (FoldCurveEnding.CLOSED, FoldCurveEnding.CLOSED)
         assert sorted(levels_at(curve, 1.28)) == pytest.approx(turns, rel=1e-3)
 
 
@@ -161,7 +161,7 @@ def test_folds_in_corners_are_followed_round_a_closed_curve():
         for turn, curve in folds_of(system, 2.0001)
         if turn.unfinished and abs(turn.level - 1.4895) < 1e-2 and curve is not None
     )
-    assert curve.endings == (Ending.CLOSED, Ending.CLOSED)
+    assert curve.endings == (FoldCurveEnding.CLOSED, FoldCurveEnding.CLOSED)
     for omega in (1.9, 2.1):
         levels = levels_at(curve, omega)
         turns = np.array([turn.level for turn in solutions(system, omega, np.inf).folds])
@@ -206,10 +206,10 @@ def test_where_curves_of_folds_are_not_followed_to_their_end_the_crossings_say_s
 
 def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
     z = np.array([[0.0, 1.0, 2.0], [0.0, 3.0, 2.0]])
-    assert Folds(z, z, (Ending.STALLED, Ending.LEVEL)).lost == [1.0]
-    assert Folds(z, z, (Ending.RANGE, Ending.LONG)).lost == [3.0]
-    assert Folds(z, z, (Ending.STALLED, Ending.CLOSED)).lost == []
-    assert Folds(z, z, (Ending.CLOSED, Ending.LEVEL)).lost == [1.0]
+    assert Folds(z, z, (FoldCurveEnding.STALLED, FoldCurveEnding.LEVEL)).lost == [1.0]
+    assert Folds(z, z, (FoldCurveEnding.RANGE, FoldCurveEnding.LONG)).lost == [3.0]
+    assert Folds(z, z, (FoldCurveEnding.STALLED, FoldCurveEnding.CLOSED)).lost == []
+    assert Folds(z, z, (FoldCurveEnding.CLOSED, FoldCurveEnding.LEVEL)).lost == [1.0]
 
 
 @pytest.mark.parametrize("distance, looked", [(0.4, True), (0.6, False)])

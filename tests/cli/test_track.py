@@ -13,7 +13,7 @@ from matplotlib.text import Text
 import fcm as package
 from fcm.cli.track import incomplete
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.scene import load_scene
 from fcm.tracking import lowest_peak, minimax
 
@@ -297,7 +297,7 @@ def test_what_is_wrong_is_said_and_nothing_is_written(fcm, scene, tmp_path, args
 )
 def test_the_library_names_the_span_that_it_was_given(scene, over, span, said):
     with pytest.raises(ValueError, match="^" + re.escape(said)):
-        track(load_scene(scene), "folds", over, span)
+        track(load_scene(scene), TrackRequest("folds", over, span))
 
 
 def test_an_optimum_excludes_what_is_for_numbers_already_chosen(fcm, optimum):

@@ -5,6 +5,7 @@ slip (P to PEP) comes without one: there the forces and their derivatives go on 
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -134,11 +135,11 @@ def test_measures_of_a_contact_that_is_open_or_never_moves():
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_another_extreme_of_a_limit_comes_to_hold_a_slider(side):
     """u = side (5 + c cos(theta) + cos(2 theta)) under a load 4: the limit is furthest at 0, or at pi."""
-    contact, law = PeriodicContact([1, 2], [1, 2]), (0.5, 1.0, 0.0, 4.0)
-    bounds, margins = LineLaw(contact, *law), []
+    contact, law = PeriodicContact([1, 2], [1, 2]), {"mu": 0.5, "k_u": 1.0, "k_v": 0.0, "n_0": 4.0}
+    bounds, margins = LineLaw(contact, SimpleNamespace(**law)), []
     for c in (1e-7, -1e-7):
         x = side * np.array([5.0, 0.0, c, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-        contact.at(x, *law)
+        contact.at(x, *law.values())
         assert contact.forces[0] == pytest.approx(side * (0.5 * 4.0 - 1.0 - abs(c)), abs=1e-12)
         assert contact.jacobian[0, 2] == pytest.approx(-np.sign(c), abs=1e-6)
         bounds.evaluate_margins(x, 0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.contact import hysteresis_loop
-from fcm.contact.surface import COEFFICIENTS, Plane, boundaries, regions, surface
+from fcm.contact.surface import COEFFICIENTS, ParameterPlane, boundaries, regions, surface
 
 DEGREES = np.pi / 180.0
 OFF = 1e-6  # beside a boundary
@@ -21,7 +21,7 @@ def constant_load(n0):
 
 @pytest.mark.parametrize("phi", [0.0, 15.0, 30.0, 90.0, 180.0])
 def test_without_load_variation_it_is_the_contact_of_constant_load(phi):
-    plane = Plane(phi * DEGREES, n0_range=(0.0, 1.0), b_range=(0.0, 2.0))
+    plane = ParameterPlane(phi * DEGREES, n0_range=(0.0, 1.0), b_range=(0.0, 2.0))
     stiffness, damping = (surface(name, plane) for name in ("F_s", "F_c"))
     expected_stiffness, expected_damping = constant_load(stiffness.n0_bar)
     np.testing.assert_allclose(stiffness.values[0], expected_stiffness, atol=1e-12)
@@ -30,14 +30,16 @@ def test_without_load_variation_it_is_the_contact_of_constant_load(phi):
 
 
 def test_in_phase_there_is_no_damping_above_b_1_and_out_of_phase_there_is():
-    beyond = {phi: surface("F_c", Plane(phi * DEGREES, b_range=(1.05, 2.0))).values for phi in (0, 15, 30)}
+    beyond = {
+        phi: surface("F_c", ParameterPlane(phi * DEGREES, b_range=(1.05, 2.0))).values for phi in (0, 15, 30)
+    }
     assert not beyond[0].any()
     assert beyond[15].max() > 0.15 and beyond[30].max() > 0.35
     assert beyond[15][-1].max() > 0.08 and beyond[30][-1].max() > 0.2  # at b = 2
 
 
 def test_the_in_phase_damping_ends_at_b_1():
-    drawn = surface("F_c", Plane())
+    drawn = surface("F_c", ParameterPlane())
     damped = (drawn.values > 1e-9).any(axis=1)
     np.testing.assert_array_equal(damped, drawn.b_bar < 1.0)
 
@@ -67,7 +69,7 @@ def test_a_boundary_is_where_the_formulas_say():
 
 @pytest.mark.parametrize("phi", [0.0, 15.0, 180.0, 250.0])
 def test_regions_are_the_sequences_of_the_loop(phi):
-    plane = Plane(phi * DEGREES)
+    plane = ParameterPlane(phi * DEGREES)
     found = regions(plane, steps=(37, 23))
     assert np.array_equal(sum(found.where.values()), np.ones((23, 37)))
     for name, where in found.where.items():
@@ -78,7 +80,7 @@ def test_regions_are_the_sequences_of_the_loop(phi):
 
 
 def test_in_phase_the_regions_meet_at_b_1_without_slivers():
-    found = regions(Plane())
+    found = regions(ParameterPlane())
     assert set(found.where) == {"E", "EPEN", "S", "SE", "SPEN"}
     np.testing.assert_array_equal(found.where["SE"].any(axis=1), found.b_bar > 1.0)
 
@@ -86,5 +88,5 @@ def test_in_phase_the_regions_meet_at_b_1_without_slivers():
 def test_another_law_is_drawn_as_it_is():
     law = lambda n0, b, phi: tuple(np.broadcast_to(k + n0 + b + phi, (b.size, n0.size)) for k in range(3))  # noqa: E731
     for k, name in enumerate(COEFFICIENTS):
-        drawn = surface(name, Plane(0.5), steps=(5, 4), law=law)
+        drawn = surface(name, ParameterPlane(0.5), steps=(5, 4), law=law)
         assert drawn.values.shape == (5, 6) and drawn.values[-1, 0] == pytest.approx(k - 2.0 + 2.0 + 0.5)

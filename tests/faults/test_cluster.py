@@ -13,7 +13,7 @@ import xarray
 
 import fcm
 from fcm.response.options import ResponseOptions, SweepOptions
-from fcm.run import Lost, PlaceClosed, cluster, place_of, sweep
+from fcm.run import Lost, PlaceClosed, cluster, compute_batches, place_of
 from fcm.run.options import RunOptions
 
 from .conftest import FEW, SWEEP, session, variables
@@ -259,7 +259,7 @@ def test_what_does_not_get_to_an_executor_is_lost_alone():
         return batch
 
     with ProcessPoolExecutor(1) as executor:
-        (lost,) = sweep(local, [[1]], place_of(executor)).results[0]
+        (lost,) = compute_batches(local, [[1]], place_of(executor)).results[0]
     assert isinstance(lost, Lost) and lost.reason.startswith("the executor did not compute it: ")
 
 
@@ -268,7 +268,7 @@ def test_an_executor_with_another_fcm_is_refused():
         place = place_of(executor)(abs, 1)
         place.asked_by = "0.0.9", place.asked_by[1]
         with pytest.raises(PlaceClosed, match=r"refused: it has fcm .*, and this is fcm 0\.0\.9"):
-            sweep(abs, [[1]], lambda *_: place)
+            compute_batches(abs, [[1]], lambda *_: place)
 
 
 def test_one_thread_of_linear_algebra_on_whatever_worker():
@@ -279,7 +279,7 @@ def test_one_thread_of_linear_algebra_on_whatever_worker():
 
     before = threads()
     with ThreadPoolExecutor(2) as executor:
-        counts = sweep(lambda *_: [threads()], [[1], [2]], place_of(executor)).results
+        counts = compute_batches(lambda *_: [threads()], [[1], [2]], place_of(executor)).results
     assert before and counts == {0: [[1] * len(before)], 1: [[1] * len(before)]}
     assert threads() == before
 
@@ -296,6 +296,6 @@ def test_one_thread_of_linear_algebra_in_a_program_that_says_nothing_of_it(monke
     with threadpool_limits(2, user_api="blas"):
         (before,) = threads()
         assert set(before) == {2}
-        assert sweep(threads, [[1]]).results == {0: [[1] * len(before)]}
+        assert compute_batches(threads, [[1]]).results == {0: [[1] * len(before)]}
         monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")  # the user's own number
-        assert sweep(threads, [[1]]).results == {0: [before]}
+        assert compute_batches(threads, [[1]]).results == {0: [before]}

@@ -20,7 +20,7 @@ NOTED = (
     FEW
     + """
 import fcm.response.curve_batches as module
-real = module.sweep
+real = module.compute_batches
 def sweep(compute, batches, at, kept, progress):
     taken, begun = set(kept.finished), set(kept.states)
     outcome = real(compute, batches, at, kept, progress)
@@ -28,7 +28,7 @@ def sweep(compute, batches, at, kept, progress):
         with open(name, "w") as file:
             file.write(" ".join(map(str, numbers)))
     return outcome
-module.sweep = sweep
+module.compute_batches = sweep
 """
 )
 

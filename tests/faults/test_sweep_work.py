@@ -5,7 +5,6 @@ import os
 import pickle
 import re
 import signal
-import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -16,9 +15,18 @@ import pytest
 
 import fcm
 from fcm.response import curve_batches, trace
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.response.mode import ModeRequest, trace_modes
-from fcm.run import Checkpoint, CheckpointError, Execution, ExecutorPlace, Lost, fingerprint, place_for, sweep
+from fcm.run import (
+    CheckpointError,
+    CheckpointFile,
+    Execution,
+    ExecutorPlace,
+    Lost,
+    compute_batches,
+    fingerprint,
+    place_for,
+)
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
 from fcm.run.options import RunOptions
@@ -81,10 +89,10 @@ def test_a_second_run_on_the_same_output_is_refused_and_the_first_named(program)
 def test_every_record_says_of_what_it_is(tmp_path):
     """Records of two scenes in one file: each takes its own."""
     path, one, two = tmp_path / "kept", bytes(32), bytes([1] * 32)
-    with Checkpoint(path) as kept:
+    with CheckpointFile(path) as kept:
         for mark, number, value in ((one, 0, 1.0), (two, 0, 2.0), (one, 1, 3.0), (two, 2, 4.0)):
             kept.append(mark, number, [value])
-    with Checkpoint(path, resume=True) as kept:
+    with CheckpointFile(path, resume=True) as kept:
         assert kept.results(one, (), lambda *_: True).finished == {0: [1.0], 1: [3.0]}
         assert kept.results(two, (), lambda *_: True).finished == {0: [2.0], 2: [4.0]}
 
@@ -206,7 +214,7 @@ def test_killed_just_after_the_start_what_was_kept_is_still_there(program):
         ALONE
         + """
 import fcm.response.curve_batches as module, os
-module.sweep = lambda *_: os.kill(os.getpid(), 9)
+module.compute_batches = lambda *_: os.kill(os.getpid(), 9)
 """
     )
     for _ in range(2):
@@ -232,7 +240,7 @@ def test_what_was_moved_aside_goes_when_its_work_is_written_and_not_before(tmp_p
     asides = [tmp_path / f"kept.{number}" for number in (1, 2, 3)]
 
     def run(mark, ends):
-        with Checkpoint(path) as kept:
+        with CheckpointFile(path) as kept:
             kept.results(mark, (), lambda *_: True).add(0, [1.0])
             return kept.done() if ends else None
 
@@ -260,14 +268,14 @@ def test_a_plain_rerun_of_the_same_scene_leaves_only_its_result(program):
 
 def test_records_are_appended_and_damage_is_passed_over(tmp_path):
     path, mark = tmp_path / "kept", bytes(range(32))
-    with Checkpoint(path) as kept:
+    with CheckpointFile(path) as kept:
         for number in range(3):
             kept.append(mark, number, [float(number)])
     data = path.read_bytes()
     size = (len(data) - 64) // 3
 
     def found():
-        with Checkpoint(path, resume=True) as kept:
+        with CheckpointFile(path, resume=True) as kept:
             return sorted(kept.results(mark, (), lambda *_: True).finished)
 
     for length in range(64 + size, len(data) + 1, 7):
@@ -277,7 +285,7 @@ def test_records_are_appended_and_damage_is_passed_over(tmp_path):
         path.write_bytes(data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :])
         assert found() == sorted({0, 1, 2} - {(at - 64) // size})
     path.write_bytes(data[: len(data) - 5])
-    with Checkpoint(path, resume=True) as kept:
+    with CheckpointFile(path, resume=True) as kept:
         kept.append(mark, 7, [7.0])
     assert path.read_bytes()[64 : len(data) - 5] == data[64:-5]
     assert found() == [0, 1, 7]
@@ -318,7 +326,7 @@ def test_a_forged_record_does_not_count(tmp_path, forged):
     scene = replace(one, curves=tuple(replace(one, parameters={"n": n}) for n in (1.0, 2.0)))
     keep, marks = tmp_path / "kept", []
 
-    class Marked(Checkpoint):
+    class Marked(CheckpointFile):
         def results(self, mark, *more):
             marks.append(mark)
             return super().results(mark, *more)
@@ -333,7 +341,7 @@ def test_a_forged_record_does_not_count(tmp_path, forged):
         "other": pickle.dumps([replace(curve, parameters={"n": 3.0}) for curve in curves]),
         "code": b"cos\nsystem\n(S'touch " + str(tmp_path / "owned").encode() + b"'\ntR.",
     }[forged]
-    with Checkpoint(keep):
+    with CheckpointFile(keep):
         header = keep.read_bytes()
     keep.write_bytes(header + packed(Record(marks[0], 0, payload)))
     again = trace(scene, "closed-form", execution=Execution(keep=keep, resume=True))
@@ -348,7 +356,7 @@ def test_what_cannot_be_kept_does_not_stop_the_sweep(program):
     full = (
         FEW
         + """
-import fcm.run.checkpoint as checkpoint
+import fcm.run.checkpoint_file as checkpoint
 def full(*_):
     raise OSError(28, "No space left on device")
 checkpoint._write = full
@@ -369,8 +377,8 @@ def test_workers_end_with_their_parent_in_the_middle_of_a_batch(program):
     program.write("endless.py", "def forever(batch, progress):\n    while True:\n        pass\n")
     program.write(
         "run.py",
-        "from endless import forever\nfrom fcm.run import place_for, sweep\n"
-        "sweep(forever, [[1], [2]], place_for(2))\n",
+        "from endless import forever\nfrom fcm.run import place_for, compute_batches\n"
+        "compute_batches(forever, [[1], [2]], place_for(2))\n",
     )
     for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
         run = program.python("run.py")
@@ -464,7 +472,7 @@ def test_the_progress_of_one_mode_or_level_moves_with_its_span(of):
     if of == "mode":
         trace_modes(scene, ModeRequest(1, (0.1, 100.0)), execution, harmonics=1)
     else:
-        trace_levels(scene, [1.2], (0.0, 2.0), execution, harmonics=1)
+        trace_levels(scene, LevelRequest([1.2], (0.0, 2.0)), execution, harmonics=1)
     assert shown == sorted(shown) and shown[-1] <= 1.0
     first = [share for share in dict.fromkeys(shown) if share < 0.4]
     assert len(first) > 5 and max(np.diff(first)) < 0.2
@@ -569,7 +577,7 @@ def square(batch, progress):
 """
 
 
-@pytest.mark.parametrize("place", ["here", "processes", "threads", "elsewhere"])
+@pytest.mark.parametrize("place", ["here", "processes", "elsewhere"])
 def test_every_place_gives_the_same_and_loses_what_fails_alone(tmp_path, monkeypatch, place):
     (tmp_path / "squares.py").write_text(SQUARES)
     monkeypatch.syspath_prepend(tmp_path)
@@ -578,47 +586,52 @@ def test_every_place_gives_the_same_and_loses_what_fails_alone(tmp_path, monkeyp
         at = {
             "here": place_for(1),
             "processes": place_for(2),
-            "threads": place_for(2, threads=True),
             "elsewhere": lambda compute, _: ExecutorPlace(compute, executor),
         }[place]
-        results = sweep(square, [[1, 2], [3], [4, -5, 6]], at).results
+        results = compute_batches(square, [[1, 2], [3], [4, -5, 6]], at).results
     assert [results[0], results[1], results[2][::2]] == [[1, 4], [9], [16, 36]]
     lost = results[2][1]
     assert isinstance(lost, Lost) and lost.reason == "ValueError: negative" and "in square" in lost.defect
 
 
-def test_threads_hand_over_what_is_finished_when_they_are_interrupted():
-    begun = threading.Event()
+ENDLESS = """
+import pathlib, time
+def endless(batch, progress):
+    if batch[0] == 0:
+        return [0]
+    pathlib.Path(__file__).with_name("begun").touch()
+    while True:
+        progress(0.5, "")
+        time.sleep(0.01)
+"""
 
-    def compute(batch, progress):
-        if batch[0] == 0:
-            return [0]
-        begun.set()
-        while True:
-            progress(0.5, "")
-            time.sleep(0.01)
+
+def test_processes_hand_over_what_is_finished_when_they_are_interrupted(tmp_path, monkeypatch):
+    (tmp_path / "endless_batch.py").write_text(ENDLESS)
+    monkeypatch.syspath_prepend(tmp_path)
+    endless = importlib.import_module("endless_batch").endless
 
     def show(_share, _text):
-        if begun.is_set():
+        if (tmp_path / "begun").exists():
             raise KeyboardInterrupt
 
-    done = sweep(compute, [[0], [1], [2]], place_for(2, threads=True), progress=show)
+    done = compute_batches(endless, [[0], [1], [2]], place_for(2), progress=show)
     assert done.interrupted and done.results == {0: [0]}
 
 
 def test_the_lock_goes_with_the_process(program):
     path = program.folder / "kept"
     code = (
-        "import sys, time\nfrom pathlib import Path\nfrom fcm.run import Checkpoint\n"
-        f"kept = Checkpoint(Path({str(path)!r}))\nprint('locked', flush=True)\ntime.sleep(60)\n"
+        "import sys, time\nfrom pathlib import Path\nfrom fcm.run import CheckpointFile\n"
+        f"kept = CheckpointFile(Path({str(path)!r}))\nprint('locked', flush=True)\ntime.sleep(60)\n"
     )
     run = program.python("-c", code)
     assert run.stdout.readline() == "locked\n"
     with pytest.raises(CheckpointError, match=f"process {run.pid} on"):
-        Checkpoint(path)
+        CheckpointFile(path)
     run.kill()
     run.communicate()
-    with Checkpoint(path, resume=True):
+    with CheckpointFile(path, resume=True):
         assert path.exists()
     assert not path.exists()
 
@@ -630,10 +643,10 @@ def test_checkpoints_have_a_limit_aside(tmp_path):
         path.write_text("foreign")
         if number == 2:
             with pytest.raises(CheckpointError, match="remove some"):
-                Checkpoint(path, options=three)
+                CheckpointFile(path, options=three)
         else:
             with pytest.warns(UserWarning, match="moved to"):
-                Checkpoint(path, options=three).close()
+                CheckpointFile(path, options=three).close()
 
 
 def test_an_import_that_an_interruption_made_fail_is_one():
@@ -647,6 +660,6 @@ def test_an_import_that_an_interruption_made_fail_is_one():
                 raise ImportError("initialization failed") from error
         return list(batch)
 
-    outcome = sweep(compute, [(1,), (2,), (3,)])
+    outcome = compute_batches(compute, [(1,), (2,), (3,)])
     assert outcome.interrupted and outcome.results == {0: [1]}
-    assert not sweep(compute, [(1,), (3,)]).interrupted
+    assert not compute_batches(compute, [(1,), (3,)]).interrupted

@@ -7,7 +7,7 @@ import pytest
 
 from fcm.fit.backbone import measured_span
 from fcm.fit.parameters import parameters_of
-from fcm.fit.solve import Problem, solved
+from fcm.fit.solve import FitProblem, solved
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Measured
 from fcm.nonlinear_modes.backbone import nonlinear_mode
@@ -48,7 +48,7 @@ def backbone(dof):
 @pytest.mark.parametrize("dof", ["", "u"])
 def test_rates_are_those_of_frequency_and_damping(dof):
     parameters = parameters_of(scene(), KEYS, [None] * 3)
-    problem = Problem(parameters, [backbone(dof)], HARMONICS, False)
+    problem = FitProblem(parameters, [backbone(dof)], HARMONICS, False)
     x = parameters.unknowns(TRUTH * [0.97, 1.02, 1.1])
     rates, step = problem.jacobian(x), 1e-5
     found = [(problem.residual(x + h) - problem.residual(x - h)) / (2.0 * step) for h in step * np.eye(3)]
@@ -66,7 +66,7 @@ def test_points_that_the_mode_does_not_come_to_are_counted():
     data = backbone("")
     lost = replace(data, mode=2, amplitude=data.amplitude)
     parameters = parameters_of(scene(), KEYS, [None] * 3)
-    parts = Problem(parameters, [lost], HARMONICS, False).parts(parameters.unknowns(TRUTH))
+    parts = FitProblem(parameters, [lost], HARMONICS, False).parts(parameters.unknowns(TRUTH))
     assert parts is not None and np.isfinite(parts[0].residual).all()
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.fit.estimate import estimated
-from fcm.fit.least_squares_rows import Rows
+from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.parameters import Parameters
 
 POINTS = 40
@@ -24,7 +24,11 @@ def line(rng, spread=0.1):
     design = np.column_stack((np.ones(POINTS), x))
     y = design @ [1.0, 2.0] + spread * rng.standard_normal(POINTS)
     values = np.linalg.lstsq(design, y, rcond=None)[0]
-    return design, values, Rows((design @ values - y)[:, None], design[:, None, :], np.zeros(POINTS), POINTS)
+    return (
+        design,
+        values,
+        ResidualRows((design @ values - y)[:, None], design[:, None, :], np.zeros(POINTS), POINTS),
+    )
 
 
 def test_the_errors_are_those_of_a_straight_line_in_textbooks():
@@ -51,7 +55,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
 def rows_with(columns):
     rng = np.random.default_rng(1)
     rates = np.column_stack(columns)
-    return Rows(0.01 * rng.standard_normal((POINTS, 1)), rates[:, None, :], np.zeros(POINTS), POINTS)
+    return ResidualRows(0.01 * rng.standard_normal((POINTS, 1)), rates[:, None, :], np.zeros(POINTS), POINTS)
 
 
 def test_numbers_of_which_none_has_an_effect_are_all_without():

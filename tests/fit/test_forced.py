@@ -9,7 +9,7 @@ import fcm
 from fcm.fit.forced import errors_of, forced_rows
 from fcm.fit.options import FIT
 from fcm.fit.parameters import parameters_of
-from fcm.fit.solve import Problem, solved
+from fcm.fit.solve import FitProblem, solved
 from fcm.model.scene import Measured
 from fcm.response import trace
 from fcm.scene.load import scene_from_dict
@@ -80,7 +80,7 @@ def test_rates_are_those_of_the_distances_beside_folds_too(blurred):
     data = of_curve(scene)
     data = replace(data, amplitude=data.amplitude * (1.0 + 0.01 * np.cos(np.arange(data.points))))
     parameters = parameters_of(scene, [*KEYS, "modal.damping.0"], [None] * 3)
-    problem = Problem(parameters, [data], (1,), blurred)
+    problem = FitProblem(parameters, [data], (1,), blurred)
     x = parameters.unknowns(parameters.start * 1.01)
     gradient = problem.jacobian(x).T @ problem.residual(x)
     costs = [0.5 * (problem.residual(x + sign * h) ** 2).sum() for h in 1e-6 * np.eye(3) for sign in (1, -1)]
@@ -107,7 +107,7 @@ def test_rates_of_a_contact_in_a_plane():
     amplitude = curve.amplitude[chosen, 0] * (1.0 + 0.02 * np.cos(np.arange(chosen.size)))
     data = Measured("made", "x", curve.frequency[chosen], amplitude, ones, ones)
     parameters = parameters_of(scene, ["contact.c.mu", "contact.c.k_u"], [None] * 2)
-    problem = Problem(parameters, [data], (1,), False)
+    problem = FitProblem(parameters, [data], (1,), False)
     x = parameters.unknowns(parameters.start * 1.01)
     gradient = problem.jacobian(x).T @ problem.residual(x)
     costs = [0.5 * (problem.residual(x + sign * h) ** 2).sum() for h in 1e-6 * np.eye(2) for sign in (1, -1)]

@@ -9,7 +9,7 @@ from scipy.optimize import brentq, minimize, minimize_scalar
 from fcm.fit.estimate import estimated
 from fcm.fit.options import FIT
 from fcm.fit.parameters import parameters_of
-from fcm.fit.solve import Problem, SearchResult, solved
+from fcm.fit.solve import FitProblem, SearchResult, solved
 from fcm.model.scene import Measured
 from fcm.scene.load import scene_from_dict
 
@@ -100,7 +100,7 @@ def test_every_start_comes_to_the_likeliest_numbers(seed, floor, share):
 def test_a_search_without_evaluations_left_is_not_settled():
     data = drawn(1, 0.0, 0.02)
     parameters = parameters_of(scene(0.2, 2.0), KEYS, [None, None])
-    problem = Problem(parameters, [data], (1,), False)
+    problem = FitProblem(parameters, [data], (1,), False)
     x = parameters.unknowns(parameters.start)
     short, long = problem.least(x, 2), problem.least(x, 60)
     assert isinstance(short, SearchResult) and not short.settled and long.settled

@@ -77,7 +77,7 @@ def test_one_harmonic_by_the_closed_form_is_the_general_case(seed):
         z = some_motion(system, seed, 3.0)
         single, periodic = (system.new_balance() for _ in range(2))
         kernel = PeriodicContact([1], [1])
-        periodic.laws = [LineLaw(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]
+        periodic.laws = [LineLaw(kernel, c) for c in scene.contacts]
         single.evaluate(z)
         periodic.evaluate(z)
         scale = np.abs(z[:-1]).max()

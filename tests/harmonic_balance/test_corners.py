@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.branches.force_level import resonances, solutions
+from fcm.branches.force_level import linear_resonances, solutions
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
@@ -56,7 +56,7 @@ def test_the_same_for_every_step(seed):
 def test_a_contact_closes_that_is_a_million_times_as_stiff():
     """From level 3e-5 on at the least of these frequencies: beyond that depths are 1e-8 of the motion."""
     system = System(random_scene(19), up_to(3))
-    for omega in (*system.scene.frequency_range, *resonances(system)):
+    for omega in (*system.scene.frequency_range, *linear_resonances(system)):
         assert solutions(system, omega).complete
 
 

@@ -134,9 +134,9 @@ def test_the_harmonics_of_the_forces_are_balanced_whatever_is_asked_for():
 
 
 def test_the_level_multiplies_the_forces_of_all_harmonics():
-    from fcm.response.level import trace_levels
+    from fcm.response.level import LevelRequest, trace_levels
 
-    (curve,) = trace_levels(scene(BOTH), [0.9], (0.01, 1.0), harmonics=5).curves
+    (curve,) = trace_levels(scene(BOTH), LevelRequest([0.9], (0.01, 1.0)), harmonics=5).curves
     (whole,) = trace(scene(BOTH, span=(0.8, 1.0)), harmonics=5).curves
     half = [one | {"amplitude": 0.5 * one["amplitude"]} for one in BOTH]
     (less,) = trace(scene(half, span=(0.8, 1.0)), harmonics=5).curves
@@ -166,9 +166,9 @@ def test_derivatives_of_the_peak_by_the_forces_are_those_of_differences():
 
 @pytest.mark.slow
 def test_a_tracked_peak_is_that_of_curves():
-    from fcm.response.track import track
+    from fcm.response.track import TrackRequest, track
 
-    response = track(scene(BOTH), "peaks", "force.v.amplitude", (0.9, 1.3), harmonics=3)
+    response = track(scene(BOTH), TrackRequest("peaks", "force.v.amplitude", (0.9, 1.3)), harmonics=3)
     tracked = response.tracking
     (curve,) = trace(scene([BOTH[0], BOTH[1] | {"amplitude": 1.1}]), harmonics=3).curves
     assert tracked is not None

@@ -1,11 +1,13 @@
 """Half the peak-to-peak displacement of several harmonics against motions that are sampled finely."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fcm.harmonic_balance.dense_jacobian import Amplitude
+from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.scene import load_scene
@@ -76,3 +78,13 @@ def test_no_extreme_of_a_nonlinear_mode_is_greater_than_its_amplitude():
     X = parts[0] + 1j * parts[1]
     x = np.einsum("th,phd->tpd", WAVES, X).real
     assert half_peak_to_peak(X, HARMONICS) == pytest.approx(0.5 * np.ptp(x, axis=0), rel=1e-6)
+
+
+def test_as_many_samples_as_the_options_say_are_taken_of_each_period():
+    few, many = (
+        replace(HARMONIC_BALANCE, extremes=replace(HARMONIC_BALANCE.extremes, samples=count))
+        for count in (8, 20)
+    )
+    scene = load_scene(Path(__file__).parent / "scenes" / "chaos.toml")
+    found = [System(scene, HARMONICS, options=one).new_balance().displacements.samples for one in (few, many)]
+    assert found == [8 * 3, 20 * 3]

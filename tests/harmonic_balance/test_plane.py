@@ -7,6 +7,7 @@ import tomllib
 from dataclasses import replace
 from importlib.resources import files
 from math import pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,9 +23,9 @@ from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.response.mode import ModeRequest, trace_modes
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.results.csv_file import write_csv
 from fcm.scene import scene_from_dict
 from fcm.stability.floquet import multipliers
@@ -110,7 +111,7 @@ def test_motions_against_a_march(oscillators, omega, sequence):
     found = amplitudes(scene, omega, 9)[2]
     moves = marched > 0.0
     assert found[moves] == pytest.approx(marched[moves], rel=1e-4)
-    response = trace_levels(scene, [omega], (0.9, 1.1), harmonics=(1, 2, 3))
+    response = trace_levels(scene, LevelRequest([omega], (0.9, 1.1)), harmonics=(1, 2, 3))
     point = np.abs(response.curves[0].level - 1.0).argmin()
     assert response.curves[0].regime[point, 0] == sequence
 
@@ -278,7 +279,7 @@ def test_what_the_file_says_of_a_contact_in_a_plane():
 
 
 def test_each_quantity_of_a_contact_in_a_plane_has_one_column(tmp_path):
-    response = trace_levels(ELLIPSE.scene((0.9, 1.1)), [1.0], (0.5, 1.0), harmonics=(1,))
+    response = trace_levels(ELLIPSE.scene((0.9, 1.1)), LevelRequest([1.0], (0.5, 1.0)), harmonics=(1,))
     write_csv(response, tmp_path / "plane.csv")
     with (tmp_path / "plane.csv").open(newline="", encoding="utf-8") as file:
         heads, *rows = csv.reader(file)
@@ -315,7 +316,10 @@ def test_the_bundled_damper_and_what_one_direction_misses():
 def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of_a_line():
     data = single("yang1998-n5", response={"frequency": [1.1, 1.4], "max_step": 0.1})
     line, plane = (scene_from_dict(one) for one in (data, with_still(data)))
-    levels = [trace_levels(one, [1.2], (0.2, 1.5), harmonics=(1, 2, 3)).curves[0] for one in (line, plane)]
+    levels = [
+        trace_levels(one, LevelRequest([1.2], (0.2, 1.5)), harmonics=(1, 2, 3)).curves[0]
+        for one in (line, plane)
+    ]
     assert levels[1].level_folds == pytest.approx(levels[0].level_folds, rel=1e-9)
     assert levels[1].amplitude[-1][:2] == pytest.approx(levels[0].amplitude[-1], rel=1e-9)
     modes = [
@@ -328,7 +332,10 @@ def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of
     assert peaks[1].sensitivity.values[0, 0, : numbers.size] == pytest.approx(
         peaks[0].sensitivity.values[0, 0], rel=1e-6, abs=1e-9
     )
-    tracks = [track(one, "folds", "contact.shroud.n_0", (4.9, 5.1), harmonics=(1,)) for one in (line, plane)]
+    tracks = [
+        track(one, TrackRequest("folds", "contact.shroud.n_0", (4.9, 5.1)), harmonics=(1,))
+        for one in (line, plane)
+    ]
     ends = [sorted(float(curve.frequency[-1]) for curve in one.tracking.curves) for one in tracks]
     assert ends[1] == pytest.approx(ends[0], rel=1e-9)
 
@@ -341,10 +348,11 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
         kernel, width = planar_contact(harmonics, harmonics), 3 + 6 * len(harmonics)
         for kind in ("slip", "start"):
             x = rng.standard_normal(width)
-            found = onset(PlanarLaw(kernel, **numbers), x, kind, harmonics)
+            found = onset(PlanarLaw(kernel, SimpleNamespace(**numbers)), x, kind, harmonics)
 
             def value(at, kind=kind, harmonics=harmonics, kernel=kernel, **other):
-                return onset(PlanarLaw(kernel, **(numbers | other)), at, kind, harmonics).value
+                law = PlanarLaw(kernel, SimpleNamespace(**(numbers | other)))
+                return onset(law, at, kind, harmonics).value
 
             h = 1e-6
             slope = [(value(x + h * one) - value(x - h * one)) / (2.0 * h) for one in np.eye(width)]
@@ -355,10 +363,10 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
 
 def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
     x = np.array([0.1, 0.3, 1.0, 0.2, 0.4, -0.5])
-    numbers = (0.5, 1.3, 0.7, 4.0)
-    line = onset(LineLaw(periodic_contact((1,), (1,)), *numbers), x, "slip", (1,))
+    contact = SimpleNamespace(mu=0.5, k_u=1.3, k_v=0.7, n_0=4.0)
+    line = onset(LineLaw(periodic_contact((1,), (1,)), contact), x, "slip", (1,))
     oblique = np.array([0.06, 0.08, 0.3, 0.6, 0.12, 0.8, 0.16, 0.4, -0.5])
-    plane = onset(PlanarLaw(planar_contact((1,), (1,)), *numbers), oblique, "slip", (1,))
+    plane = onset(PlanarLaw(planar_contact((1,), (1,)), contact), oblique, "slip", (1,))
     assert plane.value == pytest.approx(line.value, rel=1e-12)
     assert plane.by_number == pytest.approx(line.by_number, abs=1e-7)
 

@@ -13,8 +13,8 @@ from fcm.response.sensitivity import add_sensitivities, remarks
 from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict
 from fcm.sensitivity.parameter_derivatives import rates_of
-from fcm.sensitivity.peak import Kind
-from fcm.sensitivity.peaks import numbers_of, settled
+from fcm.sensitivity.peak import PeakKind
+from fcm.sensitivity.peaks import numbers_of, unswept
 
 STEP = 1e-3  # of a number
 
@@ -81,11 +81,11 @@ FEW = ("contact.c.mu", "contact.c.n_0", "modal.damping.0")
     [(10.0, 1, None), (-5.0, 1, FEW), (10.0, 3, ("contact.c.n_0", "modal.frequency.0"))],
 )
 def test_smooth_peaks(n_0, harmonics, keys):
-    check({"contact.c.n_0": n_0}, harmonics, Kind.SMOOTH, keys)
+    check({"contact.c.n_0": n_0}, harmonics, PeakKind.SMOOTH, keys)
 
 
 def test_peaks_where_the_range_ends_are_of_the_amplitude_there():
-    check({"contact.c.n_0": 10.0}, 1, Kind.EDGE, FEW, frequency=[0.7, 1.2])
+    check({"contact.c.n_0": 10.0}, 1, PeakKind.EDGE, FEW, frequency=[0.7, 1.2])
 
 
 def test_a_peak_at_a_corner_of_the_curve():
@@ -94,7 +94,7 @@ def test_a_peak_at_a_corner_of_the_curve():
         "contact.c.k_u": 2.47, "contact.c.k_v": 1.9, "contact.c.n_0": 4.45, "force.v.amplitude": 0.0,
     }  # fmt: skip
     keys = ("contact.c.n_0", "contact.c.k_v", "modal.frequency.0")
-    check(numbers, 1, (Kind.SMOOTH, Kind.CORNER), keys, frequency=[0.5, 3.0])
+    check(numbers, 1, (PeakKind.SMOOTH, PeakKind.CORNER), keys, frequency=[0.5, 3.0])
 
 
 def test_a_narrow_peak_that_no_contact_has_a_part_in():
@@ -129,7 +129,7 @@ def test_of_contacts_that_change_their_states_at_once_the_reason_is_told():
     two = tuple(replace(half, name=name) for name in ("c", "d"))
     scene = replace(scene, contacts=two, draft=replace(scene.draft, parts=parts))
     said, curve = reasons(scene)
-    assert curve.sensitivity.kind == (Kind.SMOOTH, Kind.UNKNOWN)
+    assert curve.sensitivity.kind == (PeakKind.SMOOTH, PeakKind.UNKNOWN)
     assert said == [
         "sensitivities of peaks (curve 0, v) are unknown: several contacts change their states there at "
         "once, so that each side has its own derivative. A [sweep] of two near values shows what a number "
@@ -143,7 +143,7 @@ def test_of_contacts_that_change_their_states_at_once_the_reason_is_told():
 def test_of_a_number_that_moves_a_peak_out_of_reach_the_reason_is_told():
     """Modes a thousandth apart: a step of 1e-4 of a frequency is a tenth of that."""
     said, curve = reasons(load_scene("extreme/close-modes"))
-    assert curve.sensitivity.kind == (Kind.SMOOTH, Kind.SMOOTH)
+    assert curve.sensitivity.kind == (PeakKind.SMOOTH, PeakKind.SMOOTH)
     assert said == [
         'sensitivities of peaks (curve 0, u) by "modal.frequency.1" are unknown: the peak is not found again '
         "with the number a little larger or smaller. A [sweep] of two near values shows what a number does"
@@ -152,7 +152,7 @@ def test_of_a_number_that_moves_a_peak_out_of_reach_the_reason_is_told():
 
 def test_one_reason_of_several_peaks_is_told_once():
     said, curve = reasons(load_scene("extreme/stiff-tangential"), 3)
-    assert curve.sensitivity.kind == (Kind.UNKNOWN, Kind.UNKNOWN)
+    assert curve.sensitivity.kind == (PeakKind.UNKNOWN, PeakKind.UNKNOWN)
     (one,) = said
     assert one.startswith("sensitivities of peaks (curve 0, u, and 1 more) are unknown: ")
     assert one.endswith("Another max_step may find it; a [sweep] of two near values shows what a number does")
@@ -262,7 +262,7 @@ def test_phases_count_from_two_forces_on():
             "response": {"frequency": [0.7, 1.7]},
         }
     )
-    assert not any("phase" in number.key for number in numbers_of(settled(one)))
+    assert not any("phase" in number.key for number in numbers_of(unswept(one)))
 
 
 def test_nothing_is_said_of_peaks_that_are_not_reported():
@@ -270,7 +270,7 @@ def test_nothing_is_said_of_peaks_that_are_not_reported():
     scene = replace(oscillator({"contact.c.n_0": 10.0})[0], reported=("v",))
     found = run(scene, 1)
     add_sensitivities(found, scene)
-    assert found.curves[0].sensitivity.kind == (Kind.UNKNOWN, Kind.SMOOTH)
+    assert found.curves[0].sensitivity.kind == (PeakKind.UNKNOWN, PeakKind.SMOOTH)
     assert remarks(found, scene) == []
 
 
@@ -326,7 +326,7 @@ def test_rates_by_a_number_of_contacts_are_those_of_the_whole_system(key, harmon
     modal = {"dofs": ["u", "v", "w"], "frequency": [1.0, 3.0, 10.0], "damping": 0.01, "shapes": shapes}
     contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.2, "k_u": 1.0, "k_v": 1.0, "n_0": 3.0}
     force, response = [{"dof": "w", "amplitude": 1.0}], {"frequency": [0.7, 1.7]}
-    scene = settled(
+    scene = unswept(
         scene_from_dict({"modal": modal, "contact": [contact], "force": force, "response": response})
     )
     system = System(scene, harmonics)

@@ -8,14 +8,14 @@ import pytest
 from matplotlib.text import Text
 
 import fcm
-from fcm.contact.surface import Plane, boundaries, edges, regions, surface
+from fcm.contact.surface import ParameterPlane, boundaries, edges, regions, surface
 from fcm.plot.normal import draw_normal
 from fcm.plot.plane import BOUNDARIES, phase_name
 from fcm.plot.surface import draw_contours, draw_surfaces
 from fcm.plot.table_error import RANGE, draw_errors
 from fcm.table.error_map import ErrorMap
 
-FIFTEEN, THIRTY = (Plane(math.radians(degrees)) for degrees in (15.0, 30.0))
+FIFTEEN, THIRTY = (ParameterPlane(math.radians(degrees)) for degrees in (15.0, 30.0))
 SMALL = (50, 20)
 
 
@@ -62,7 +62,7 @@ def test_figure_11_has_a_surface_for_each_phase():
 
 
 def test_figure_10_has_stiffness_and_damping():
-    figure = in_space(Plane(), coefficients=("F_s", "F_c"))
+    figure = in_space(ParameterPlane(), coefficients=("F_s", "F_c"))
     assert [axes.get_zlabel() for axes in figure.axes] == ["Stiffness $F_s$ (–)", "Damping $F_c$ (–)"]
     assert figure.axes[0].get_zlim() == pytest.approx((0.0, 1.0))
     assert figure.axes[1].get_zlim() == pytest.approx((0.0, 1.0 / np.pi))  # of constant load
@@ -74,7 +74,9 @@ def test_surfaces_of_one_coefficient_have_one_scale():
     assert first.collections[0].get_clim() == second.collections[0].get_clim()
 
 
-@pytest.mark.parametrize("plane", [Plane(), THIRTY, Plane(math.radians(100.0), (-3.0, 5.0), (0.5, 4.0))])
+@pytest.mark.parametrize(
+    "plane", [ParameterPlane(), THIRTY, ParameterPlane(math.radians(100.0), (-3.0, 5.0), (0.5, 4.0))]
+)
 def test_contours_show_the_regimes_where_they_are(plane):
     (axes,) = panels(flat(plane))
     assert axes.get_xlim() == plane.n0_range and axes.get_ylim() == plane.b_range
@@ -109,7 +111,7 @@ def test_each_name_is_in_its_region():
 def test_a_plane_without_anything_to_see_is_drawn():
     """All of it sticks, with k_u a of force in phase and none in quadrature."""
     for phi in (0.0, 1.0):
-        plane = Plane(phi, (50.0, 60.0), (0.0, 1.0))
+        plane = ParameterPlane(phi, (50.0, 60.0), (0.0, 1.0))
         (axes,) = panels(draw_contours([surface("F_c", plane)], [regions(plane)]))
         assert [text.get_text() for text in axes.texts] == ["E"]
         (axes,) = panels(draw_surfaces([surface("F_s", plane, SMALL)]))
@@ -120,7 +122,7 @@ def test_a_plane_without_anything_to_see_is_drawn():
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_nothing_overlaps(count):
-    planes = [Plane(phi) for phi in (0.0, 0.5, math.pi)][:count]
+    planes = [ParameterPlane(phi) for phi in (0.0, 0.5, math.pi)][:count]
     assert overlapping(flat(*planes)) == []
     assert overlapping(flat(*planes, coefficient="F_b")) == []
     assert overlapping(draw_errors([an_error(plane) for plane in planes], "Error of a table")) == []

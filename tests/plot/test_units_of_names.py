@@ -11,11 +11,11 @@ from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
 from fcm.plot.tracked import draw_tracked, read_tracked
 from fcm.response import trace
 from fcm.response.exact import trace_exact
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.response.mode import ModeRequest, trace_modes
 from fcm.response.optimum import optimise
 from fcm.response.sensitivity import add_sensitivities
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.results.csv_file import write_csv
 from fcm.results.output import write_netcdf
 from fcm.scene import scene_from_dict
@@ -38,7 +38,7 @@ def written(figure):
 
 @pytest.mark.parametrize("unit", ["Hz", "rad/s"])
 def test_where_the_level_was_varied_is_said_in_its_unit(tmp_path, unit):
-    found = trace_levels(scene_from_dict(SCENE | {"frequency_unit": unit}), [1.2], (0.0, 2.0))
+    found = trace_levels(scene_from_dict(SCENE | {"frequency_unit": unit}), LevelRequest([1.2], (0.0, 2.0)))
     write_netcdf(found, tmp_path / "level.nc")
     names = written(draw_response(read_response(tmp_path / "level.nc")))
     assert any(f"= 1.2 {unit}" in name for name in names)
@@ -59,9 +59,9 @@ WAYS = {
     "trace": lambda scene: trace(scene),
     "exact": lambda scene: trace_exact(scene, only="peaks"),
     "at": lambda scene: trace_exact(scene, [0.8]),
-    "level": lambda scene: trace_levels(scene, [0.8], (0.0, 2.0)),
+    "level": lambda scene: trace_levels(scene, LevelRequest([0.8], (0.0, 2.0))),
     "mode": lambda scene: trace_modes(scene, ModeRequest(1, (1e-3, 1e-2))),
-    "track": lambda scene: track(scene, "peaks", "contact.c.n_0", (2.0, 2.1), harmonics=1),
+    "track": lambda scene: track(scene, TrackRequest("peaks", "contact.c.n_0", (2.0, 2.1)), harmonics=1),
     "optimum": lambda scene: optimise(scene, harmonics=1),
 }
 
@@ -76,7 +76,7 @@ def test_every_response_has_the_units_of_its_scene(way):
 def test_swept_values_in_tables_have_their_unit_at_the_head(tmp_path):
     keys = ["contact.c.n_0", "contact.c.k_u", "contact.c.mu", "modal.frequency.0"]
     swept = SCENE | UNITS | {"frequency_unit": "Hz", "sweep": {key: [1.0, 1.1] for key in keys}}
-    write_csv(trace_levels(scene_from_dict(swept), [1.2], (0.0, 0.1)), tmp_path / "levels.csv")
+    write_csv(trace_levels(scene_from_dict(swept), LevelRequest([1.2], (0.0, 0.1))), tmp_path / "levels.csv")
     with (tmp_path / "levels.csv").open(newline="") as file:
         heads = next(csv.reader(file))
     assert heads[2:7] == [

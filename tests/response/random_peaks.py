@@ -18,7 +18,7 @@ from fcm.accuracy.refinement import RefinedResponse, refined_response
 from fcm.harmonic_balance.system import System
 from fcm.shooting.harmonic_balance_state import state_of
 from fcm.shooting.orbit_record import OrbitRecord
-from fcm.shooting.peaks_and_folds import Guess, located
+from fcm.shooting.peaks_and_folds import OrbitGuess, located
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain import SimulationError
 
@@ -70,7 +70,7 @@ def height(
     beside = top - 1 if top else 1
     scene, harmonics = found.system.scene, found.system.harmonics
     here, there = (state_of(scene, harmonics, path.z[i]) for i in (top, beside))
-    guess = Guess(float(path.parameter[top]), here, (float(path.parameter[beside]), there), d)
+    guess = OrbitGuess(float(path.parameter[top]), here, (float(path.parameter[beside]), there), d)
     try:
         peak = located(problem, guess, known)
     except SimulationError:

@@ -8,7 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.scene import scene_from_dict
 
 COUNT = 60  # masses in a row, between two walls
@@ -66,7 +66,7 @@ def test_peaks_among_many_are_those_of_the_linear_structure():
 
 @pytest.mark.slow
 def test_of_many_outputs_those_that_lead_are_tracked_and_the_others_are_said_to_be_left_out():
-    found = track(masses(["*"], 2, 50.0), "peaks", "contact.c.n_0", (49.0, 50.0), harmonics=1)
+    found = track(masses(["*"], 2, 50.0), TrackRequest("peaks", "contact.c.n_0", (49.0, 50.0)), harmonics=1)
     assert found.tracking is not None and found.tracking.complete
     whats = {one.what for one in found.tracking.curves}
     assert {f"peak of {name}" for name in ("m7", "m20", "m21")} <= whats and len(whats) < 10

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from fcm.branches import force_level
-from fcm.branches.force_level import LevelRange, level_curve, resonances, solutions
+from fcm.branches.force_level import LevelRange, level_curve, linear_resonances, solutions
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.shared_levels import clear, shared_curve
 from fcm.continuation import Status
 from fcm.harmonic_balance.response_quantities import recorded_at_levels
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.results.csv_file import write_csv
 from fcm.results.output import to_dataset
 from fcm.run import Execution
@@ -37,7 +37,7 @@ def test_both_kinds_of_curve_fold_at_the_same_solution(harmonics):
     scene = load_scene("yang1998-n5")
     (curve,) = trace(scene, harmonics=harmonics).curves
     for frequency in curve.folds:
-        (raised,) = trace_levels(scene, [frequency], (0.5, 1.5), harmonics=harmonics).curves
+        (raised,) = trace_levels(scene, LevelRequest([frequency], (0.5, 1.5)), harmonics=harmonics).curves
         assert min(abs(level - 1.0) for level in raised.level_folds) < 1e-6
         assert raised.folds == []
 
@@ -45,14 +45,14 @@ def test_both_kinds_of_curve_fold_at_the_same_solution(harmonics):
 def test_the_motion_of_an_open_contact_is_in_proportion_to_the_level():
     scene = load_scene("yang1998-n5")
     away = replace(scene, contacts=tuple(replace(one, n_0=-1e3) for one in scene.contacts))
-    (raised,) = trace_levels(away, [0.9], (0.1, 2.0)).curves
+    (raised,) = trace_levels(away, LevelRequest([0.9], (0.1, 2.0))).curves
     assert raised.level_folds == [] and raised.complete
     each = raised.amplitude / raised.level[:, None]
     assert each == pytest.approx(np.broadcast_to(each[0], each.shape), rel=1e-9)
 
 
 def test_what_is_said_of_a_curve_of_levels():
-    response = trace_levels(load_scene("yang1998-n5"), [1.2], (0.0, 1.0))
+    response = trace_levels(load_scene("yang1998-n5"), LevelRequest([1.2], (0.0, 1.0)))
     data, said = to_dataset(response), response.curves[0].summary()
     assert data.fold_level.dims == ("curve", "level_fold")
     assert data.fold_level[0].values.tolist() == said["level_folds"] == response.curves[0].level_folds
@@ -60,7 +60,7 @@ def test_what_is_said_of_a_curve_of_levels():
 
 
 def test_the_level_is_a_column_of_csv(tmp_path):
-    response = trace_levels(load_scene("yang1998-n5"), [1.2], (0.0, 1.0))
+    response = trace_levels(load_scene("yang1998-n5"), LevelRequest([1.2], (0.0, 1.0)))
     write_csv(response, tmp_path / "a.csv")
     head, first, *_ = (line.split(",") for line in (tmp_path / "a.csv").read_text().splitlines())
     assert len(head) == len(first)
@@ -73,7 +73,7 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
     scene = random_scene(112)
     (curve,) = trace(scene).curves
     system = System(scene)
-    for frequency in (*scene.frequency_range, *resonances(system)):
+    for frequency in (*scene.frequency_range, *linear_resonances(system)):
         end = highest_linear_limit(system, frequency)
         linear = min(0.9 * lowest_linear_limit(system, frequency), 1.0)  # from where the response begins, too
         exactly = level_curve(system, frequency, LevelRange((0.0, end), linear=linear))
@@ -97,7 +97,7 @@ def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():
     scene, level = isola_stuck(), 8e-4
     scene = replace(scene, contacts=(replace(scene.contacts[0], n_0=0.01),))
     weak = replace(scene, forces=tuple(replace(one, amplitude=level) for one in scene.forces))
-    (raised,) = trace_levels(scene, [1.5], (0.0, 2.0), harmonics=5).curves
+    (raised,) = trace_levels(scene, LevelRequest([1.5], (0.0, 2.0)), harmonics=5).curves
     assert raised.complete and len(raised.level_folds) == 2 and min(raised.level_folds) < level
     system = System(scene, up_to(5))
     path = level_curve(
@@ -133,7 +133,7 @@ def test_a_passing_that_long_steps_lead_across_is_found():
     scene = random_scene(13)
     scene = replace(scene, forces=tuple(replace(one, amplitude=5.0 * one.amplitude) for one in scene.forces))
     system = System(scene)
-    for frequency in (*resonances(system), 1.1800850503105396):
+    for frequency in (*linear_resonances(system), 1.1800850503105396):
         path = level_curve(system, frequency, LevelRange((0.0, highest_linear_limit(system, frequency))))
         passings = path.z[path.parameter == 1.0, :-1]
         found = solutions(system, frequency)
@@ -230,7 +230,7 @@ def test_a_curve_of_levels_in_common_is_interrupted_as_that_of_a_system_of_its_o
 def test_the_errors_of_a_curve_of_levels_are_those_of_the_exact_motion(harmonics):
     """Half the peak-to-peak of v where a march of the contact law settles, of `isola` at 1.22 rad/s: 1.838
     from rest, and 17.82 from half of all random states, where one harmonic has 22.77."""
-    (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0), harmonics=harmonics).curves
+    (curve,) = trace_levels(isola(), LevelRequest([1.22], (0.0, 2.0)), harmonics=harmonics).curves
     low, middle, high = np.flatnonzero(curve.level == 1.0)
     assert curve.amplitude[low, 1] == pytest.approx(1.838, rel=1e-3) and curve.error[low, 1] == 0.0
     true = abs(17.82 / curve.amplitude[high, 1] - 1.0)
@@ -241,14 +241,14 @@ def test_the_errors_of_a_curve_of_levels_are_those_of_the_exact_motion(harmonics
 
 def test_a_curve_of_levels_has_the_harmonics_that_an_accuracy_takes():
     """Of `isola` at 1.22 rad/s a march of the contact law settles at 17.82 in v; one harmonic has 22.77."""
-    (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0)).curves
+    (curve,) = trace_levels(isola(), LevelRequest([1.22], (0.0, 2.0))).curves
     high = np.flatnonzero(curve.level == 1.0)[-1]
     assert abs(17.82 / curve.amplitude[high, 1] - 1.0) < 1e-2
     assert curve.error[high, 1] < 1e-2 and curve.peaks["v"].error < 1e-2 and not curve.short_of
 
 
 def test_a_curve_of_levels_that_has_not_the_accuracy_says_so():
-    (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0), accuracy=1e-12).curves
+    (curve,) = trace_levels(isola(), LevelRequest([1.22], (0.0, 2.0)), accuracy=1e-12).curves
     assert curve.complete and curve.short_of.startswith(f"with {len(curve.harmonics)} harmonics an estimated")
 
 
@@ -258,9 +258,13 @@ def test_an_interruption_keeps_the_curves_of_levels_that_are_finished(stops_at, 
     progress = interrupted_after(stops_at - 1)
     if not kept:
         with pytest.raises(KeyboardInterrupt):
-            trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), execution=Execution(progress=progress))
+            trace_levels(
+                isola(), LevelRequest([1.22, 1.23, 1.24], (0.0, 2.0)), execution=Execution(progress=progress)
+            )
         return
-    response = trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), execution=Execution(progress=progress))
+    response = trace_levels(
+        isola(), LevelRequest([1.22, 1.23, 1.24], (0.0, 2.0)), execution=Execution(progress=progress)
+    )
     assert [curve.level.size > 0 for curve in response.curves] == [i < kept for i in range(3)]
     assert [curve.complete for curve in response.curves] == [i < kept - 1 for i in range(3)]
     assert response.curves[kept - 1].reason == "interrupted before it was known with 3 harmonics"
@@ -269,8 +273,8 @@ def test_an_interruption_keeps_the_curves_of_levels_that_are_finished(stops_at, 
 
 def test_a_solution_that_may_not_be_there_is_not_called_stable():
     """The branch of large amplitudes of `isola` begins at the level 0.86, and with one harmonic at 0.53."""
-    (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0), harmonics=1).curves
-    (more,) = trace_levels(isola(), [1.22], (0.0, 2.0), harmonics=7).curves
+    (curve,) = trace_levels(isola(), LevelRequest([1.22], (0.0, 2.0)), harmonics=1).curves
+    (more,) = trace_levels(isola(), LevelRequest([1.22], (0.0, 2.0)), harmonics=7).curves
     upper = np.arange(curve.level.size) > int(np.argmin(np.abs(curve.level - min(curve.level_folds))))
     false = upper & (curve.level < min(more.level_folds))
     assert false.any() and np.isnan(curve.error[false, 1]).all() and not (curve.stable[false] == 1.0).any()
@@ -279,7 +283,7 @@ def test_a_solution_that_may_not_be_there_is_not_called_stable():
 def test_a_curve_of_levels_is_stable_where_that_of_the_frequency_is():
     """Both pass three solutions of the paper's oscillator at 1.21 rad/s; its motions bear the same."""
     scene = yang(5.0)
-    (raised,) = trace_levels(scene, [1.21], (0.5, 1.5), harmonics=5).curves
+    (raised,) = trace_levels(scene, LevelRequest([1.21], (0.5, 1.5)), harmonics=5).curves
     (curve,) = trace(replace(scene, frequency_range=(1.21, 1.7)), harmonics=5).curves
     here = [
         {round(float(a), 5): float(s) for a, s in zip(one.amplitude[at, 0], one.stable[at], strict=True)}

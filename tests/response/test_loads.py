@@ -14,7 +14,7 @@ from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Force, Load
 from fcm.response import ResponseError, trace
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.scene import load_scene, scene_from_dict
 from fcm.shooting.residual import Shooting
 from fcm.time_domain import State, simulate
@@ -158,7 +158,7 @@ def test_many_harmonics_come_to_the_exact_motion_under_static_and_growing_loads(
 
 def test_static_loads_do_not_scale_with_the_level():
     scene = loaded(growing(YANG, 1.2), [(U, 0.5), (V, 3.0)])
-    (curve,) = trace_levels(scene, [1.2], (0.0, 1.0), harmonics=3).curves
+    (curve,) = trace_levels(scene, LevelRequest([1.2], (0.0, 1.0)), harmonics=3).curves
     at_rest = scene.modal.shapes.T @ rest_of(scene)[0]
     assert curve.level[0] <= 1e-3 and curve.mean[0] == pytest.approx(at_rest, rel=1e-3)
     (narrow,) = trace(replace(scene, frequency_range=(1.2, 1.25)), harmonics=3).curves

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.response import trace
-from fcm.response.level import trace_levels
+from fcm.response.level import LevelRequest, trace_levels
 from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
 from fcm.time_domain import simulate
@@ -142,7 +142,7 @@ def test_stability_is_unknown_where_contacts_that_stick_may_not_hold_alone():
 
 def test_stability_by_levels_is_unknown_where_contacts_may_not_hold():
     scene, _ = gripped(2.0, 1.2)
-    found = trace_levels(scene, [0.65], (0.2, 1.5)).curves[0]
+    found = trace_levels(scene, LevelRequest([0.65], (0.2, 1.5))).curves[0]
     slip = (found.regime != "E").all(axis=1)
     assert np.isnan(found.stable[~slip]).any() and not (found.stable[~slip] == 0.0).any()
     assert slip.any() and (found.stable[slip] == 0.0).all()
@@ -171,7 +171,7 @@ def test_a_body_that_no_contact_can_press_is_said_before_any_point(n_0):
     scene, found = curve(JENKINS, gap)
     assert not found.complete and found.frequency.size == 0
     assert "Rigid-body modes are at rest only while closed contacts hold them" in found.reason
-    (by_level,) = trace_levels(scene, [0.5], (0.0, 1.0)).curves
+    (by_level,) = trace_levels(scene, LevelRequest([0.5], (0.0, 1.0))).curves
     assert by_level.reason == found.reason
 
 

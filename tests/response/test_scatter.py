@@ -115,7 +115,7 @@ def curve_with(stable, tail=()):
         regime=states,
         truncation_error=error,
         peaks=peaks,
-        condensed=None,
+        extract=None,
     )
 
 

@@ -7,12 +7,12 @@ import pytest
 
 from fcm import load_scene
 from fcm.response import trace
-from fcm.response.curve_batches import Work, fits
+from fcm.response.curve_batches import CurveTask, fits
 from fcm.response.options import RESPONSE, SWEEP, InterruptedOptions
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.run import Interrupted
-from fcm.run.work import Report
+from fcm.run.tasks import Report
 from fcm.scene import scene_from_dict
 
 from ..harmonic_balance.strips import elastic_strip
@@ -194,7 +194,7 @@ def test_a_group_hands_over_the_curve_that_is_not_finished_and_saves_it_not():
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as stopped:
-        Work(FINE)((scene("yang1998", 5),), Report(show, save=saved.append))
+        CurveTask(FINE)((scene("yang1998", 5),), Report(show, save=saved.append))
     (curve,) = stopped.value.results
     assert curve.peaks["u"].amplitude > 10.0 and not curve.complete
     assert not saved and told[-1].startswith("1 harmonic, error")

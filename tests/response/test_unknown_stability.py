@@ -14,7 +14,7 @@ import fcm as package
 from fcm.response import trace
 from fcm.response.curve_batches import KINDS
 from fcm.response.exact import trace_exact
-from fcm.results.condensed_curves import without_points
+from fcm.results.curve_extracts import without_points
 from fcm.results.curve_summary import curve_summary
 from fcm.results.jumps import swept
 from fcm.run.records import unpacked
@@ -127,7 +127,7 @@ def test_motions_across_contacts_are_read_again(name, harmonics):
 def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
     """Of a curve without its points, and of exact peaks alone: what sweeps meet is kept with them."""
     (alone,) = trace_exact(package.load_scene(scene), only="peaks").curves
-    for one, said in ((without_points(curve), lambda c: c.condensed.swept), (alone, lambda c: c.swept())):
+    for one, said in ((without_points(curve), lambda c: c.extract.swept), (alone, lambda c: c.swept())):
         (kept,) = unpacked(pickle.dumps([one]), KINDS)
         met, found = (
             ([w.start for w in of.unknown], [jump.frequency for jump in of.jumps])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.plot.campbell import Ring, draw_campbell, folded
+from fcm.plot.campbell import DrawnRing, draw_campbell, folded
 from fcm.response.request import ResponseError
 from fcm.scene import SceneError, scene_from_dict
 
@@ -172,7 +172,7 @@ def test_campbell_needs_no_range(tmp_path):
 def test_bars_of_orders_that_meet_one_diameter_stand_side_by_side():
     levels = tuple(np.array([200.0, 700.0]) for _ in range(13))
     orders = (3, 21, 27, 8, 45, 0, 51)
-    ring = Ring("", 24, orders, (100.0, 350.0), "Hz", tuple(range(13)), levels, levels)
+    ring = DrawnRing("", 24, orders, (100.0, 350.0), "Hz", tuple(range(13)), levels, levels)
     figure = draw_campbell(ring)
     (axes,) = figure.axes
     bars = [
@@ -194,7 +194,7 @@ def test_bars_of_orders_that_meet_one_diameter_stand_side_by_side():
 def test_numbers_of_harmonics_stand_clear_of_modes():
     opened = tuple(np.array([400.0, 480.0 + 3.0 * d, 700.0]) for d in range(13))
     stuck = tuple(one + 12.0 for one in opened)
-    ring = Ring("", 24, (3, 4, 5, 6, 7), (180.0, 240.0), "Hz", tuple(range(13)), opened, stuck)
+    ring = DrawnRing("", 24, (3, 4, 5, 6, 7), (180.0, 240.0), "Hz", tuple(range(13)), opened, stuck)
     (axes,) = draw_campbell(ring).axes
     top, numbers = axes.get_ylim()[1], [one for one in axes.texts if one.get_text().isdecimal()]
     assert len(numbers) >= 10 and all(one.get_path_effects() for one in numbers)

@@ -20,7 +20,7 @@ from fcm.shooting.residual_traction import resting_at
 from fcm.shooting.traction_families import family, member_at_start, members
 from fcm.time_domain import SimulationError, State, simulate
 from fcm.time_domain.cycle_measures import measure
-from fcm.time_domain.system import System
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 
 from ..time_domain.cases import yang
 
@@ -60,7 +60,7 @@ def test_the_extent_holds_what_simulations_come_to(scene, found):
 def test_beyond_the_extent_the_contact_slips_back_to_it(scene, found, end):
     """Stressed by a little more than the limit, then left to itself, it comes to the end of the family."""
     amplitude = (found.least, found.greatest)[end]
-    system, end_state = System(scene, OMEGA), settled(scene, 0.0).end
+    system, end_state = EquationsOfMotion(scene, OMEGA), settled(scene, 0.0).end
     x = np.concatenate((end_state.q, end_state.velocity, end_state.friction))
     begun, _ = converged(Shot(system, x, resting_at(system, x)))
     shot = member_at_start(begun, np.array([0.0, -1.1 * found.friction[0, end] / scene.contacts[1].k_u]))
@@ -182,7 +182,7 @@ def test_of_a_stable_motion_the_extent_is_that_of_stable_ones():
     """Pushed a little, the member with the least amplitude stays, and one with less is left."""
     scene, omega = fcm.load_scene(Path(__file__).parent / "scenes/lost_stability.toml"), 1.2066666666666668
     start = next(one for one in near_balance(scene, omega) if one.stable).state
-    system, x = System(scene, omega), np.concatenate((start.q, start.velocity, start.friction))
+    system, x = EquationsOfMotion(scene, omega), np.concatenate((start.q, start.velocity, start.friction))
     shots, _ = members(converged(Shot(system, x, resting_at(system, x)))[0])
     found = family(scene, omega, start)
     amplitude = {id(shot): float(measure(shot.cycle).amplitude[2]) for shot in shots}

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.model.scene import Held
+from fcm.model.scene import HeldContact
 from fcm.shooting import Shooting, periodic
 from fcm.shooting.periodic_orbit import converged
 from fcm.time_domain import simulate
@@ -67,7 +67,7 @@ def test_a_contact_that_is_held_is_a_spring_of_the_disturbances():
     scene, omega = SCENES["two contacts"], 1.3
     first = replace(scene.contacts[0], n_0=50.0)
     whole = replace(scene, contacts=(first, scene.contacts[1]))
-    held = replace(scene, contacts=scene.contacts[1:], held=(Held(0, first, open=False),))
+    held = replace(scene, contacts=scene.contacts[1:], held=(HeldContact(0, first, open=False),))
     start = simulate(whole, omega, 60).end
     shot, _ = converged(Shooting(whole).residual(Shooting(whole).unknowns(start), omega))
     x = np.delete(shot.x, 6)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from fcm.continuation import Events, FollowOptions
-from fcm.model.scene import Held, Load
+from fcm.model.scene import HeldContact, Load
 from fcm.reduction import constant_state_contacts
 from fcm.response.exact import trace_exact
-from fcm.response.exact_curve import ExactWork
+from fcm.response.exact_curve import ExactCurveTask
 from fcm.response.options import leaving_out
 from fcm.response.resumable_branches import ResumablePaths, SavedPath, TimeOver
 from fcm.run import Report
@@ -53,7 +53,12 @@ def scene():
 def lightened(scene):
     """The scene without the two that keep their state, and a point of its exact curve."""
     w = constant_state_contacts.resting(scene)
-    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
+    light = scene.holding(
+        (
+            HeldContact(1, scene.contacts[1], False, w[1]),
+            HeldContact(2, scene.contacts[2], True),
+        )
+    )
     problem, orbit = OrbitProblem(light), next(near_balance(light, OMEGA))
     return light, problem.shot(first_point(problem, orbit))
 
@@ -127,7 +132,7 @@ def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
 
 def with_expected(scene, held):
     """The curve of a scene, some of whose contacts are expected to keep their state."""
-    (curve,) = ExactWork(None, expected=lambda *_: held)((scene,), Report(lambda *_: None))
+    (curve,) = ExactCurveTask(None, expected=lambda *_: held)((scene,), Report(lambda *_: None))
     return curve
 
 
@@ -136,7 +141,10 @@ def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene):
     """To the curve of all contacts that are computed then; the other is held as before."""
     weak = (scene.contacts[0], replace(scene.contacts[1], n_0=2.0), scene.contacts[2])
     scene = replace(scene, contacts=weak)
-    wrong = (Held(1, weak[1], False, constant_state_contacts.resting(scene)[1]), Held(2, weak[2], True))
+    wrong = (
+        HeldContact(1, weak[1], False, constant_state_contacts.resting(scene)[1]),
+        HeldContact(2, weak[2], True),
+    )
     curve = with_expected(scene, wrong)
     assert curve.complete and np.isfinite(curve.orbits.held).tolist()[1:] == [[False, False], [False, True]]
     (whole,) = trace_exact(scene, options=leaving_out(None)).curves
@@ -148,7 +156,9 @@ def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene):
 def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses):
     """Foreseen wrongly: the first contact, which slips, and the last, which is open, as sticking."""
     w = constant_state_contacts.resting(scene)
-    curve = with_expected(scene, tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts)))
+    curve = with_expected(
+        scene, tuple(HeldContact(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
+    )
     assert np.isfinite(curve.orbits.held).any(axis=1).tolist() == [False, True, False]
     whole = responses[1].curves[0]
     assert curve.peaks["x"].amplitude == pytest.approx(whole.peaks["x"].amplitude, rel=SAME)
@@ -190,7 +200,7 @@ def test_a_stiff_contact_is_not_replaced_by_a_spring(scene):
 
 def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
     """A run that is resumed may hold other contacts at first than the one that was interrupted."""
-    light = scene.holding((Held(2, scene.contacts[2], True),))
+    light = scene.holding((HeldContact(2, scene.contacts[2], True),))
     saved: list[object] = []
     first = OrbitProblem(scene)
     z = first_point(first, next(near_balance(scene, 0.9)))

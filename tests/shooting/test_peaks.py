@@ -9,7 +9,7 @@ import pytest
 
 from fcm.continuation import FollowOptions, Mark, Segment, follow
 from fcm.shooting import periodic
-from fcm.shooting.peaks_and_folds import Guess, located
+from fcm.shooting.peaks_and_folds import OrbitGuess, located
 from fcm.shooting.problem import OrbitProblem
 
 from ..response.random_scenes import random_scene
@@ -48,12 +48,12 @@ def test_a_peak_is_found_however_near_the_guess_is(side):
     problem, dof, omega = OrbitProblem(replace(random_scene(9), frequency_range=(1.849, 1.852))), 3, 1.85063
     near, other = periodic(problem.scene, omega), periodic(problem.scene, omega - 1e-5)
     neighbour = other.frequency, other.state
-    peak = located(problem, Guess(omega, near.state, neighbour, dof), [])
+    peak = located(problem, OrbitGuess(omega, near.state, neighbour, dof), [])
     assert peak is not None
     sides = [periodic(problem.scene, peak.frequency * (1.0 + step)) for step in (-1e-5, 1e-5)]
     assert all(peak.measure.amplitude[dof] > one.measure.amplitude[dof] for one in sides)
     for distance in 10.0 ** np.arange(-12.0, -6.0, 0.25):
-        guess = Guess(peak.frequency * (1.0 + side * distance), peak.state, neighbour, dof)
+        guess = OrbitGuess(peak.frequency * (1.0 + side * distance), peak.state, neighbour, dof)
         found = located(problem, guess, [])
         assert found is not None
         assert found.measure.amplitude[dof] == pytest.approx(peak.measure.amplitude[dof], rel=1e-9)

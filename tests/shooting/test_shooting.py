@@ -12,7 +12,7 @@ from fcm.shooting import Shooting, periodic
 from fcm.shooting.period_derivative import along
 from fcm.shooting.residual import Shot
 from fcm.time_domain import simulate
-from fcm.time_domain.system import System
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 
 from ..time_domain.cases import SCENES, one_mode, two_contacts, yang
 
@@ -95,7 +95,7 @@ def test_the_derivative_by_the_frequency_without_contact_is_known():
 def test_flows_of_another_frequency_are_used_on():
     """The motion does not depend on which frequencies were there before; above all rates too."""
     scene = two_contacts()
-    used = System(scene, 0.7)
+    used = EquationsOfMotion(scene, 0.7)
     for omega in (0.7, 1.3, 60.0, 1.3):
         used = used.at(omega)
         orbit = periodic(scene, omega)
@@ -136,7 +136,7 @@ def test_the_change_along_a_direction_is_the_difference_of_two_motions(name, ome
     way, rate, order = rng.normal(size=shot.x.size) * shot.scale, 0.3 * omega, np.argsort(times)
     rows = np.eye(shot.system.size)[: shot.system.modes]
     ends = [
-        Shot(System(scene, omega + e * rate), shot.x + e * way).cycle.values(rows, times[order])
+        Shot(EquationsOfMotion(scene, omega + e * rate), shot.x + e * way).cycle.values(rows, times[order])
         for e in (-h, h)
     ]
     found = along(shot.system, shot.segments, places, way, rate)[order]

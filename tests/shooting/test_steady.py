@@ -17,7 +17,7 @@ from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
 from fcm.shooting.steady_state import SteadyMotion, grows_or_decays, steady
 from fcm.time_domain import State, simulate
-from fcm.time_domain.system import System
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 
 from ..time_domain.cases import one_mode, yang
 
@@ -26,7 +26,7 @@ TWO, IRREGULAR = (fcm.load_scene(SCENES / f"{name}.toml") for name in ("two_peri
 
 
 def found_at(scene, omega):
-    found = steady(System(scene, omega), State.rest(scene))
+    found = steady(EquationsOfMotion(scene, omega), State.rest(scene))
     assert isinstance(found, SteadyMotion)
     return found
 
@@ -44,7 +44,7 @@ def test_a_motion_of_two_periods(scene, omega):
     span = np.max([one.greatest for one in two], axis=0) - np.min([one.least for one in two], axis=0)
     assert found.measure.amplitude == pytest.approx(0.5 * span, rel=1e-5)
     x = np.concatenate((found.state.q, found.state.velocity, found.state.friction))
-    system = System(scene, omega)
+    system = EquationsOfMotion(scene, omega)
     once, _ = converged(Shot(system, x, resting_at(system, x)))
     assert once.multipliers[0].real < -1.0 and once.multipliers[0].imag == 0.0
 
@@ -97,7 +97,7 @@ def test_an_irregular_motion_that_lingers_has_an_extent():
     """Each start leads elsewhere; some of them to where hardly anything changes for hundreds of periods."""
     rest = State.rest(IRREGULAR)
     for k in range(6):
-        found = steady(System(IRREGULAR, 1.3), replace(rest, q=rest.q + 1e-12 * k))
+        found = steady(EquationsOfMotion(IRREGULAR, 1.3), replace(rest, q=rest.q + 1e-12 * k))
         assert isinstance(found, SteadyMotion) and found.periods == 0
 
 
@@ -108,7 +108,7 @@ def test_the_extent_holds_bursts_that_are_seldom():
     greatest = np.max([one.amplitude for one in long], axis=0)
     rest, hold = State.rest(IRREGULAR), 0
     for k in range(8):
-        found = steady(System(IRREGULAR, 1.7), replace(rest, q=rest.q + 1e-12 * k))
+        found = steady(EquationsOfMotion(IRREGULAR, 1.7), replace(rest, q=rest.q + 1e-12 * k))
         assert isinstance(found, SteadyMotion) and found.periods == 0
         assert (found.greatest < 1.1 * greatest).all()
         hold += bool((found.greatest > 0.9 * greatest).all())
@@ -134,7 +134,7 @@ def test_a_transient_is_no_steady_motion():
     """It grows without limit."""
     scene = yang(-1e15)
     scene = replace(scene, modal=replace(scene.modal, damping=np.zeros(2)))
-    assert isinstance(steady(System(scene, 1.0), State.rest(scene)), State)
+    assert isinstance(steady(EquationsOfMotion(scene, 1.0), State.rest(scene)), State)
 
 
 @pytest.mark.slow

@@ -15,8 +15,8 @@ from fcm.response.options import STEPPED, ExactOptions, ResponseOptions
 from fcm.run import Execution
 from fcm.time_domain import State, simulate
 from fcm.time_domain.cycle_measures import measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.simulation import cycles_from
-from fcm.time_domain.system import System
 
 from ..time_domain.cases import one_mode, two_contacts, yang
 from .curves import within
@@ -71,7 +71,7 @@ def test_a_sweep_stays_on_a_motion_of_two_periods_beside_a_stable_one_of_one():
     )
     _, first = visited(scene, at)
     for omega in at:
-        system = System(scene, omega)
+        system = EquationsOfMotion(scene, omega)
         ends = list(cycles_from(system, 300, State.rest(scene) if state is None else state))
         state = ends[-1][1]
         two = [measure(cycle) for cycle, _ in ends[-2:]]

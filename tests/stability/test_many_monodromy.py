@@ -6,7 +6,7 @@ import pytest
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.following_modes import Modes, combined
+from fcm.stability.following_modes import PortModes, combined
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.state_sequence import BalancedSequence
 
@@ -40,7 +40,7 @@ def test_multipliers_are_those_of_states_put_together_anew(omega, n_0, yielding,
         np.repeat(one, part, axis=0) for one in (linear.ports, linear.natural, linear.damping, part)
     )
     ports /= np.sqrt(share)[:, None]
-    many = ManyMonodromy(Modes(ports, natural, damping, np.repeat(far, part)), contact, states)
+    many = ManyMonodromy(PortModes(ports, natural, damping, np.repeat(far, part)), contact, states)
     many.follow(omega)
     assert many.matrix().shape <= anew.matrix().shape
     found, expected = multipliers(many.matrix()), multipliers(anew.matrix())

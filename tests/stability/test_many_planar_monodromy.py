@@ -11,7 +11,7 @@ import fcm
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.stability.classification import Bifurcation
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
@@ -64,7 +64,7 @@ def test_condensed_as_by_all_displacements(some, far):
             contact, (1, 2), replace(STABILITY.planar, tolerance=tolerance, tolerance_of_many=tolerance)
         )
         assert sequence.find_events(x)
-        monodromy = make(Modes(shapes, natural, damping, above), sequence)
+        monodromy = make(PortModes(shapes, natural, damping, above), sequence)
         monodromy.follow(OMEGA)
         found.append(np.array(monodromy.matrix()))
     assert found[0].shape[0] >= 2 * (6 - far)
@@ -76,7 +76,7 @@ def test_more_disturbances_than_are_followed_are_none():
     x, contact = motion((SLIPS,))
     sequence = PlanarSequence(contact, (1, 2), replace(STABILITY.planar, most_of_many=5))
     assert sequence.find_events(x)
-    monodromy = ManyPlanarMonodromy(Modes(*structure(1, 6), np.zeros(6, dtype=bool)), sequence)
+    monodromy = ManyPlanarMonodromy(PortModes(*structure(1, 6), np.zeros(6, dtype=bool)), sequence)
     monodromy.follow(OMEGA)
     assert np.isnan(monodromy.matrix()).all()
 
@@ -91,7 +91,7 @@ def test_contacts_that_mirror_one_another_take_no_more_steps_for_rounding_errors
         x[-x.size // 5 :] *= 1.0 + away
         sequence = PlanarSequence(contact, (1, 2), STABILITY.planar)
         assert sequence.find_events(x)
-        monodromy = make(Modes(*structure(5, 6), np.zeros(6, dtype=bool)), sequence)
+        monodromy = make(PortModes(*structure(5, 6), np.zeros(6, dtype=bool)), sequence)
         monodromy.follow(OMEGA)
         found.append(np.array(monodromy.matrix()))
         steps.append(monodromy.steps)
@@ -105,7 +105,7 @@ def test_each_event_of_many_contacts_may_interrupt():
     assert sequence.find_events(x)
     events = sum(count for count in np.asarray(sequence.count).tolist() if count > 1)
     polled = []
-    structural = Modes(*structure(len(ALL), 6), np.zeros(6, dtype=bool)), sequence
+    structural = PortModes(*structure(len(ALL), 6), np.zeros(6, dtype=bool)), sequence
     ManyPlanarMonodromy(*structural, lambda: polled.append(1)).follow(OMEGA)
     assert len(polled) > 0.5 * events
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import fcm
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 from fcm.stability.options import STABILITY
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence
@@ -37,7 +37,7 @@ def followed(u_x, u_y, v, n_0, far=(), **options):
     sequence = PlanarSequence(contact, (1, 2), replace(STABILITY.planar, **options))
     assert sequence.find_events(x)
     which = np.isin(np.arange(len(NATURAL)), far)
-    monodromy = PlanarMonodromy(Modes(SHAPES, NATURAL, DAMPING, which), sequence)
+    monodromy = PlanarMonodromy(PortModes(SHAPES, NATURAL, DAMPING, which), sequence)
     monodromy.follow(OMEGA)
     return monodromy.matrix()
 

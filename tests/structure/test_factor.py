@@ -15,7 +15,7 @@ import scipy.sparse
 from scipy.sparse.linalg import splu
 
 from fcm.scene import scene_from_dict
-from fcm.structure.eigen import StructureError, system_of
+from fcm.structure.eigen import StructureError, factored_structure
 from fcm.structure.elimination_tree import FrontOptions, tree_of
 from fcm.structure.factor import FactorOptions, NotPositiveError, by_blocks, has_cholmod, solver
 from fcm.structure.multifrontal import Factor
@@ -204,4 +204,4 @@ def test_factors_that_the_memory_does_not_hold_are_said(monkeypatch):
     monkeypatch.setattr("fcm.structure.factor.splu", refuse)
     K, M, _ = bricks(2, 2, 2)
     with pytest.raises(StructureError, match=r"factors of its 54 rows and .* take more memory than there is"):
-        system_of(K, M)
+        factored_structure(K, M)

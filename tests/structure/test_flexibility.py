@@ -9,7 +9,7 @@ import scipy.sparse
 
 import fcm
 from fcm.scene import scene_from_dict
-from fcm.structure.eigen import Modes, StructureError, modes_of, system_of
+from fcm.structure.eigen import Modes, StructureError, factored_structure, modes_of
 from fcm.structure.flexibility import Truncation, flexibility
 from fcm.structure.options import FlexibilityOptions
 from fcm.structure.reduced import ModeSelection, reduced
@@ -23,7 +23,7 @@ FREE = np.array([4.7300407449, 7.8532046241]) ** 2
 @pytest.mark.parametrize("elements", [60, 400])  # all modes at once; by Lanczos
 def test_published_frequencies_of_a_cantilever(elements):
     K, M, _ = beams.beam(elements)
-    found = modes_of(system_of(K, M), 4)
+    found = modes_of(factored_structure(K, M), 4)
     assert np.sqrt(found.stiffness) == pytest.approx(CANTILEVER, rel=2e-5)
     assert found.shapes.T @ (M @ found.shapes) == pytest.approx(np.eye(4), abs=1e-9)
 
@@ -31,7 +31,7 @@ def test_published_frequencies_of_a_cantilever(elements):
 @pytest.mark.parametrize("elements", [60, 400])
 def test_a_free_beam_has_two_rigid_body_modes(elements):
     K, M, _ = beams.beam(elements, clamped=False)
-    found = modes_of(system_of(K, M), 4)
+    found = modes_of(factored_structure(K, M), 4)
     assert np.abs(found.stiffness[:2]).max() < 1e-6 * FREE[0] ** 2
     assert np.sqrt(found.stiffness[2:]) == pytest.approx(FREE, rel=2e-5)
 
@@ -39,7 +39,7 @@ def test_a_free_beam_has_two_rigid_body_modes(elements):
 def test_rows_without_mass_are_no_modes():
     K = scipy.sparse.csc_array(np.array([[3.0, -1, 0], [-1, 2, -1], [0, -1, 1]]))
     M = scipy.sparse.csc_array(np.diag([1.0, 0.0, 2.0]))
-    found = modes_of(system_of(K, M), 3)
+    found = modes_of(factored_structure(K, M), 3)
     condensed = np.array([[2.5, -0.5], [-0.5, 0.5]])  # the middle row taken out by hand
     value = np.linalg.eigvals(np.diag([1.0, 0.5]) @ condensed)
     assert found.stiffness == pytest.approx(np.sort(value))
@@ -71,7 +71,7 @@ def test_the_stiffness_of_bodies_that_nothing_holds_in_the_place_of_their_mass()
     slope = np.diff(np.eye(117), axis=0)
     K = scipy.sparse.block_diag([slope.T @ slope] * 6, format="csc")
     with pytest.raises(StructureError, match="and mass may be in each other's place"):
-        modes_of(system_of(scipy.sparse.eye_array(702, format="csc"), K), 150)
+        modes_of(factored_structure(scipy.sparse.eye_array(702, format="csc"), K), 150)
 
 
 def test_all_rigid_body_modes_are_kept_and_a_soft_mode_is_none():
@@ -87,7 +87,7 @@ def test_no_mode_of_several_equal_frequencies_is_passed_by():
     """Five equal beams beside each other, by Lanczos, which starts from one vector."""
     K, M, _ = beams.beam(80)
     K, M = (scipy.sparse.block_diag([one] * 5, format="csc") for one in (K, M))
-    found = modes_of(system_of(K, M), 12)
+    found = modes_of(factored_structure(K, M), 12)
     assert np.sqrt(found.stiffness) == pytest.approx(np.repeat(CANTILEVER[:3], 5)[:12], rel=2e-5)
     assert found.shapes.T @ (M @ found.shapes) == pytest.approx(np.eye(12), abs=1e-8)
 
@@ -102,7 +102,7 @@ def test_the_bound_holds_and_is_no_exaggeration(kept, blocks):
     for column, weights in enumerate([{"60w": 1.0}, {"31w": 1.0}, {"60r": 0.3, "45w": -0.7}]):
         for name, weight in weights.items():
             loads[names.index(name), column] = weight
-    system = system_of(K, M)
+    system = factored_structure(K, M)
     whole = modes_of(system, kept + 1)
     first = Modes(whole.stiffness[:kept], whole.shapes[:, :kept])
     beyond = float(whole.stiffness[kept])

@@ -7,7 +7,7 @@ from fcm import fourier_coefficients
 from fcm.table import atlas, build_table, open_table, spline
 from fcm.table.constant_load_limit import vanishing_variation
 from fcm.table.nodes import PRESETS, all_nodes
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 from fcm.table.tabulated import Cubic, locate
 
 
@@ -52,7 +52,7 @@ def test_vanishing_variation_is_the_limit_of_the_closed_form(b):
 
 
 def test_nodes_rise_from_open_to_the_slip_limit():
-    n0, b, phi = all_nodes(Part.all_of(PRESETS["fast"]))
+    n0, b, phi = all_nodes(TablePart.all_of(PRESETS["fast"]))
     assert np.all(np.diff(n0, axis=0) >= -1e-15 * b[1:])
     assert np.array_equal(n0[0], -b[0])
     assert np.all(np.diff(b[0], axis=0) > 0) and np.all(np.diff(phi[0, 0]) > 0)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.contact.surface import COEFFICIENTS, Plane, boundaries
+from fcm.contact.surface import COEFFICIENTS, ParameterPlane, boundaries
 from fcm.table.error_map import error_map
 
-PLANE = Plane(0.5)
+PLANE = ParameterPlane(0.5)
 
 
 class Wrong:
@@ -55,7 +55,7 @@ def test_no_other_point_is_worse(request, name, phi):
     exact = fcm.fourier_coefficients(n0, b, phi)
     for k, values in enumerate(table(n0, b, phi)):
         greatest = abs(values - exact[k]).max()
-        assert error_map(COEFFICIENTS[k], Plane(phi), table).largest > 0.99 * greatest
+        assert error_map(COEFFICIENTS[k], ParameterPlane(phi), table).largest > 0.99 * greatest
 
 
 def test_the_error_belongs_to_the_middle_of_each_cell(default):

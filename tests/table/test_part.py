@@ -14,7 +14,7 @@ from fcm.scene import load_scene
 from fcm.table import TableError, build_table, open_table, spline
 from fcm.table.nodes import PRESETS
 from fcm.table.options import NODE_OPTIONS
-from fcm.table.partial_table import Part, Reach
+from fcm.table.partial_table import ChartRanges, TablePart
 
 from ..oscillator import oscillator
 
@@ -23,7 +23,7 @@ SCENE = "yang1998-n5"
 
 @pytest.fixture(scope="module")
 def reach():
-    reach = Reach(PRESETS["fast"])
+    reach = ChartRanges(PRESETS["fast"])
     for curve in trace(load_scene(SCENE), "closed-form", harmonics=1).curves:
         reach.note(*curve.loop[:, 0, :3].T)
     return reach
@@ -52,7 +52,7 @@ def random_points(count=20_000, seed=3):
 
 
 def test_a_part_has_fewer_nodes_and_bytes(table, path):
-    assert table.part.nodes < 0.6 * Part.all_of(PRESETS["fast"]).nodes
+    assert table.part.nodes < 0.6 * TablePart.all_of(PRESETS["fast"]).nodes
     assert path.stat().st_size < 0.6 * 888_482
     assert table.resolution == PRESETS["fast"]
 
@@ -97,7 +97,7 @@ def test_nothing_is_outside_where_no_table_is_needed(path):
 
 @pytest.mark.parametrize("chart", ["separation", "slip"])
 def test_a_chart_that_is_not_reached_is_left_out(chart, tmp_path, tiny_file):
-    part = Part.all_of((9, 5, 11, 9))._replace(**{chart: (0, 0)})
+    part = TablePart.all_of((9, 5, 11, 9))._replace(**{chart: (0, 0)})
     build_table(tmp_path / "one.nc", part.resolution, 10_000, part=part)
     table, every = open_table(tmp_path / "one.nc"), open_table(tiny_file)
     assert table.part == part
@@ -120,9 +120,9 @@ def test_any_cut_is_right_everywhere(tmp_path, tiny_file):
     points = random_points()
     exact, whole = np.stack(fcm.fourier_coefficients(*points)), np.stack(every(*points))
     for part in (
-        Part(resolution, (0, 14), (5, 19), (7, 24), (3, 22)),
-        Part(resolution, (8, 25), (0, 15), (0, 15), (0, 16)),
-        Part(resolution, (4, 20), (2, 17), (11, 27), (7, 23)),
+        TablePart(resolution, (0, 14), (5, 19), (7, 24), (3, 22)),
+        TablePart(resolution, (8, 25), (0, 15), (0, 15), (0, 16)),
+        TablePart(resolution, (4, 20), (2, 17), (11, 27), (7, 23)),
     ):
         build_table(path, resolution, points=10_000, part=part)
         table = open_table(path)
@@ -146,7 +146,7 @@ def test_response_is_the_same(table):
 
 
 def test_sweep_is_the_same_with_its_own_table(tmp_path):
-    reach = Reach(PRESETS["fast"])
+    reach = ChartRanges(PRESETS["fast"])
     scene = load_scene("yang1998")
     exact = trace(scene, "closed-form", harmonics=1)
     for curve in exact.curves:

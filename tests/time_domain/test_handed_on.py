@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import fcm.time_domain.system as systems
+import fcm.time_domain.equations_of_motion as systems
 from fcm.scene import Contact, Force, Modal, Scene
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 MODES = 17  # with two forces and a number 37 components: matrices are multiplied by BLAS
 
@@ -29,7 +29,7 @@ def many_modes():
 
 def cycle():
     """One cycle that is many times as long as its steps."""
-    found, _ = next(iter(cycles_from(System(many_modes(), 0.01), 1.0, State.rest(many_modes()))))
+    found, _ = next(iter(cycles_from(EquationsOfMotion(many_modes(), 0.01), 1.0, State.rest(many_modes()))))
     return found
 
 
@@ -48,8 +48,8 @@ def measured():
 CALLED_BACK = [
     ("Flows", "next_power", cycle),
     ("Flows", "spell", moved),
-    ("Integrals", "reach", measured),
-    ("Scan", "reach", measured),
+    ("Integrals", "fill_ahead", measured),
+    ("Scan", "fill_ahead", measured),
     ("Scan", "values", measured),
 ]
 

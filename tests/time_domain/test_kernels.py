@@ -14,10 +14,10 @@ from fcm.time_domain import simulate
 from fcm.time_domain.contact_states import made
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import extremes_by, measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.integrator import first_descent_of
 from fcm.time_domain.measures import Rows, Scan
 from fcm.time_domain.options import FlowOptions, TimeOptions
-from fcm.time_domain.system import System
 
 from .cases import SCENES, one_mode, two_contacts, yang
 
@@ -69,7 +69,7 @@ def test_flows_are_exponentials(scene, omega):
     """A march without an exit, with the forces, beside scipy's exponential of the whole matrix."""
     contacts = tuple(replace(c, n_0=1e9 if j else -1e9) for j, c in enumerate(scene.contacts))
     scene = replace(scene, contacts=contacts)
-    system = System(scene, omega)
+    system = EquationsOfMotion(scene, omega)
     motion = simulate(scene, omega, 0.73)
     states = np.asarray(motion.cycles[0].segments.states)[0]
     flow = made(system, states)
@@ -95,8 +95,8 @@ def test_steps_hang_on_the_states_and_the_frequency_alone():
     scene, other = yang(5.0), yang(5.0)
     alone = simulate(scene, 1.3, 2).cycles[-1].segments
     simulate(other, 90.0, 2)  # forces that are faster than the structure: flows of shorter steps
-    fine = made(System(other, 90.0), np.asarray(alone.states)[0])
-    coarse = made(System(other, 1.3), np.asarray(alone.states)[0])
+    fine = made(EquationsOfMotion(other, 90.0), np.asarray(alone.states)[0])
+    coarse = made(EquationsOfMotion(other, 1.3), np.asarray(alone.states)[0])
     assert fine.halved and not coarse.halved and fine.step < coarse.step
     after = simulate(other, 1.3, 2).cycles[-1].segments
     assert np.array_equal(np.asarray(after.length), np.asarray(alone.length))
@@ -107,7 +107,10 @@ def test_the_step_of_a_mass_without_stiffness_is_the_same_for_all_frequencies_th
     scene = yang(5.0)
     free = Modal(scene.modal.dofs, scene.modal.mass, np.zeros(2), np.zeros(2), scene.modal.shapes)
     scene = replace(scene, modal=free, contacts=())
-    steps = {omega: made(System(scene, omega), np.zeros(0, np.int8)).step for omega in (2.0, 2.1, 3.9, 4.0)}
+    steps = {
+        omega: made(EquationsOfMotion(scene, omega), np.zeros(0, np.int8)).step
+        for omega in (2.0, 2.1, 3.9, 4.0)
+    }
     assert steps == {2.0: 0.5, 2.1: 0.25, 3.9: 0.25, 4.0: 0.25}
 
 
@@ -256,11 +259,11 @@ def test_a_long_stuck_motion_of_a_large_structure_is_measured_as_on_samples():
 def test_the_flows_of_a_scene_are_made_once_in_a_thread():
     """Every system of a scene has the same; an equal scene has its own, and another thread."""
     scene = yang()
-    flows = System(scene, 1.3).flows
-    assert System(scene, 0.9).flows is flows
+    flows = EquationsOfMotion(scene, 1.3).flows
+    assert EquationsOfMotion(scene, 0.9).flows is flows
     others = []
-    one = Thread(target=lambda: others.append(System(scene, 1.3).flows))
+    one = Thread(target=lambda: others.append(EquationsOfMotion(scene, 1.3).flows))
     one.start()
     one.join()
     assert others[0] is not flows
-    assert System(replace(scene), 1.3).flows is not flows
+    assert EquationsOfMotion(replace(scene), 1.3).flows is not flows

@@ -12,10 +12,10 @@ import fcm
 from fcm.scene import Phase, Start
 from fcm.shooting import periodic
 from fcm.time_domain import State, energy, histories, simulate_phases
+from fcm.time_domain.equations_of_motion import LETTERS
 from fcm.time_domain.options import TIME, SimulationOptions
 from fcm.time_domain.schedule_plan import Plan
 from fcm.time_domain.schedule_record import INTERRUPTED, NOT_BEGUN, record, unsettled
-from fcm.time_domain.system import LETTERS
 
 from ..interrupted import interrupted_after
 from .cases import one_mode, two_contacts, yang

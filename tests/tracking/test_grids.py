@@ -16,7 +16,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise
 from fcm.response.options import OptimumOptions, ResponseOptions
-from fcm.response.tracked_work import conditions_of
+from fcm.response.tracking_task import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.tracking.curves import tracked_curves

@@ -13,7 +13,7 @@ from fcm.tracking import extended_system
 from fcm.tracking.curve import both_ways
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.kinks import Circle
-from fcm.tracking.nonsmooth_continuation import Pieces, land
+from fcm.tracking.nonsmooth_continuation import SmoothPieces, land
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_check import is_top
@@ -61,7 +61,7 @@ def test_a_circle_on_which_there_is_no_motion_leads_nowhere(blind, ways):
 @pytest.mark.parametrize(("cosine", "taken"), [(0.95, True), (0.5, False)], ids=["away", "passing by"])
 def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(setup, point, cosine, taken):
     """A curve crosses the circle in both cases; its angle with the radius tells whether it is the way on."""
-    follower = Pieces(setup, PEAK)
+    follower = SmoothPieces(setup, PEAK)
     follower.switch_equations(None)
     follower.measure_at(point.z)
     assert follower.solve(point.z, follower.held)

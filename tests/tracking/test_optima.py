@@ -10,10 +10,10 @@ from fcm.cli.track import as_table
 from fcm.response.least_peak import PeakTask
 from fcm.response.optimum import optima, optimise
 from fcm.response.options import OPTIMUM
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.results.output import write_netcdf
 from fcm.results.tracked import Optimal
-from fcm.run import Checkpoint
+from fcm.run import CheckpointFile
 from fcm.scene import load_scene
 from fcm.scene.load import scene_from_dict
 from fcm.tracking.options import SEARCH
@@ -95,7 +95,7 @@ def sought(scene, left, harmonics=None, **kept):
     """The optima of so many searches, whether the next was interrupted, and how many were begun."""
     Known.left, Known.begun = left, 0
     tasks = [Known(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
-    with Checkpoint(scene.with_name("kept"), **kept) as checkpoint:
+    with CheckpointFile(scene.with_name("kept"), **kept) as checkpoint:
         return *optima(tasks, harmonics, checkpoint, None), Known.begun
 
 
@@ -200,5 +200,5 @@ def test_trials_as_high_say_that_the_number_does_not_matter():
 def test_a_curve_that_runs_along_the_frequency_at_the_end_of_its_range_has_ended_there():
     """It was said to have stopped where no further point could be found."""
     scene = scene_from_dict(tomllib.loads(oscillator("[response]\nfrequency = [0.7, 1.7]\n")))
-    tracked = track(scene, "slip", "contact.shroud.n_0", (2.0, 200.0), harmonics=1).tracking
+    tracked = track(scene, TrackRequest("slip", "contact.shroud.n_0", (2.0, 200.0)), harmonics=1).tracking
     assert [one.reason for one in tracked.curves] == [""] and tracked.complete

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fcm.response.exact import trace_exact
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 
@@ -35,7 +35,7 @@ def narrow(tmp_path):
 @pytest.mark.parametrize(("span", "harmonics", "count"), [((1.08, 1.13), 3, 2), ((2.2, 2.3), 1, 1)])
 def test_a_tracked_peak_is_stable_where_the_exact_motion_stays_there(narrow, span, harmonics, count):
     scene = load_scene(narrow(*span))
-    curves = track(scene, "peaks", "level", (0.98, 1.02), harmonics=harmonics).tracking.curves
+    curves = track(scene, TrackRequest("peaks", "level", (0.98, 1.02)), harmonics=harmonics).tracking.curves
     peaks = [one for one in curves if one.what == "peak of d0"]
     assert len(peaks) == count
     for one in peaks:
@@ -93,8 +93,8 @@ def test_the_least_peak_has_a_mark_where_no_motion_stays(fcm, narrow):
 def test_an_onset_is_unstable_between_the_folds_that_pass_it():
     """On the branch between the folds of the response, which meet the onset at turns of their own curve."""
     scene, span = load_scene("yang1998-n5"), (6.0, 8.0)
-    onsets = track(scene, "separation", "contact.shroud.n_0", span, harmonics=1).tracking.curves
-    folds = track(scene, "folds", "contact.shroud.n_0", span, harmonics=1).tracking.curves
+    onsets = track(scene, TrackRequest("separation", "contact.shroud.n_0", span), harmonics=1).tracking.curves
+    folds = track(scene, TrackRequest("folds", "contact.shroud.n_0", span), harmonics=1).tracking.curves
     turns = np.array([(one.number[i], one.frequency[i]) for one in folds for i, _ in one.closings])
     (stretch,) = [one for curve in onsets for one in curve.summary("rad/s").get("not_stable", ())]
     for end in zip(stretch["number"], stretch["frequency"], strict=True):

@@ -18,7 +18,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise
 from fcm.response.options import ResponseOptions
-from fcm.response.track import track
+from fcm.response.track import TrackRequest, track
 from fcm.results.output import write_netcdf
 from fcm.run import Execution
 from fcm.scene import load_scene
@@ -46,7 +46,7 @@ def scene():
 @pytest.fixture(scope="module")
 def folds(scene):
     """Of the paper's oscillator, with one harmonic."""
-    return track(scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1).tracking
+    return track(scene, TrackRequest("folds", PRELOAD, (-20.0, 10.0)), harmonics=1).tracking
 
 
 def run(scene, value, harmonics=(1,), key=PRELOAD):
@@ -107,7 +107,7 @@ def test_a_turn_of_folds_is_told_by_what_the_frequency_does(kind, closes, skew, 
 @pytest.mark.parametrize("name", ["mu", "k_u"])
 def test_folds_are_tracked_from_where_a_contact_has_no_friction(scene, name):
     open_, key = number_of(scene, PRELOAD).put(scene, -5.0), f"contact.shroud.{name}"
-    tracking = track(open_, "folds", key, (0.0, 0.4), harmonics=1).tracking
+    tracking = track(open_, TrackRequest("folds", key, (0.0, 0.4)), harmonics=1).tracking
     assert tracking.complete
     for value in (0.0, 0.4):
         _, paths = run(open_, value, key=key)
@@ -131,7 +131,10 @@ def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_pat
     def stop_at(limit):
         progress = interrupted_beyond(limit)
         return track(
-            scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1, execution=Execution(progress=progress)
+            scene,
+            TrackRequest("folds", PRELOAD, (-20.0, 10.0)),
+            harmonics=1,
+            execution=Execution(progress=progress),
         )
 
     kept = stop_at(0.2)
@@ -157,7 +160,7 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
                 raise KeyboardInterrupt
 
         execution = Execution(progress=progress, keep=place, resume=True)
-        return track(scene, "folds", PRELOAD, (-20.0, 10.0), execution, harmonics=1)
+        return track(scene, TrackRequest("folds", PRELOAD, (-20.0, 10.0)), execution, harmonics=1)
 
     assert stop_at(0.2).interrupted
     with pytest.raises(KeyboardInterrupt):
@@ -184,7 +187,7 @@ def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
 def test_the_error_of_folds_is_what_twelve_harmonics_change(scene, folds):
     """At an end, and at a cusp, where it is of the number, too."""
     curve = folds.curves[0]
-    more = track(scene, "folds", PRELOAD, (-5.0, -3.0), harmonics=12).tracking.curves[0]
+    more = track(scene, TrackRequest("folds", PRELOAD, (-5.0, -3.0)), harmonics=12).tracking.curves[0]
     (i,), (k,) = (np.flatnonzero(one.turn) for one in (curve, more))
     end, turn, other = curve.errors
     assert (end.place, turn.place, turn.point, other.point) == ("end", "cusp", i, curve.number.size - 1)
@@ -196,7 +199,7 @@ def test_the_error_of_folds_is_what_twelve_harmonics_change(scene, folds):
 
 
 def test_the_error_of_peaks_is_what_twelve_harmonics_change(scene):
-    curve = track(scene, "peaks", PRELOAD, (4.0, 10.0), harmonics=1).tracking.curves[0]
+    curve = track(scene, TrackRequest("peaks", PRELOAD, (4.0, 10.0)), harmonics=1).tracking.curves[0]
     assert [one.place for one in curve.errors] == ["end, greatest", "least", "end"]
     for one in curve.errors:
         system, paths = run(scene, curve.number[one.point], tuple(range(1, 13)))
@@ -206,14 +209,14 @@ def test_the_error_of_peaks_is_what_twelve_harmonics_change(scene):
 
 @pytest.mark.slow
 def test_where_nothing_slips_or_opens_nothing_is_left_out(scene):
-    curves = track(scene, "slip", PRELOAD, (60.0, 100.0), harmonics=1).tracking.curves
+    curves = track(scene, TrackRequest("slip", PRELOAD, (60.0, 100.0)), harmonics=1).tracking.curves
     assert max(one.relative for curve in curves for one in curve.errors) < 1e-8
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("harmonics", "to"), [((1,), 100.0), ((1, 2), 10.0)])
 def test_tracked_peaks_are_those_of_ordinary_runs(scene, harmonics, to):
-    tracking = track(scene, "peaks", PRELOAD, (-20.0, to), harmonics=harmonics).tracking
+    tracking = track(scene, TrackRequest("peaks", PRELOAD, (-20.0, to)), harmonics=harmonics).tracking
     assert tracking.complete
     for value in (-20.0, 10.0, to):
         system, paths = run(scene, value, harmonics)
@@ -230,7 +233,9 @@ def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
 
     On the verge of slip its mean friction is between two limits that have met, and moves the mean load.
     """
-    (curve,) = track(scene, "slip", PRELOAD, (20.0, 100.0), harmonics=1).tracking.curves  # and no part twice
+    (curve,) = track(
+        scene, TrackRequest("slip", PRELOAD, (20.0, 100.0)), harmonics=1
+    ).tracking.curves  # and no part twice
     highest = curve.number.max()
     contact, modal = scene.contacts[0], scene.modal
 
@@ -251,7 +256,7 @@ def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
 
 @pytest.mark.slow
 def test_separation_that_comes_and_goes_between_the_starts_is_met_by_the_peak(scene):
-    tracking = track(scene, "separation", PRELOAD, (-20.0, 100.0), harmonics=1).tracking
+    tracking = track(scene, TrackRequest("separation", PRELOAD, (-20.0, 100.0)), harmonics=1).tracking
     (curve,) = tracking.curves
     top = curve.number.max()
     for value, opens in ((top - 1e-3, True), (top + 1e-3, False)):
@@ -462,10 +467,10 @@ def test_no_plateau_of_a_stuck_contact_is_taken_for_the_least_of_two_numbers():
 
 def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be_all(scene):
     """As an ordinary run says, where the level of the forces is not followed to its end."""
-    assert track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1).tracking.uncertain_at == []
+    assert track(scene, TrackRequest("folds", PRELOAD, (4.0, 6.0)), harmonics=1).tracking.uncertain_at == []
 
     stalled = ResponseOptions(others=(LevelCurveOptions(step=StepOptions(max_steps=10)),))
-    response = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1, options=stalled)
+    response = track(scene, TrackRequest("folds", PRELOAD, (4.0, 6.0)), harmonics=1, options=stalled)
     lowest = scene.frequency_range[0]
     assert response.tracking.complete and lowest in {omega for _, omega in response.tracking.uncertain_at}
     assert {(4.0, lowest), (6.0, lowest)} <= set(response.tracking.uncertain_at)
@@ -477,7 +482,9 @@ def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be
 
 def test_where_a_fold_of_the_level_is_lost_tracked_curves_are_not_said_to_be_all(scene):
     lost = ResponseOptions(others=(FoldOptions(work_fraction=0.0, min_seconds=0.0),))
-    uncertain_at = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1, options=lost).tracking.uncertain_at
+    uncertain_at = track(
+        scene, TrackRequest("folds", PRELOAD, (4.0, 6.0)), harmonics=1, options=lost
+    ).tracking.uncertain_at
     (middle,) = {omega for _, omega in uncertain_at}
     assert middle == pytest.approx(1.20695, abs=1e-5)
     assert all(4.0 <= value <= 6.0 for value, _ in uncertain_at)

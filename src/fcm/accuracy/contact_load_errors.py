@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.reference_curve import ComparedQuantities, FollowedStretch, ReferenceCurve
+from fcm.accuracy.reference_curve import ComparedQuantities, ReferenceCurve
 from fcm.model.scene import FloatArray
 
 
 def contact_load_errors(
-    reference: ReferenceCurve,
-    compared: ComparedQuantities,
-    shift: FloatArray,
-    followed: Sequence[FollowedStretch],
-    folds: npt.NDArray[np.intp],
+    reference: ReferenceCurve, compared: ComparedQuantities, shift: FloatArray, folds: npt.NDArray[np.intp]
 ) -> tuple[FloatArray, FloatArray]:
     """Relative errors of contact forces, slip and energy: (point, contact, 4), and of their greatest
     (contact, 4).
@@ -35,7 +29,7 @@ def contact_load_errors(
     error[folds] = np.nan
     top, last, c = own.argmax(axis=0), len(own) - 1, np.arange(own.shape[1])
     inside = (top > 0) & (top < last)
-    of_reference = _greatest(reference, compared, columns, followed)
+    of_reference = _greatest(reference, compared, columns)
     error[top[inside], c[inside]] = (np.abs(of_reference - own[top, c]) / unit[top, c])[inside]
     error = relative(error * unit, own, unit, reference.options)
     shape = (len(own), -1, 4)
@@ -68,12 +62,7 @@ def _moved(reference: ReferenceCurve, compared: ComparedQuantities, columns: sli
     return moved
 
 
-def _greatest(
-    reference: ReferenceCurve,
-    compared: ComparedQuantities,
-    columns: slice,
-    followed: Sequence[FollowedStretch],
-) -> FloatArray:
+def _greatest(reference: ReferenceCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
     """Greatest value (column,) of each quantity on the reference.
 
     NaN where the greatest may lie on a stretch along which the reference could not be followed.
@@ -81,10 +70,10 @@ def _greatest(
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     expected = own + unit * compared.change[:, 1:][:, columns]
     greatest: FloatArray = np.fmax.reduce(expected, axis=0, initial=-np.inf)
-    for one in followed:
+    for one in reference.followed:
         for piece in one.pieces:
             greatest = np.fmax(greatest, reference.contact_loads_of(piece).max(axis=0))
-    for one in followed:
+    for one in reference.followed:
         if not any(piece.whole for piece in one.pieces):
             rival = own[one.first : one.end].max(axis=0) > reference.options.rival_fraction * own.max(axis=0)
             greatest[rival] = np.nan

@@ -295,7 +295,7 @@ class ReferenceCurveData:
         value: cython.double[:, ::1],
         slope: cython.double[:, ::1],
         wanted: cython.double[::1],
-        even: cython.double[::1],
+        parity: cython.double[::1],
         target: cython.double[:, ::1],
         number: cython.int[::1],
         out: cython.double[:, ::1],
@@ -304,8 +304,9 @@ class ReferenceCurveData:
         (place,).
 
         Of several passings that with a number, counted along the curve from 0; where that is -1 the one whose
-        first values are nearest to target values (place, some of the values), of those that are as even as
-        it: even (place,) and orientation (point,) times the sign of the rate. NaN where there is none.
+        first values are nearest to target values (place, some of the values), of those with the same
+        parity (place,): that of the curve is its orientation (point,) times the sign of the rate.
+        NaN where there is none.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -327,7 +328,7 @@ class ReferenceCurveData:
                 count += 1
                 if number[i] >= 0 and number[i] != count - 1:
                     continue
-                if number[i] < 0 and orientation[k] * (1.0 if after > before else -1.0) * even[i] < 0.0:
+                if number[i] < 0 and orientation[k] * (1.0 if after > before else -1.0) * parity[i] < 0.0:
                     continue
                 self.solve(k, wanted[i])
                 off: cython.double = 0.0

@@ -22,7 +22,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.peak_errors import PeakErrors, peak_errors
 from fcm.accuracy.peaks import rise_between_points, tops_of_reference
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
-from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_curve import Indices, ReferenceCurve
 from fcm.accuracy.reference_errors import with_reference_errors
 from fcm.accuracy.reference_harmonics import reference_harmonics
 from fcm.accuracy.reference_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
@@ -40,7 +40,7 @@ from fcm.stability.known_motions import KnownMotions
 Mask = npt.NDArray[np.bool_]
 
 
-class Errors(Frozen):
+class PathErrors(Frozen):
     """Relative errors of a path, estimated by the embedded pair; NaN where the pair gives no error.
 
     amplitude (point, dof): by how much the reference differs: at a peak in height, elsewhere at the same
@@ -83,7 +83,7 @@ class Errors(Frozen):
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
     motions: KnownMotions | None = field(default=None, repr=False)
 
-    def part(self, rows: npt.NDArray[np.intp]) -> Errors:
+    def part(self, rows: npt.NDArray[np.intp]) -> PathErrors:
         """The errors restricted to some points of the path."""
         names = ("amplitude", "at_frequency", "truncation", "is_same_curve", "ends_before", "contact_loads")
         arrays: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
@@ -101,7 +101,7 @@ def errors_along(
     quantities: ReportedQuantities | None = None,
     options: PairOptions = PAIR,
     budget: Budget | None = None,
-) -> Errors:
+) -> PathErrors:
     """Errors of the points of a path of a system's balance; quantities is what is reported along it, if
     known.
 
@@ -130,12 +130,12 @@ def errors_along(
     if elsewhere != more:  # only with these it is followed
         reference.stretches.budget = Budget(0.0)
     change = reference.displacements(np.concatenate((reference.distinct_points(special), folds, met)))
-    followed = reference.follow_stretches(change)
+    reference.follow_stretches(change)
     compared = reference.compared_quantities(change)
-    shift = reference.shifts(compared, followed)
-    contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
+    shift = reference.shifts(compared)
+    contact_loads, greatest = contact_load_errors(reference, compared, shift, folds)
     shift = shift[:, : len(size)]
-    of_peaks = peak_errors(reference, change, followed)
+    of_peaks = peak_errors(reference, change)
     plain = _at_frequency(reference, shift, change)
     error = plain.copy()
     error[of_peaks.point, of_peaks.dof] = of_peaks.height / reference.unit[of_peaks.point, of_peaks.dof]
@@ -144,15 +144,15 @@ def errors_along(
     error = raised
     error[folds] = at_frequency[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
     comes: Mask = ~np.any(np.isnan(error), axis=1)
-    height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, followed, met, of_peaks)
+    height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, met, of_peaks)
     unit, amplitude = reference.unit, quantities.amplitude
     at_rest = amplitude <= np.finfo(float).eps * unit  # but for rounding
     for one in (error, at_frequency):
         one *= unit / np.where(at_rest, unit, amplitude)
     system.work.add(reference.seconds())
-    of_folds = _of_folds(reference, folds, change, followed)
+    of_folds = _of_folds(reference, folds, change)
     reference.release()
-    return Errors(
+    return PathErrors(
         amplitude=error,
         at_frequency=at_frequency,
         truncation=_truncation(np.where(np.isnan(error), at_frequency, error), amplitude),
@@ -167,19 +167,19 @@ def errors_along(
         contact_loads=contact_loads,
         greatest=greatest,
         contacts=contacts,
-        pieces=reference.pieces(compared, followed),
-        motions=reference.motions(followed),
+        pieces=reference.pieces(compared),
+        motions=reference.motions(),
     )
 
 
 def _same_error(
     system: System, reported: ReportedPath, contacts: ContactRecord, share: FloatArray, error: float
-) -> Errors:
+) -> PathErrors:
     """Errors of a path that all have one value: 0 where the reference equals the curve, or NaN."""
     path, amplitude = reported.path, reported.quantities.amplitude
     every, exact = np.full_like(amplitude, error), not np.isnan(error)
     contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), error)
-    return Errors(
+    return PathErrors(
         amplitude=every,
         at_frequency=every,
         truncation=every[:, 0],
@@ -198,14 +198,14 @@ def _same_error(
     )
 
 
-def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> Errors:
+def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> PathErrors:
     """Errors of a path with every entry unknown (NaN); `quantities` is what is reported along the path."""
     contacts, nan = ContactRecord.at(system, path.z), np.nan
     none, unseen = np.full_like(quantities.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
     contact_loads = np.full_like(contacts.contact_loads, nan)
     dofs, folds = np.full(none.shape[1], nan), np.full(len(path.where(Mark.FOLD)), nan)
     share = np.zeros(max(system.harmonics))
-    return Errors(
+    return PathErrors(
         none, none, none[:, 0], unseen, unseen, dofs, dofs, dofs, folds, share, system.harmonics,
         contact_loads, np.full(contact_loads.shape[1:], nan), contacts,
     )  # fmt: skip
@@ -215,10 +215,10 @@ def with_nearest(
     system: System,
     paths: Sequence[Path],
     quantities: Sequence[ReportedQuantities],
-    errors: Sequence[Errors],
+    errors: Sequence[PathErrors],
     first: int = 0,
     options: PairOptions = PAIR,
-) -> tuple[Errors, ...]:
+) -> tuple[PathErrors, ...]:
     """Errors of the paths of a response, with the nearest motions where the reference's own branch has none.
 
     Where that branch does not come to a frequency, the error is the distance to the nearest motion of the
@@ -244,8 +244,8 @@ def with_nearest(
         if not rows.size or not pieces:
             continue
         now, error, contact_loads = amplitude[rows], every[k].amplitude.copy(), every[k].contact_loads.copy()
-        even = path.parity[rows]
-        there = nearest(pieces, path.parameter[rows], even, now)
+        parity = path.parity[rows]
+        there = nearest(pieces, path.parameter[rows], parity, now)
         off = np.abs(there[:, :dofs] - now)
         error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
         at_frequency = every[k].at_frequency.copy()
@@ -268,7 +268,7 @@ def with_nearest(
     return tuple(every)
 
 
-def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
+def _with_greatest(errors: PathErrors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> PathErrors:
     """Errors of a path whose unknown peak errors are filled from the greatest amplitudes of all pieces.
 
     amplitude is (point, dof). The `height` of the reference is the greatest of the path's own pieces.
@@ -285,9 +285,7 @@ def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[Curve
     shared = np.where(errors.is_same_curve[tops], 0.0, off.max() / (top.max() or 1.0))
     error = np.maximum(off / np.where(top > 0.0, top, 1.0), shared)
     return replace(
-        errors,
-        height=np.where(unknown, own, errors.height),
-        peak=np.where(unknown, error, errors.peak),
+        errors, height=np.where(unknown, own, errors.height), peak=np.where(unknown, error, errors.peak)
     )
 
 
@@ -321,8 +319,8 @@ def _spectrum(
     The share of a harmonic is its greatest amplitude without feedback relative to size (dof,), at special
     points. A harmonic that meets a mode and leads there counts as well.
     """
-    further, place = FurtherHarmonics(system), lengths(path)
-    special = special[distinct(place[special], options.peak_spacing * (place[-1] - place[0]))]
+    further, arc = FurtherHarmonics(system), lengths(path)
+    special = special[distinct(arc[special], options.peak_spacing * (arc[-1] - arc[0]))]
     met: Indices = further.resonances(path.z, quantities.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
     if met.size:  # there it leads, however small the motion is
@@ -349,7 +347,6 @@ def _set_errors_of_peaks(
     error: FloatArray,
     shift: FloatArray,
     change: FloatArray,
-    followed: list[FollowedStretch],
     met: Indices,
     of_peaks: PeakErrors,
 ) -> tuple[FloatArray, Mask, FloatArray]:
@@ -363,7 +360,7 @@ def _set_errors_of_peaks(
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
     own, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
-    tops = tops_of_reference(reference, change[:, 1:], shift, followed, met)
+    tops = tops_of_reference(reference, change[:, 1:], shift, met)
     height, settles = np.array([every[-1].height for every in tops]), ~reference.linear[own]
     inside = (own > 0) & (own < len(path.z) - 1)
     now = amplitude[own, d] + np.where(inside, rise_between_points(reference, np.zeros_like(unit), own), 0.0)
@@ -385,9 +382,7 @@ def _set_errors_of_peaks(
     return height, np.isfinite(height) | ~settles, frequency
 
 
-def _of_folds(
-    reference: ReferenceCurve, folds: Indices, change: FloatArray, followed: list[FollowedStretch]
-) -> FloatArray:
+def _of_folds(reference: ReferenceCurve, folds: Indices, change: FloatArray) -> FloatArray:
     """Relative errors (fold,) of the frequencies of folds.
 
     Each is the distance to the reference's fold beside it. Where the reference was followed and has as many
@@ -402,7 +397,7 @@ def _of_folds(
             error[k] = abs(own / parameter[fold] - 1.0)
         elif np.isfinite(of_reference[fold]):
             error[k] = abs(change[fold, 0])
-    for one in followed:
+    for one in reference.followed:
         mine = (one.first <= folds) & (folds < one.end)
         of_reference = np.concatenate(
             [np.empty(0), *(p.path.parameter[p.path.where(Mark.FOLD)] for p in one.pieces)]
@@ -413,7 +408,7 @@ def _of_folds(
 
 
 def _with_nearest_folds(
-    path: Path, amplitude: FloatArray, errors: Errors, pieces: Sequence[CurvePiece], options: PairOptions
+    path: Path, amplitude: FloatArray, errors: PathErrors, pieces: Sequence[CurvePiece], options: PairOptions
 ) -> FloatArray:
     """Errors (fold,), with unknown ones replaced by the relative distance in frequency to the nearest fold.
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.accuracy.refinement import RefinedResponse, with_errors
-from fcm.branches.force_level import LevelSolutions, resonances, solutions
+from fcm.branches.force_level import LevelSolutions, linear_resonances, solutions
 from fcm.branches.options import LEVEL_CURVE, LEVELS, LevelOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.trace import Traced, with_further
@@ -117,7 +117,7 @@ def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Itera
     harmonics = [h for h in found.system.harmonics if 1 < h <= options.strong_harmonics]
     if not harmonics:
         return
-    known, inside = [one.omega for one in found.traced.found], resonances(found.system)
+    known, inside = [one.omega for one in found.traced.found], linear_resonances(found.system)
     for top in _highest_peaks(found):
         nearest = min(inside, key=lambda omega: abs(omega - top), default=top)
         for omega in (omega / h for h in harmonics for omega in (top, 0.5 * (top + nearest))):

@@ -10,12 +10,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR, VALIDITY, PairOptions
 from fcm.accuracy.reference_harmonics import reference_harmonics
-from fcm.continuation import Path
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import contact_loads_along, recorded_at_levels
 from fcm.harmonic_balance.system import System
@@ -27,32 +25,27 @@ class LevelPoints(NamedTuple):
     """Points of a curve over the force level.
 
     z (point, unknown + 1) and level (point,), amplitudes (point, dof), its contact loads (point, contact, 4),
-    and even (point,), see `evenness`.
+    and parity (point,), see `Path.parity`.
     """
 
     z: FloatArray
     level: FloatArray
     amplitude: FloatArray
     contact_loads: FloatArray
-    even: npt.NDArray[np.bool_]
+    parity: FloatArray
 
 
-def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_]) -> FloatArray:
+def stable_at_levels(system: System, z: FloatArray, parity: FloatArray) -> FloatArray:
     """Stability of the points z (point, unknown + 1) of a curve over the force level: 1, 0, or NaN where
     unknown.
 
-    even : (point,) of `evenness`.
+    parity : (point,) of the curve, see `Path.parity`.
     """
     if not system.scene.contacts:
         return np.ones(len(z))
     of = multipliers_of(system, float(z[:, -1].max()))
+    even = parity > 0.0
     return np.array([of.classify(one).stable if here else 0.0 for one, here in zip(z, even, strict=True)])
-
-
-def evenness(path: Path) -> npt.NDArray[np.bool_]:
-    """Whether the number of real multipliers above 1 is even at the points of a curve of levels."""
-    even: npt.NDArray[np.bool_] = path.parity > 0.0
-    return even
 
 
 def errors_at_levels(
@@ -62,7 +55,7 @@ def errors_at_levels(
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
-    z, level, amplitude, contact_loads, even = points
+    z, level, amplitude, contact_loads, parity = points
     further = FurtherHarmonics(system)
     error, contact_load_errors = np.zeros_like(amplitude), np.zeros_like(contact_loads)
     bent = np.flatnonzero(~further.linear(z))
@@ -73,7 +66,7 @@ def errors_at_levels(
     if more == system.harmonics:
         error[bent], contact_load_errors[bent] = np.nan, np.nan
         return error, contact_load_errors
-    there, of_reference = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
+    there, of_reference = _balanced(system, system.with_harmonics(more), z[bent], level[bent], parity[bent])
     now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
     change = np.abs(there - now)
     far = (change > VALIDITY.max_change * size).any(axis=1)
@@ -86,7 +79,7 @@ def errors_at_levels(
 
 
 def _balanced(
-    system: System, finer: System, z: FloatArray, level: FloatArray, even: npt.NDArray[np.bool_]
+    system: System, finer: System, z: FloatArray, level: FloatArray, parity: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Amplitudes (point, dof) and contact loads (point, contact, 4) balanced with the harmonics of `finer`.
 
@@ -104,7 +97,8 @@ def _balanced(
         newton.scale[:] = raised.scale
         newton.row[:] = 0.0
         newton.row[-1] = 1.0
-        known[i] = newton.correct(1.0) and (newton.orientation * np.sign(newton.tangent[-1]) > 0.0) == even[i]
+        even = parity[i] > 0.0
+        known[i] = newton.correct(1.0) and (newton.orientation * np.sign(newton.tangent[-1]) > 0.0) == even
         found[i] = newton.z
         found[i, -1] = one[-1]
     amplitude = recorded_at_levels(finer, found, level)[2]

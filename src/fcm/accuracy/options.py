@@ -6,13 +6,7 @@ import math
 from dataclasses import field, replace
 from functools import cached_property
 
-from fcm.continuation.options import (
-    SIGN_CHANGE,
-    EventOptions,
-    FollowOptions,
-    SignChangeOptions,
-    StepOptions,
-)
+from fcm.continuation.options import SIGN_CHANGE, EventOptions, FollowOptions, SignChangeOptions, StepOptions
 from fcm.frozen import Frozen
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_curve import Indices, ReferenceCurve
 from fcm.accuracy.reference_stretch import ReferencePiece
 from fcm.frozen import Frozen
 from fcm.local_maxima import local_maxima
@@ -47,9 +47,9 @@ class _Tops(NamedTuple):
     frequency: FloatArray
 
 
-def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[FollowedStretch]) -> PeakErrors:
+def peak_errors(reference: ReferenceCurve, change: FloatArray) -> PeakErrors:
     """Errors of all peaks of a curve where displacements (point, 1 + dof) or the reference are known."""
-    curve, place = reference.amplitude, reference.place
+    curve, arc = reference.amplitude, reference.arc
     parameter = reference.path.parameter
     of_reference = curve + reference.unit * change[:, 1:]
     frequency = parameter * (1.0 + change[:, 0])
@@ -60,13 +60,13 @@ def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[Fo
             top = _displaced_top(moved, i, low, high)
             if top is not None:
                 rows.append((i, d, top))
-            elif (found := _followed_top(reference, followed, d, i)) is not None:
+            elif (found := _followed_top(reference, d, i)) is not None:
                 beside.append((i, d, *found))
     point, dof, to = np.array(rows, dtype=np.intp).reshape(-1, 3).T
     further = np.array(beside, dtype=np.float64).reshape(-1, 4).T
-    there = _tops(to, dof, place, of_reference, frequency)
+    there = _tops(to, dof, arc, of_reference, frequency)
     point, dof = np.concatenate(((point, dof), further[:2].astype(np.intp)), axis=1)
-    here = _tops(point, dof, place, curve, parameter)
+    here = _tops(point, dof, arc, curve, parameter)
     height, omega = np.concatenate((there, further[2:]), axis=1)
     return PeakErrors(point, dof, np.abs(height - here.height), np.abs(omega / here.frequency - 1.0))
 
@@ -92,9 +92,7 @@ def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None
     return top if low < top < high and not np.isnan(around).any() else None
 
 
-def _followed_top(
-    reference: ReferenceCurve, followed: list[FollowedStretch], d: int, i: int
-) -> tuple[float, float] | None:
+def _followed_top(reference: ReferenceCurve, d: int, i: int) -> tuple[float, float] | None:
     """Height and frequency of the nearest peak of the followed reference, beside the peak at point i; or
     None.
 
@@ -103,7 +101,7 @@ def _followed_top(
     here = np.array((reference.amplitude[i, d], reference.path.parameter[i]))
     found = [
         top
-        for one in followed
+        for one in reference.followed
         if one.first <= i < one.end
         for piece in one.pieces
         for top in _tops_of(piece, d)
@@ -117,13 +115,13 @@ def _tops_of(piece: ReferencePiece, d: int) -> list[tuple[float, float]]:
     """Heights and frequencies of the peaks of a degree of freedom along a piece of the reference."""
     amplitude = piece.quantities.amplitude
     k = np.array([top for top, _, _ in _between_minima(amplitude[:, d], 0.0)], dtype=np.intp)
-    tops = _tops(k, np.full_like(k, d), piece.place, amplitude, piece.path.parameter)
+    tops = _tops(k, np.full_like(k, d), piece.arc, amplitude, piece.path.parameter)
     return list(zip(tops.height.tolist(), tops.frequency.tolist(), strict=True))
 
 
-def _tops(k: Indices, d: Indices, place: FloatArray, amplitude: FloatArray, frequency: FloatArray) -> _Tops:
+def _tops(k: Indices, d: Indices, arc: FloatArray, amplitude: FloatArray, frequency: FloatArray) -> _Tops:
     """Tops of parabolas through amplitudes (point, dof) of d (peak,) at and beside points k (peak,)."""
-    before, behind = place[k] - place[k - 1], place[k + 1] - place[k]
+    before, behind = arc[k] - arc[k - 1], arc[k + 1] - arc[k]
     apart = (before > 0.0) & (behind > 0.0)
     before, behind = np.where(apart, before, 1.0), np.where(apart, behind, 1.0)
     slope, bend = _parabola(before, behind, *(amplitude[k + step, d] for step in (-1, 0, 1)))

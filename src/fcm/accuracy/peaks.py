@@ -13,11 +13,7 @@ from fcm.model.scene import FloatArray
 
 
 def tops_of_reference(
-    reference: ReferenceCurve,
-    change: FloatArray,
-    shift: FloatArray,
-    followed: list[FollowedStretch],
-    resonant: Indices,
+    reference: ReferenceCurve, change: FloatArray, shift: FloatArray, resonant: Indices
 ) -> list[list[ReferenceTop]]:
     """The reference of a curve where that is highest, and where itself is, for each degree of freedom.
 
@@ -38,13 +34,13 @@ def tops_of_reference(
         for run in runs(near)
     ]
     tops = _displaced_tops(reference, change, shift)
-    for piece in (piece for one in (*followed, *between) for piece in one.pieces):
+    for piece in (piece for one in (*reference.followed, *between) for piece in one.pieces):
         rows = piece.quantities.amplitude.argmax(axis=0)
         heights = piece.quantities.amplitude.max(axis=0)
         for own, row, height in zip(tops, rows.tolist(), heights.tolist(), strict=True):
             if not height <= own[-1].height:
                 own[1:] = [ReferenceTop(height, row, piece)]
-    for one in followed:
+    for one in reference.followed:
         if not any(piece.whole for piece in one.pieces):
             rivals = amplitude[one.first : one.end].max(axis=0) > options.rival_fraction * now
             for d in np.flatnonzero(rivals).tolist():
@@ -96,7 +92,7 @@ def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: In
     """
     corner = ((reference.path.mark & Mark.CORNER) > 0).view(np.uint8)
     return rises(
-        reference.place,
+        reference.arc,
         reference.amplitude,
         reference.quantities.growth,
         moved,

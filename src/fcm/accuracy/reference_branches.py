@@ -29,7 +29,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 if TYPE_CHECKING:
-    from fcm.accuracy.embedded_pair import Errors
+    from fcm.accuracy.embedded_pair import PathErrors
 
 # of any number of contacts, as the motions lie far from those that are sought
 OF_FAR_MOTIONS = ProlongationOptions(damped=DampedOptions(min_contacts=0))
@@ -39,7 +39,7 @@ def further_reference_pieces(
     system: System,
     paths: Sequence[Path],
     quantities: Sequence[ReportedQuantities],
-    errors: Sequence[Errors],
+    errors: Sequence[PathErrors],
     first: int,
     options: PairOptions,
 ) -> list[list[CurvePiece]]:
@@ -101,7 +101,7 @@ class _Search:
         system: System,
         paths: Sequence[Path],
         quantities: Sequence[ReportedQuantities],
-        errors: Sequence[Errors],
+        errors: Sequence[PathErrors],
         first: int,
         options: PairOptions,
     ) -> None:
@@ -242,7 +242,7 @@ class _UnknownError:
     """
 
     def __init__(
-        self, path: Path, quantities: ReportedQuantities, errors: Errors, harmonics: tuple[int, ...]
+        self, path: Path, quantities: ReportedQuantities, errors: PathErrors, harmonics: tuple[int, ...]
     ) -> None:
         self.path, self.size = path, quantities.amplitude.max(axis=1)
         self.size[errors.is_same_curve] = np.inf

@@ -53,9 +53,9 @@ class ReferenceTop(NamedTuple):
     point: int
     piece: ReferencePiece | None = None
 
-    def place(self, reference: ReferenceCurve) -> float:
+    def arc(self, reference: ReferenceCurve) -> float:
         """Arc length along the piece, or along the curve."""
-        return float((reference if self.piece is None else self.piece).place[self.point])
+        return float((reference if self.piece is None else self.piece).arc[self.point])
 
 
 class FollowedStretch(Frozen):
@@ -115,8 +115,10 @@ class ReferenceCurve:
     degree of freedom that hardly moves, a part of the greatest amplitude, as its own rounding would hide the
     others.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
+    arc (point,): arc length along the path, in scaled coordinates.
     contact_loads (point, 4 contact): of its contacts.
     ends_before (point,): whose frequency the reference passes less often, as it turns back.
+    followed: the stretches beside which it was followed, see `follow_stretches`.
     """
 
     def __init__(
@@ -144,13 +146,14 @@ class ReferenceCurve:
         self.errors_at_tops = list[tuple[ReferenceTop, tuple[FloatArray, float]]]()
         self.failed, self.before = budget.seconds / self.each, prolongation.newton.evaluations
         count, dofs = self.amplitude.shape
-        self.place, self.weight = np.zeros((2, count))
-        arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
+        self.arc, self.weight = np.zeros((2, count))
+        arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.arc)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
         self.reference_unknowns = np.full((count, len(prolongation.newton.z)), np.nan)  # where it was found
         self.known, self.ends_before = self.linear.copy(), np.zeros_like(self.linear)
-        self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
+        self.followed = list[FollowedStretch]()
+        self.filled = PartialInterpolant(self.arc, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) to the reference, computed at some points and interpolated
@@ -161,8 +164,8 @@ class ReferenceCurve:
         """
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
-        even = np.arange(0, count, self.options.point_interval)
-        first = distinct_values(special, even, np.array([0, count - 1]), changes, changes + 1)
+        spaced = np.arange(0, count, self.options.point_interval)
+        first = distinct_values(special, spaced, np.array([0, count - 1]), changes, changes + 1)
         self.find(first)
         before, after = first[:-1], first[1:]
         while len(before):
@@ -187,8 +190,8 @@ class ReferenceCurve:
 
     def is_same_curve(self) -> bool:
         """Whether the reference is found from most of a few points spread evenly along the curve."""
-        even = np.arange(0, len(self.known), self.options.point_interval)
-        some = even[:: max(len(even) // self.options.probes, 1)].copy()
+        spaced = np.arange(0, len(self.known), self.options.point_interval)
+        some = spaced[:: max(len(spaced) // self.options.probes, 1)].copy()
         self.find(some)
         return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.min_found)
 
@@ -198,7 +201,7 @@ class ReferenceCurve:
         Of many degrees of freedom each has its own peak; what the reference has at one is interpolated to the
         next.
         """
-        return points[distinct(self.place[points], self._near)]
+        return points[distinct(self.arc[points], self._near)]
 
     def release(self) -> None:
         """Returns the prolongations to the cache, for the next curve."""
@@ -287,11 +290,11 @@ class ReferenceCurve:
         amplitude. The points compared lie normal to the reference, at the nearest point that has both; at an
         end of the curve at its frequency. Tops closely together have the errors of the first.
         """
-        place = top.place(self)
+        arc = top.arc(self)
         beside = (
             found
             for one, found in self.errors_at_tops
-            if one.piece is top.piece and abs(one.place(self) - place) <= self._near
+            if one.piece is top.piece and abs(one.arc(self) - arc) <= self._near
         )
         found = next(beside, None)
         if found is None:
@@ -377,8 +380,7 @@ class ReferenceCurve:
         prolongation, path = self.finding.prolongation, self.path
         if self.linear[i] or not prolongation.find_at_frequency(self._guesses[i], True):
             return None
-        even = path.orientation[i] * path.direction[i, -1]
-        if not prolongation.newton.orientation * prolongation.newton.tangent[-1] * even > 0.0:
+        if not prolongation.newton.orientation * prolongation.newton.tangent[-1] * path.parity[i] > 0.0:
             return None
         return np.array(prolongation.found[1:])
 
@@ -413,11 +415,11 @@ class ReferenceCurve:
         )
         return more.view(np.bool_)
 
-    def follow_stretches(self, change: FloatArray) -> list[FollowedStretch]:
-        """The stretches without displacements, with the reference's pieces followed; highest first."""
+    def follow_stretches(self, change: FloatArray) -> None:
+        """Follows the reference beside the stretches without displacements; highest first."""
         found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
-        return [
+        self.followed = [
             FollowedStretch(first, end, self.stretches.between(first - 1, end, self.reference_unknowns))
             for first, end in found
         ]
@@ -430,7 +432,7 @@ class ReferenceCurve:
         before, after = first - 1, end
         if (self.path.mark[max(before, 0) : after + 1] & Mark.FOLD).any():
             return False
-        if before < 0 or after == len(change) or self.place[after] - self.place[before] > self._near:
+        if before < 0 or after == len(change) or self.arc[after] - self.arc[before] > self._near:
             return False
         one, other = change[before], change[after]
         most = max(np.abs(one).max(), np.abs(other).max(), self.options.negligible_displacement)
@@ -442,7 +444,7 @@ class ReferenceCurve:
 
     @property
     def _near(self) -> float:
-        return float(self.options.peak_spacing * (self.place[-1] - self.place[0]))
+        return float(self.options.peak_spacing * (self.arc[-1] - self.arc[0]))
 
     def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
         """Amplitudes and contact loads of the curve with their changes to the reference, interpolated
@@ -462,53 +464,51 @@ class ReferenceCurve:
         found[there, 1:] = (of_reference - self.contact_loads[there]) / unit[there]
         found[np.isnan(found[:, 0])] = np.nan
         every = np.empty_like(found)
-        PartialInterpolant(self.place, found, self.known.view(np.uint8), self.options.distance).interpolate(
+        PartialInterpolant(self.arc, found, self.known.view(np.uint8), self.options.distance).interpolate(
             np.arange(len(change)), every
         )
         return ComparedQuantities(
             np.hstack((self.amplitude, self.contact_loads)),
-            np.hstack((self.quantities.growth, rates(self.contact_loads, self.place))),
+            np.hstack((self.quantities.growth, rates(self.contact_loads, self.arc))),
             np.hstack((self.unit, unit)),
             np.hstack((change, every[:, 1:])),
         )
 
-    def shifts(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> FloatArray:
+    def shifts(self, compared: ComparedQuantities) -> FloatArray:
         """Differences (point, column) from curve to reference at equal frequency, in their unit.
 
         NaN where the reference does not reach that frequency.
         """
         path, change = self.path, compared.change
         shift = shifted(
-            self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
+            self.arc, path.z, path.direction, compared.value, compared.growth, compared.unit, change
         )
         shift[np.isnan(change).any(axis=1)] = np.nan
-        self._fill_beyond_folds(compared, followed, shift)
-        for one in followed:
+        self._fill_beyond_folds(compared, shift)
+        for one in self.followed:
             self._fill_from_pieces(one, compared, shift)
         return shift
 
-    def _fill_beyond_folds(
-        self, compared: ComparedQuantities, followed: list[FollowedStretch], shift: FloatArray
-    ) -> None:
+    def _fill_beyond_folds(self, compared: ComparedQuantities, shift: FloatArray) -> None:
         """Fills points without a shift at which the reference turns back before the frequency of the curve.
 
         Filled are those whose frequency curve and reference pass but once. Those that the reference passes
         less often, where all of it is known, are remembered.
         """
         missing = np.isnan(shift).any(axis=1) & np.isfinite(compared.change).all(axis=1)
-        whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in followed)
+        whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in self.followed)
         rows, own = np.flatnonzero(missing), self.path.parameter
         if not whole or not rows.size:
             return
-        pieces, of_curve = self.pieces(compared, followed), passings(own, own[rows])
+        pieces, of_curve = self.pieces(compared), passings(own, own[rows])
         of_reference = sum((passings(one.frequency, own[rows]) for one in pieces), np.zeros_like(of_curve))
         self.ends_before[rows] = of_reference < of_curve
         some = rows[(of_curve == 1) & (of_reference == 1)]
         if not some.size:
             return
-        now, even = compared.value[some], np.zeros(len(some))
+        now, parity = compared.value[some], np.zeros(len(some))
         by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
-        shift[some] = (nearest(pieces, own[some], even, by) - now) / compared.unit[some]
+        shift[some] = (nearest(pieces, own[some], parity, by) - now) / compared.unit[some]
 
     def _fill_from_pieces(
         self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray
@@ -524,17 +524,17 @@ class ReferenceCurve:
         while end < len(shift) and missing[end]:
             end += 1
         rows = np.arange(first, end)
-        omega, sign = self.path.parameter[rows], np.sign(self.path.direction[rows, -1])
+        omega, parity = self.path.parameter[rows], self.path.parity[rows]
         number = np.full(len(rows), -1, dtype=np.intc)
         if (self.path.mark[first:end] & Mark.FOLD).any():
             number = self._passing_numbers(one, rows)
-        now, even = compared.value[rows], self.path.orientation[rows] * sign
+        now = compared.value[rows]
         dofs = self.amplitude.shape[1]  # by which the same motion is known
         by = np.ascontiguousarray(now[:, :dofs])
         for way in (map(self._of_piece, one.pieces), self._pieces_near(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
             for other in way:
-                found = (other.values_at(omega, even, by, number) - now) / compared.unit[rows]
+                found = (other.values_at(omega, parity, by, number) - now) / compared.unit[rows]
                 off, before = (np.abs(x[:, :dofs]).max(axis=1) for x in (found, new))
                 nearer = ~(off >= before) & own
                 nearer &= np.isfinite(found).all(axis=1)
@@ -551,17 +551,17 @@ class ReferenceCurve:
             if piece is not None:
                 yield piece
 
-    def pieces(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> tuple[CurvePiece, ...]:
+    def pieces(self, compared: ComparedQuantities) -> tuple[CurvePiece, ...]:
         """All known pieces of the reference: through displaced points, and along followed stretches."""
         missed: Mask = np.any(np.isnan(compared.change), axis=1)
         through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
-        along = [self._of_piece(piece) for one in followed for piece in one.pieces]
+        along = [self._of_piece(piece) for one in self.followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
 
-    def motions(self, followed: list[FollowedStretch]) -> KnownMotions:
+    def motions(self) -> KnownMotions:
         """All motions of the reference that were found, in order along each piece of its curve."""
         found = [self.reference_unknowns[np.isfinite(self.reference_unknowns).all(axis=1)]]
-        found += [piece.path.z for one in followed for piece in one.pieces]
+        found += [piece.path.z for one in self.followed for piece in one.pieces]
         return KnownMotions(self.stretches.finer.harmonics, tuple(one for one in found if len(one) > 1))
 
     def _displaced(self, compared: ComparedQuantities, rows: slice) -> CurvePiece | None:
@@ -569,7 +569,7 @@ class ReferenceCurve:
         change = compared.change[rows]
         omega = self.path.parameter[rows] * (1.0 + change[:, 0])
         value = compared.value[rows] + compared.unit[rows] * change[:, 1:]
-        return piece_through(self.place[rows], omega, self.path.orientation[rows], value)
+        return piece_through(self.arc[rows], omega, self.path.orientation[rows], value)
 
     def _of_piece(self, piece: ReferencePiece) -> CurvePiece:
         return curve_piece(self.stretches.finer, piece)

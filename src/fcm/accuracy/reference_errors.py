@@ -24,14 +24,14 @@ def with_reference_errors(reference: ReferenceCurve, error: FloatArray) -> Float
 
     NaN stays NaN.
     """
-    options, place = reference.options, reference.place
+    options, arc = reference.options, reference.arc
     known = np.flatnonzero(reference.is_found & ~np.isnan(error).any(axis=1))
     known = known[:: -(-len(known) // options.max_spectra) or 1]
     if not known.size or not reference.may_have_second:
         return error
     largest = reference.amplitude.max(axis=1)
     estimated = (error * reference.unit).max(axis=1) / np.where(largest > 0.0, largest, 1.0)
-    left = np.interp(place, place[known], reference.left_out(known))
+    left = np.interp(arc, arc[known], reference.left_out(known))
     uncertain = (options.feedback_factor * left > estimated) & ~reference.linear
     asked = list[int]()
     for first, end in runs(uncertain):
@@ -40,7 +40,7 @@ def with_reference_errors(reference: ReferenceCurve, error: FloatArray) -> Float
     gain = {i: own / left[i] for i in asked if (own := reference.own_error(i)) is not None}
     if not gain:
         return error
-    raised, at, rows = error.copy(), place[list(gain)], ~reference.linear
+    raised, at, rows = error.copy(), arc[list(gain)], ~reference.linear
     for d, each in enumerate(np.transpose(list(gain.values()))):
-        raised[rows, d] = np.maximum(raised[rows, d], left[rows] * np.interp(place[rows], at, each))
+        raised[rows, d] = np.maximum(raised[rows, d], left[rows] * np.interp(arc[rows], at, each))
     return raised

@@ -43,7 +43,7 @@ class CurvePiece(Frozen):
     def values_at(
         self,
         omega: FloatArray,
-        even: FloatArray,
+        parity: FloatArray,
         target: FloatArray,
         number: npt.NDArray[np.intc] | None = None,
     ) -> FloatArray:
@@ -55,7 +55,7 @@ class CurvePiece(Frozen):
         found, every = np.empty((len(omega), self.value.shape[1])), np.full(len(omega), -1, dtype=np.intc)
         which = every if number is None else number
         self.curve.values_at_crossings(
-            self.orientation, self.value, self.slope, omega, even, target, which, found
+            self.orientation, self.value, self.slope, omega, parity, target, which, found
         )
         return found
 
@@ -72,31 +72,31 @@ def piece_of(reported: ReportedPath) -> CurvePiece:
     """The `CurvePiece` of a followed path."""
     path, quantities, contact_loads = reported.path, reported.quantities, reported.contact_loads
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
-    place = lengths(path)
+    arc = lengths(path)
     return CurvePiece(
-        ReferenceCurveData(place, parameter, rate),
+        ReferenceCurveData(arc, parameter, rate),
         parameter,
         np.ascontiguousarray(path.orientation),
         np.hstack((quantities.amplitude, contact_loads)),
-        np.hstack((quantities.growth, rates(contact_loads, place))),
+        np.hstack((quantities.growth, rates(contact_loads, arc))),
     )
 
 
 def piece_through(
-    place: FloatArray, omega: FloatArray, orientation: FloatArray, value: FloatArray
+    arc: FloatArray, omega: FloatArray, orientation: FloatArray, value: FloatArray
 ) -> CurvePiece | None:
-    """A curve piece through points with given places, frequencies, orientations and values.
+    """A curve piece through points with given arc lengths, frequencies, orientations and values.
 
-    Places, frequencies and orientations are (point,), values (point, column). Of coincident points the first
+    All but the values are (point,), these (point, column). Of coincident points the first
     is used. None if fewer than two remain.
     """
-    apart = np.append(True, np.diff(place) > 0.0)
+    apart = np.append(True, np.diff(arc) > 0.0)
     if np.count_nonzero(apart) < 2:
         return None
-    place, omega, orientation, value = place[apart], omega[apart], orientation[apart], value[apart]
-    rate = np.gradient(np.column_stack((omega, value)), place, axis=0)
+    arc, omega, orientation, value = arc[apart], omega[apart], orientation[apart], value[apart]
+    rate = np.gradient(np.column_stack((omega, value)), arc, axis=0)
     return CurvePiece(
-        ReferenceCurveData(place, omega, np.ascontiguousarray(rate[:, 0])),
+        ReferenceCurveData(arc, omega, np.ascontiguousarray(rate[:, 0])),
         omega,
         np.ascontiguousarray(orientation),
         np.ascontiguousarray(value),
@@ -105,14 +105,14 @@ def piece_through(
 
 
 def nearest(
-    pieces: Iterable[CurvePiece], omega: FloatArray, even: FloatArray, target: FloatArray
+    pieces: Iterable[CurvePiece], omega: FloatArray, parity: FloatArray, target: FloatArray
 ) -> FloatArray:
     """Values (place, column) of the nearest motion among all pieces at frequencies omega (place,).
 
-    The nearest to target values (place, dof) of those that are as even, else of all; NaN where there is none.
+    The nearest to target values (place, dof) of the same parity, else of all; NaN where there is none.
     """
     known = tuple(pieces)
-    found = _nearest(known, omega, even, target)
+    found = _nearest(known, omega, parity, target)
     none = np.isnan(found).any(axis=1)
     if none.any():
         found[none] = _nearest(known, omega[none], np.zeros(int(none.sum())), target[none])
@@ -120,14 +120,14 @@ def nearest(
 
 
 def _nearest(
-    pieces: tuple[CurvePiece, ...], omega: FloatArray, even: FloatArray, target: FloatArray
+    pieces: tuple[CurvePiece, ...], omega: FloatArray, parity: FloatArray, target: FloatArray
 ) -> FloatArray:
-    """Values (place, column) of the nearest motion with parity `even`; of any where that is zero."""
+    """Values (place, column) of the nearest motion of a parity; of any where that is zero."""
     best, dofs = np.full((len(omega), pieces[0].value.shape[1]), np.nan), target.shape[1]
-    omega, even = np.ascontiguousarray(omega), np.ascontiguousarray(even)
+    omega, parity = np.ascontiguousarray(omega), np.ascontiguousarray(parity)
     target = np.ascontiguousarray(target)
     for piece in pieces:
-        other = piece.values_at(omega, even, target)
+        other = piece.values_at(omega, parity, target)
         off, before = (np.abs(one[:, :dofs] - target).max(axis=1) for one in (other, best))
         nearer = np.isfinite(off) & ~(off >= before)
         best[nearer] = other[nearer]
@@ -141,23 +141,23 @@ def lengths(path: Path) -> FloatArray:
     return length
 
 
-def rates(values: FloatArray, place: FloatArray) -> FloatArray:
+def rates(values: FloatArray, arc: FloatArray) -> FloatArray:
     """Rates of change (point, column) along a curve: difference quotients of the neighbours."""
-    k = np.arange(len(place))
-    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(place) - 1)
-    step = place[after] - place[before]
+    k = np.arange(len(arc))
+    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(arc) - 1)
+    step = arc[after] - arc[before]
     found: FloatArray = (values[after] - values[before]) / np.where(step > 0.0, step, 1.0)[:, None]
     return found
 
 
-def distinct(place: FloatArray, near: float) -> npt.NDArray[np.intp]:
-    """Indices of the places, in order, that lie farther than `near` behind the last one taken.
+def distinct(arc: FloatArray, near: float) -> npt.NDArray[np.intp]:
+    """Indices of the arc lengths, in order, that lie farther than `near` behind the last one taken.
 
     >>> distinct(np.array([0.0, 0.1, 0.4, 0.6]), 0.3).tolist()
     [0, 2]
     """
     found = list[int]()
-    for k, at in enumerate(place.tolist()):
-        if not found or at - place[found[-1]] > near:
+    for k, at in enumerate(arc.tolist()):
+        if not found or at - arc[found[-1]] > near:
             found.append(k)
     return np.array(found, dtype=np.intp)

@@ -45,7 +45,7 @@ class ReferencePiece(Frozen):
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
 
     @cached_property
-    def place(self) -> FloatArray:
+    def arc(self) -> FloatArray:
         """Arc lengths (point,) along the piece."""
         return lengths(self.path)
 
@@ -200,7 +200,7 @@ class StretchFollower:
         """
         prolongation, curve = self.prolongation, self.curve
         guess = self.finer.extended(curve.z[i], self.fewer)
-        even = curve.parity[i]
+        parity = curve.parity[i]
         known = self._passed(float(curve.z[i, -1]))
         for one in sorted(
             known, key=lambda one: float(np.linalg.norm((one - guess) / prolongation.newton.scale))
@@ -209,7 +209,7 @@ class StretchFollower:
                 continue
             if (
                 not same_parity
-                or prolongation.newton.orientation * prolongation.newton.tangent[-1] * even > 0.0
+                or prolongation.newton.orientation * prolongation.newton.tangent[-1] * parity > 0.0
             ):
                 return self._found(i)
         return None

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.accuracy.budget import Budget, share_of
-from fcm.accuracy.embedded_pair import Errors, Mask, errors_along, unknown_errors, with_nearest
+from fcm.accuracy.embedded_pair import Mask, PathErrors, errors_along, unknown_errors, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.required_harmonics import dofs_of_interest, needed, required_harmonics
 from fcm.accuracy.unchecked_response import (
@@ -35,7 +35,7 @@ class RefinedResponse(UncheckedResponse):
     one is unknown, and max_known_error the greatest of those that are known.
     """
 
-    errors: tuple[Errors, ...]
+    errors: tuple[PathErrors, ...]
     peak: FloatArray
     max_error: float
     max_known_error: float
@@ -214,7 +214,7 @@ def _after(
 def with_errors(
     outline: UncheckedResponse,
     accuracy: float,
-    known: tuple[Errors, ...] = (),
+    known: tuple[PathErrors, ...] = (),
     options: PairOptions | None = None,
 ) -> RefinedResponse:
     """A response with its errors; those of its first branches may be given as `known`.
@@ -253,7 +253,7 @@ def without_errors(outline: UncheckedResponse) -> RefinedResponse:
     )
 
 
-def _peaks(heights: FloatArray, errors: tuple[Errors, ...], options: PairOptions) -> FloatArray:
+def _peaks(heights: FloatArray, errors: tuple[PathErrors, ...], options: PairOptions) -> FloatArray:
     """Relative errors (dof,) of the greatest of heights (path, dof) over all paths.
 
     Another path may be the highest of the reference's; unknown where that of one nearly as high is.

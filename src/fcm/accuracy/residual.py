@@ -25,7 +25,7 @@ def changes_left_out(system: System, balance: Balance, z: FloatArray, options: P
     Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
     and degrees of freedom only as far as the options allow.
     """
-    last = _reach(system, float(z[-1]), options)
+    last = _highest_harmonic(system, float(z[-1]), options)
     others = tuple(h for h in range(1, last + 1) if h not in system.harmonics)
     if not others or others[-1] < system.harmonics[-1]:
         return np.zeros(system.linear.dofs.shape[1])
@@ -41,7 +41,7 @@ def changes_left_out(system: System, balance: Balance, z: FloatArray, options: P
     return half
 
 
-def _reach(system: System, omega: float, options: PairOptions) -> int:
+def _highest_harmonic(system: System, omega: float, options: PairOptions) -> int:
     """The highest harmonic whose force is evaluated; 0 for a ring or a structure without modes."""
     linear = system.linear
     if system.scene.ring is not None or not linear.natural.size:

@@ -16,6 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import islice
+from typing import TypeVar
 
 import numpy as np
 
@@ -29,6 +31,7 @@ from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
+Found = TypeVar("Found")
 Jacobian = Callable[[], FloatArray]  # (unknown, unknown + 1) of a problem as it was evaluated last
 
 
@@ -59,6 +62,32 @@ def branch_points_of(
             point = branch_point_at(problem, jacobian, path, i, options)
             if point.starts:
                 yield point
+
+
+def with_leaving(
+    found: Found,
+    paths: Callable[[Found], Sequence[Path]],
+    points: Callable[[Sequence[Path]], Iterator[BranchPoint]],
+    extended: Callable[[Found, BranchPoint], Found | None],
+    options: BranchingOptions,
+) -> Found:
+    """What was found, extended at each branch point of its paths, then of those that this adds, and so on.
+
+    points: those of some paths. extended: None where nothing more is to be looked for.
+    """
+    known, left = 0, options.max_starts
+    for _ in range(options.max_rounds):
+        every = paths(found)
+        fresh, known = every[known:], len(every)
+        for point in islice(points(fresh), left):
+            left -= 1
+            more = extended(found, point)
+            if more is None:
+                return found
+            found = more
+        if len(paths(found)) == known or not left:
+            break
+    return found
 
 
 def sign_changes(orientation: FloatArray) -> list[int]:

@@ -20,7 +20,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fcm.branches.options import FOLDS, FoldOptions
-from fcm.branches.surface import Ending, FoldSteps, Point, Surface
+from fcm.branches.surface import FoldCurveEnding, FoldSteps, Point, Surface
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 
@@ -34,7 +34,7 @@ class Folds(Frozen):
 
     z: FloatArray
     singular: FloatArray
-    endings: tuple[Ending, Ending]
+    endings: tuple[FoldCurveEnding, FoldCurveEnding]
 
     @property
     def frequency(self) -> FloatArray:
@@ -51,10 +51,10 @@ class Folds(Frozen):
         """Frequencies [rad/s] of those ends from which the curve would go on; none where it is closed. If one
         end comes back to the start and the other leaves what is looked at, the one has come to another curve.
         """
-        open_ends = {Ending.RANGE, Ending.LEVEL} & set(self.endings)
-        if Ending.CLOSED in self.endings and not open_ends:
+        open_ends = {FoldCurveEnding.RANGE, FoldCurveEnding.LEVEL} & set(self.endings)
+        if FoldCurveEnding.CLOSED in self.endings and not open_ends:
             return []
-        short = (Ending.STALLED, Ending.LONG, Ending.CLOSED)
+        short = (FoldCurveEnding.STALLED, FoldCurveEnding.LONG, FoldCurveEnding.CLOSED)
         ends = zip(self.endings, self.frequency[[0, -1]].tolist(), strict=True)
         return [omega for ending, omega in ends if ending in short]
 
@@ -91,11 +91,11 @@ def folds_from(
     else:
         return None
     ahead, ending = follower.run(start, singular, ways[0])
-    if ending is Ending.CLOSED:
+    if ending is FoldCurveEnding.CLOSED:
         return _joined(ahead, (ending, ending))
     back, other = follower.run(start, singular, ways[1])
     return _joined([*reversed(back), *ahead], (other, ending))
 
 
-def _joined(points: list[Point], endings: tuple[Ending, Ending]) -> Folds:
+def _joined(points: list[Point], endings: tuple[FoldCurveEnding, FoldCurveEnding]) -> Folds:
     return Folds(np.array([z for z, _ in points]), np.array([v for _, v in points]), endings)

@@ -93,12 +93,12 @@ class LevelReachOptions(Frozen):
 LEVEL_REACH = LevelReachOptions()  # where nothing else is said
 
 
-def solutions(system: System, omega: float, reach: float | None = None) -> LevelSolutions:
+def solutions(system: System, omega: float, max_level: float | None = None) -> LevelSolutions:
     """All solutions at omega on the curve of the force level that begins at rest.
 
     Far above 1 the curve of the level of many harmonics has many folds and corners, none of which matters if
-    it does not come back. That of fewer tells: it comes back about as far. reach is what was found with them;
-    otherwise a few are taken for that.
+    it does not come back. That of fewer tells: it comes back about as far. max_level is what was found with
+    them; otherwise a few are taken for that.
     """
     most, linear = (
         highest_linear_limit(system, omega),
@@ -107,10 +107,10 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Level
     reached = system.option(LEVEL_REACH)
     if len(system.scene.contacts) >= reached.min_contacts:
         most = min(most, reached.max_level)
-    if reach is None and len(system.harmonics) > few_harmonics(system):
+    if max_level is None and len(system.harmonics) > few_harmonics(system):
         few = system.with_harmonics(system.harmonics[: few_harmonics(system)])
-        reach = _followed(few, omega, linear, most).max_level
-    found = _followed(system, omega, linear, most if reach is None else min(reach, most))
+        max_level = _followed(few, omega, linear, most).max_level
+    found = _followed(system, omega, linear, most if max_level is None else min(max_level, most))
     if linear >= 1.0:
         at_rest = np.append(next(linear_responses(system, omega, 1.0)), omega)
         return replace(found, solutions=(at_rest, *found.solutions))
@@ -129,17 +129,17 @@ def solutions_in_turn(
 ) -> Iterator[LevelSolutions]:
     """Solutions at some frequencies, as `solutions_at`, each computed when it is asked for."""
     precompute(system, frequencies)
-    reach = {one.omega: one.max_level for one in fewer if np.isfinite(one.max_level)}
+    max_levels = {one.omega: one.max_level for one in fewer if np.isfinite(one.max_level)}
     for k, omega in enumerate(frequencies, start=1):
         system.work.tell(f"the level of the forces, {k} of {len(frequencies)}")
-        yield solutions(system, omega, reach.get(omega))
+        yield solutions(system, omega, max_levels.get(omega))
 
 
 def _followed(system: System, omega: float, linear: float, top: float) -> LevelSolutions:
     """Solutions at the level 1 on the curve from where it is linear to its top."""
     if linear >= top:
         return LevelSolutions(
-            omega, system.harmonics, (), True, _level_reach(system, Status.COMPLETE, np.empty(0))
+            omega, system.harmonics, (), True, _max_level(system, Status.COMPLETE, np.empty(0))
         )
     return _shared(system, omega, top) or _found(system, omega, linear, top)
 
@@ -155,8 +155,8 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    reach, turns = _level_reach(system, path.status, path.parameter), level_folds(path, omega)
-    return LevelSolutions(omega, system.harmonics, tuple(found), complete, reach, turns)
+    max_level, turns = _max_level(system, path.status, path.parameter), level_folds(path, omega)
+    return LevelSolutions(omega, system.harmonics, tuple(found), complete, max_level, turns)
 
 
 def turned_back(path: Path, options: LevelReachOptions) -> bool:
@@ -179,9 +179,9 @@ def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
     found = solutions_at_level_one(system, path, omega)
     if found is None:
         return None
-    reach = _level_reach(system, path.status, system.preload_unit * path.parameter)
+    max_level = _max_level(system, path.status, system.preload_unit * path.parameter)
     turns = level_folds(path, omega, system.preload_unit)
-    return LevelSolutions(omega, system.harmonics, tuple(found), True, reach, turns)
+    return LevelSolutions(omega, system.harmonics, tuple(found), True, max_level, turns)
 
 
 def _without_user_points(system: System, omega: float, top: float) -> Path:
@@ -224,12 +224,11 @@ def few_harmonics(system: System) -> int:
     layout, options = system.layout, system.option(LEVEL_CURVE)
     means, each = layout.directions, layout.stride
     return min(
-        max((options.few_unknowns // max(layout.contacts, 1) - means) // each, 1),
-        options.few_harmonics,
+        max((options.few_unknowns // max(layout.contacts, 1) - means) // each, 1), options.few_harmonics
     )
 
 
-def _level_reach(system: System, status: Status, levels: FloatArray) -> float:
+def _max_level(system: System, status: Status, levels: FloatArray) -> float:
     """Level up to which the curve of more harmonics is to be followed, or inf if a system does not tell."""
     if status is not Status.COMPLETE or len(system.harmonics) < few_harmonics(system):
         return np.inf
@@ -358,7 +357,7 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
 
 def level_frequencies(system: System, peaks: Sequence[float] = ()) -> tuple[float, ...]:
     """The frequencies at which the level is followed; peaks: those of a response with fewer harmonics."""
-    span, inside = system.scene.frequency_range, resonances(system)
+    span, inside = system.scene.frequency_range, linear_resonances(system)
     known = np.array([span[0], *inside, span[1]])
     widest = int(np.diff(known).argmax())
     found = (*span, *inside, float(known[widest : widest + 2].mean()))
@@ -416,7 +415,7 @@ def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple
     return system.harmonics if same else few
 
 
-def resonances(system: System) -> list[float]:
+def linear_resonances(system: System) -> list[float]:
     """Natural frequencies within the range, with all contacts stuck, as at rest, and all open, in order; of
     forces at other harmonics these divided by them."""
     low, high = system.scene.frequency_range

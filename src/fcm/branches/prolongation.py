@@ -23,10 +23,7 @@ from fcm.model.scene import FloatArray
 
 
 def prolongated(
-    system: System,
-    fewer: Sequence[int],
-    paths: Sequence[Path],
-    options: ProlongationOptions = PROLONGATION,
+    system: System, fewer: Sequence[int], paths: Sequence[Path], options: ProlongationOptions = PROLONGATION
 ) -> Iterator[FloatArray]:
     """Solutions (unknown + 1,) of a system within its range, near points of paths of fewer harmonics.
 

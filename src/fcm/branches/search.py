@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
-from fcm.branches.branch_points import BranchPoint, branch_points
+from fcm.branches.branch_points import BranchPoint, branch_points, with_leaving
 from fcm.branches.force_level import level_frequencies, solutions_at
 from fcm.branches.friction_homotopy import with_friction_raised
 from fcm.branches.isolas import folds_to_follow, level_one_crossings
@@ -89,17 +90,13 @@ def with_branching(system: System, found: Traced, options: BranchingOptions = BR
     """The branches with those that leave them at branch points, of two mirror images one."""
     if not system.scene.contacts:
         return found
-    known, left = 0, options.max_starts
-    for _ in range(options.max_rounds):
-        paths, known = found.branches.paths[known:], len(found.branches.paths)
-        for point in branch_points(system, paths):
-            if left == 0:
-                return found
-            left -= 1
-            found = _with_branches_of(system, found, point)
-        if len(found.branches.paths) == known:
-            break
-    return found
+    return with_leaving(
+        found,
+        lambda found: found.branches.paths,
+        partial(branch_points, system, options=options),
+        partial(_with_branches_of, system),
+        options,
+    )
 
 
 def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Traced:

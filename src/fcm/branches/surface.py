@@ -311,7 +311,7 @@ class Surface:
 PI = cython.declare(cython.double, np.pi)
 
 
-class Ending(Enum):
+class FoldCurveEnding(Enum):
     """The reason why a curve of folds ended."""
 
     RANGE = "it left the range of frequencies"
@@ -408,13 +408,15 @@ class FoldSteps:
                 return list(pairs[opposite])
         return []
 
-    def run(self, start: FloatArray, singular: FloatArray, way: Departure) -> tuple[list[Point], Ending]:
+    def run(
+        self, start: FloatArray, singular: FloatArray, way: Departure
+    ) -> tuple[list[Point], FoldCurveEnding]:
         """Follow the curve from the start on by one of its ways."""
         options, surface, side = self.options, self.surface, Side(self.n)
         self.begin(start, singular)
         self.test_value(side, way.radius, way.angle)
         if not surface.recentre(way.along, way.across):
-            return [], Ending.STALLED
+            return [], FoldCurveEnding.STALLED
         points = [(np.array(surface.centre), np.array(way.across))]
         ways, retreats = [way], options.max_retreats  # to each of the points
         step: cython.double = options.initial_step
@@ -447,25 +449,25 @@ class FoldSteps:
                 surface.recentre(way.along, way.across)
                 continue
             if found is None:
-                return points, Ending.STALLED
+                return points, FoldCurveEnding.STALLED
             before, way = np.array(surface.centre), found
             if not surface.recentre(way.along, way.across):
-                return points, Ending.STALLED
+                return points, FoldCurveEnding.STALLED
             z = np.array(surface.z)
             ways.append(way)
             points.append((z, self.singular(way.across)))
             if count % options.report_interval == 0:
                 self.charge_work()
             if not self.low <= surface.z[self.n - 2] <= self.high:
-                return points, Ending.RANGE
+                return points, FoldCurveEnding.RANGE
             if not options.covers(surface.z[self.n - 1]):
-                return points, Ending.LEVEL
+                return points, FoldCurveEnding.LEVEL
             if count > 2 and self.passes(points[0][0], before, z):
-                return [*points, points[0]], Ending.CLOSED
+                return [*points, points[0]], FoldCurveEnding.CLOSED
             longer: cython.double = min(max(self.target_turn / max(fabs(way.angle), 1e-3), 0.4), 2.0) * step
             longer = min(longer, options.max_step)
             bend, step = 0.5 * way.angle * (1.0 + longer / step), longer
-        return points, Ending.LONG
+        return points, FoldCurveEnding.LONG
 
     def begin(self, start: FloatArray, singular: FloatArray) -> bool:
         """Go to the surface at the start, with the frequency along and a direction across."""

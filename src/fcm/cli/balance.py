@@ -70,10 +70,7 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
 
 
 def check_level(
-    span: tuple[float, float] | None,
-    at: tuple[float, ...] | None,
-    method: str,
-    mode: int | None = None,
+    span: tuple[float, float] | None, at: tuple[float, ...] | None, method: str, mode: int | None = None
 ) -> None:
     """A usage error if a span of levels of the forces lacks its frequency, is given with what means nothing
     then, or is out of range; with a mode the levels are modal amplitudes."""

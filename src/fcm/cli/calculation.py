@@ -75,18 +75,16 @@ def _options(messages: Messages, asked: Asked) -> ResponseOptions:
 
 def _balanced(messages: Messages, asked: Asked) -> dict[str, Any]:
     """Options of a calculation by harmonic balance."""
-    return {
-        "harmonics": asked.harmonics,
-        "accuracy": asked.accuracy,
-        "options": _options(messages, asked),
-    }
+    return {"harmonics": asked.harmonics, "accuracy": asked.accuracy, "options": _options(messages, asked)}
 
 
 def _tracked(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     assert asked.track is not None and asked.over is not None  # --track needs the others
     assert asked.low is not None and asked.high is not None
-    span, chosen = (asked.low, asked.high), _balanced(messages, asked)
-    return track.tracked(messages, scene, (asked.track, asked.over, span), execution, chosen)
+    from fcm.response.track import TrackRequest
+
+    curves = TrackRequest(asked.track, asked.over, (asked.low, asked.high))
+    return track.tracked(messages, scene, curves, execution, _balanced(messages, asked))
 
 
 def _mode(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
@@ -102,10 +100,11 @@ def _mode(messages: Messages, scene: Scene, asked: Asked, execution: Execution) 
 
 
 def _levels(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
-    from fcm.response.level import trace_levels
+    from fcm.response.level import LevelRequest, trace_levels
 
     assert asked.level is not None and asked.at is not None  # --level needs --at
-    response = trace_levels(scene, asked.at, asked.level, execution, **_balanced(messages, asked))
+    levels = LevelRequest(asked.at, asked.level)
+    response = trace_levels(scene, levels, execution, **_balanced(messages, asked))
     messages.clear()
     return response
 

@@ -104,12 +104,12 @@ def _resonances(
 def _picture(found: dict[str, Any]) -> Any:
     import numpy as np
 
-    from fcm.plot.campbell import Ring, draw_campbell
+    from fcm.plot.campbell import DrawnRing, draw_campbell
 
     diameters = found["diameters"]
     opened, stuck = (tuple(np.array(one[state]) for one in diameters) for state in ("open", "stuck"))
     return draw_campbell(
-        Ring(
+        DrawnRing(
             title=found["title"],
             sectors=found["sectors"],
             engine_orders=tuple(one["engine_order"] for one in found["engine_orders"]),

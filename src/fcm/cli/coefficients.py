@@ -14,7 +14,7 @@ from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
-    from fcm.contact.surface import Plane
+    from fcm.contact.surface import ParameterPlane
 
 NORMAL_RANGE, NORMAL_POINTS = (-2.0, 2.0), 401  # from open to closed, as figure 12
 SPACE_STEPS = (100, 40)  # of a surface in space; finer ones can not be seen
@@ -76,14 +76,14 @@ def _panels(
     phases: tuple[float, ...],
     n0_range: tuple[float, float],
     b_range: tuple[float, float],
-) -> list[tuple[str, Plane]]:
+) -> list[tuple[str, ParameterPlane]]:
     """Coefficient and plane of each panel: two phases side by side, else two coefficients of a phase."""
-    from fcm.contact.surface import Plane
+    from fcm.contact.surface import ParameterPlane
 
     coefficients, phases = tuple(dict.fromkeys(coefficients)), tuple(dict.fromkeys(phases))
     if (count := len(coefficients) * len(phases)) > REQUESTS.panels:
         raise click.UsageError(f"{count} panels are too many for a picture: at most {REQUESTS.panels}.")
-    planes = [Plane(phi, n0_range, b_range) for phi in phases]
+    planes = [ParameterPlane(phi, n0_range, b_range) for phi in phases]
     if len(phases) == 2:
         return [(name, plane) for name in coefficients for plane in planes]
     return [(name, plane) for plane in planes for name in coefficients]

@@ -75,13 +75,13 @@ def check_not_read(outputs: Mapping[str, Path | None], inputs: Iterable[str | Pa
 @contextmanager
 def alone(outputs: Iterable[Path | None]) -> Iterator[None]:
     """Context in which no other run writes these files; raises `CheckpointError` if one is at work."""
-    from fcm.run import Checkpoint
-    from fcm.run.checkpoint import unfinished
+    from fcm.run import CheckpointFile
+    from fcm.run.checkpoint_file import unfinished
 
     with ExitStack() as held:
         for path in filter(None, outputs):
             with undisturbed():
-                held.enter_context(Checkpoint(unfinished(path), resume=True))
+                held.enter_context(CheckpointFile(unfinished(path), resume=True))
         yield
 
 

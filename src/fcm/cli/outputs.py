@@ -20,7 +20,7 @@ from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:
     from fcm.response import Response
-    from fcm.run import Checkpoint
+    from fcm.run import CheckpointFile
 
 
 class Outputs:
@@ -36,11 +36,11 @@ class Outputs:
     ) -> None:
         self.messages, self.output, self.csv, self.history_csv = messages, output, csv, history_csv
         self.exported = exported
-        self.checkpoint: Checkpoint | None = None
+        self.checkpoint: CheckpointFile | None = None
         self.written = False  # whether there is a file of this run
 
     @contextmanager
-    def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
+    def kept(self, resume: bool) -> Iterator[CheckpointFile | None]:
         """Context with a checkpoint beside the first file, for as long as the files are not written."""
         files = [path for path in (self.output, self.csv, self.history_csv) if path is not None]
         files += [path for path, _ in self.exported]
@@ -49,12 +49,12 @@ class Outputs:
             return
         anchor = files[0]
         from fcm.files import real, remove_stale
-        from fcm.run import Checkpoint
-        from fcm.run.checkpoint import unfinished
+        from fcm.run import CheckpointFile
+        from fcm.run.checkpoint_file import unfinished
 
         with ExitStack() as held:
             with signals.undisturbed():  # a file that is made is one that is removed
-                self.checkpoint = held.enter_context(Checkpoint(unfinished(anchor), resume))
+                self.checkpoint = held.enter_context(CheckpointFile(unfinished(anchor), resume))
             held.enter_context(alone(files[1:]))
             if resume and not self.checkpoint.resumable:
                 self.messages.info(f"{plain(anchor)}: no unfinished run is kept: this one begins anew")
@@ -68,10 +68,10 @@ class Outputs:
 
     def write(self, response: Response, to_json: bool) -> dict[str, Any]:
         """Write all files and print the summary; the curves are then no longer kept."""
-        from fcm.results.condensed_curves import with_condensed
+        from fcm.results.curve_extracts import with_extracts
         from fcm.results.summary import summary
 
-        response = replace(response, curves=[with_condensed(curve) for curve in response.curves])
+        response = replace(response, curves=[with_extracts(curve) for curve in response.curves])
         result = summary(response)
         try:
             for path, write in self._files(response):

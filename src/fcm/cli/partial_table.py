@@ -14,13 +14,13 @@ from fcm.cli.messages import Messages
 from fcm.run import Progress
 from fcm.table import TableError, open_table
 from fcm.table.build import charts
-from fcm.table.partial_table import Part, Reach
+from fcm.table.partial_table import ChartRanges, TablePart
 from fcm.table.tabulated import Resolution
 
 
 def reached(
     messages: Messages, scene: str, output: Path, resolution: Resolution, progress: Progress | None = None
-) -> Part:
+) -> TablePart:
     """The nodes that the response of a scene looks up, traced with the closed form.
 
     The output must be no file of the scene.
@@ -34,7 +34,7 @@ def reached(
     from fcm.run import Execution
     from fcm.scene import load_scene
 
-    reach = Reach(resolution)
+    reach = ChartRanges(resolution)
     loaded = load_scene(scene)
     check_not_read({"-o": output}, loaded.files)
     response = trace(loaded, "closed-form", Execution(progress=progress), harmonics=1)
@@ -54,12 +54,12 @@ def reached(
     return part
 
 
-def saving(path: Path, part: Part) -> tuple[dict[str, Any], str]:
+def saving(path: Path, part: TablePart) -> tuple[dict[str, Any], str]:
     """How much smaller and faster the part in a file is than all nodes of its resolution.
 
     All nodes are not built for that: their time is that of a part times their number.
     """
-    whole = Part.all_of(part.resolution)
+    whole = TablePart.all_of(part.resolution)
     build = _seconds(lambda: charts(part), 1)
     opening = _seconds(lambda: open_table(path), REQUESTS.repeats)
     times = whole.nodes / part.nodes
@@ -94,7 +94,7 @@ def _shipped(resolution: Resolution) -> Path | None:
     return DEFAULT.with_name(f"{names[0]}.nc") if names else None
 
 
-def _bytes(part: Part) -> int:
+def _bytes(part: TablePart) -> int:
     """Bytes of the file's large arrays: n0_bar, three coefficients at every node, three slopes in slip."""
     slip = part.nodes * (part.slip[1] - part.slip[0]) // sum(end - first for first, end in part[1:3])
     return 20 * part.nodes + 12 * slip

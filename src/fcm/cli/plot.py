@@ -26,10 +26,7 @@ PICTURES = {
     "campbell": ("fcm.cli.campbell:campbell", "Frequencies of a ring of sectors by nodal diameter."),
     "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
-    "sensitivity": (
-        "fcm.cli.plot:sensitivity",
-        "What each number of the scene does to a peak.",
-    ),
+    "sensitivity": ("fcm.cli.plot:sensitivity", "What each number of the scene does to a peak."),
     "accuracy": ("fcm.cli.plot:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),
     "contacts": ("fcm.cli.interface:contacts", "Which contacts stick, slip and open, and what they bear."),

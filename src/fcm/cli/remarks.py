@@ -121,13 +121,7 @@ def close(
         never_closed(result, announced.constant_loads),
         *(
             one(result)
-            for one in (
-                mirrored,
-                kept_friction,
-                nothing_stable,
-                not_confirmed,
-                peaks_not_followed,
-            )
+            for one in (mirrored, kept_friction, nothing_stable, not_confirmed, peaks_not_followed)
         ),
         of_more_harmonics(result) if announced.harmonics_given else large_errors(result),
         folds_uncertain(result),

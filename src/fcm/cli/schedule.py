@@ -17,7 +17,7 @@ from fcm.rotational_dofs import MOST_DOFS
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
-    from fcm.run import Checkpoint
+    from fcm.run import CheckpointFile
     from fcm.time_domain import Histories
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
@@ -46,7 +46,7 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
         )
 
 
-def simulated(messages: Messages, scene: Scene, response: Response, keep: Checkpoint | None) -> Histories:
+def simulated(messages: Messages, scene: Scene, response: Response, keep: CheckpointFile | None) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
     from fcm.response import scheduled
     from fcm.run.progress import part

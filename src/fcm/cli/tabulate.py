@@ -111,12 +111,7 @@ def _alone(ctx: click.Context, option: str) -> None:
 
 
 def _build(
-    messages: Messages,
-    output: Path,
-    resolution: Resolution,
-    scene: str | None,
-    points: int,
-    to_json: bool,
+    messages: Messages, output: Path, resolution: Resolution, scene: str | None, points: int, to_json: bool
 ) -> None:
     from fcm.cli.partial_table import reached, saving
     from fcm.run.progress import part as share

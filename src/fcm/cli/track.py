@@ -26,13 +26,11 @@ from fcm.cli.terminal import plain
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
+    from fcm.response.track import TrackRequest
     from fcm.run import Execution
 
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
-_SAID = {
-    UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
-    UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}",
-}
+_SAID = {UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}", UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}"}
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
     "at": "every frequency of the range is looked at",
@@ -103,17 +101,13 @@ def check_options(
 
 
 def tracked(
-    messages: Messages,
-    scene: Scene,
-    wanted: tuple[str, str, tuple[float, float]],
-    execution: Execution,
-    options: dict[str, Any],
+    messages: Messages, scene: Scene, asked: TrackRequest, execution: Execution, options: dict[str, Any]
 ) -> Response:
     """The curves that were asked for."""
     from fcm.response.track import SpanError, track
 
     try:
-        response = track(scene, *wanted, execution, **options)
+        response = track(scene, asked, execution, **options)
     except SpanError as error:
         raise error.named("--from", "--to") from None
     messages.clear()

@@ -15,7 +15,7 @@ from fcm.compare.lines import Line
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
 from fcm.compare.startup import Startup
 from fcm.files import replacing
-from fcm.results.condensed_curves import worst
+from fcm.results.curve_extracts import worst
 from fcm.results.variable_meanings import variable_names
 from fcm.units import UNIT
 

@@ -20,7 +20,7 @@ FINE_CELLS = (800, 324)  # whose edges are seen as a line
 Law = Callable[[FloatArray, FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
 
 
-class Plane(Frozen):
+class ParameterPlane(Frozen):
     """A rectangle of n0_bar [-] and b_bar [-] at a phase [rad]."""
 
     phi: float = 0.0
@@ -40,28 +40,28 @@ class Plane(Frozen):
         return n0, b
 
 
-class Surface(Frozen):
+class CoefficientSurface(Frozen):
     """Values of one coefficient over a plane."""
 
     coefficient: str
-    plane: Plane
+    plane: ParameterPlane
     n0_bar: FloatArray  # (i,) [-]
     b_bar: FloatArray  # (j,) [-]
     values: FloatArray  # (j, i) [-]
 
 
 def surface(
-    coefficient: str, plane: Plane, steps: tuple[int, int] = STEPS, law: Law = fourier_coefficients
-) -> Surface:
+    coefficient: str, plane: ParameterPlane, steps: tuple[int, int] = STEPS, law: Law = fourier_coefficients
+) -> CoefficientSurface:
     """Surface of one of COEFFICIENTS over a plane, from the closed form or from another law such as a table.
 
-    >>> flat = surface("F_c", Plane(phi=0.0, b_range=(1.0, 2.0)), steps=(10, 10))
+    >>> flat = surface("F_c", ParameterPlane(phi=0.0, b_range=(1.0, 2.0)), steps=(10, 10))
     >>> float(abs(flat.values).max())  # in phase, and the load varies enough: no damping
     0.0
     """
     n0, b = plane.nodes(steps)
     F = law(n0[None, :], b[:, None], plane.phi)
-    return Surface(coefficient, plane, n0, b, F[COEFFICIENTS.index(coefficient)])
+    return CoefficientSurface(coefficient, plane, n0, b, F[COEFFICIENTS.index(coefficient)])
 
 
 def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
@@ -83,7 +83,7 @@ class Edges(Frozen):
     n0_bar: dict[str, FloatArray]  # for each line (j,) [-]
 
 
-def edges(plane: Plane) -> Edges:
+def edges(plane: ParameterPlane) -> Edges:
     """The boundary lines between the regimes, at all b_bar of a plane."""
     b = np.linspace(*plane.b_range, STEPS[0] + 1)
     return Edges(b, boundaries(b, plane.phi))
@@ -99,7 +99,7 @@ class Regions(Frozen):
     edges: Edges
 
 
-def regions(plane: Plane, steps: tuple[int, int] = FINE_CELLS) -> Regions:
+def regions(plane: ParameterPlane, steps: tuple[int, int] = FINE_CELLS) -> Regions:
     """Regions of the sequences of `hysteresis_loop` over a plane, evaluated in the middle of each cell."""
     n0, b = plane.centres(steps)
     found = sequences(n0[None, :], b[:, None], plane.phi)

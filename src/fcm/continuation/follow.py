@@ -185,21 +185,21 @@ class Follower:
             known: cython.bint = (
                 step <= stepper.known_length
             )  # the last corner and all that is nearer are one
-            reach: cython.double = next_corner(stepper, step)
-            if reach < step and step > self.approach_distance and many and self.steps_over_corners(step):
+            corner: cython.double = next_corner(stepper, step)
+            if corner < step and step > self.approach_distance and many and self.steps_over_corners(step):
                 return self.accept_step()
-            if reach < min(step, reached):
-                stepper.move_short(reach)
+            if corner < min(step, reached):
+                stepper.move_short(corner)
                 return self.leave_corner(stepper.here, 0.0)
             # curves bend more and more towards a corner, and may hide a pair of folds there
             if (
-                self.approach_distance < reach < step
-                and smooth_step(stepper, switching.approach_fraction * reach)
+                self.approach_distance < corner < step
+                and smooth_step(stepper, switching.approach_fraction * corner)
                 and self.hidden_event() == 0.0
             ):
                 return self.accept_step()
             if stepper.try_step(
-                reach * (1.0 + switching.overshoot) + control.min_step if reach < step else step
+                corner * (1.0 + switching.overshoot) + control.min_step if corner < step else step
             ):
                 if changes_sign(stepper) and not known:
                     if stepper.known_length > 0.0 and before_corner(stepper) < stepper.known_length:
@@ -208,23 +208,23 @@ class Follower:
                     status = self.reach_corner() if stepper.miss < 1.0 else Status.STALLED
                     if status is not Status.STALLED:
                         return status
-                elif reach >= step and acceptable(stepper):
+                elif corner >= step and acceptable(stepper):
                     hidden: cython.double = self.hidden_event() or self.landing.first_crossed(stepper, step)
                     if hidden == 0.0:
                         return self.accept_step()
                     step = hidden
                     continue
             if self.problem.has_root_margins:
-                status = self.pass_straight_corner(step, reach)
+                status = self.pass_straight_corner(step, corner)
                 if status is not Status.STALLED:
                     return status
             # the curve may turn back in a corner, so that nothing is to be found beyond
-            if reach < step and smooth_step(stepper, reach * (1.0 - switching.overshoot)):
+            if corner < step and smooth_step(stepper, corner * (1.0 - switching.overshoot)):
                 return self.accept_step()
-            if reach < min(step, switching.turning_distance) and not self.is_at_corner():
-                stepper.move_short(reach)  # it turns by more than a right angle: no plane ahead has it
+            if corner < min(step, switching.turning_distance) and not self.is_at_corner():
+                stepper.move_short(corner)  # it turns by more than a right angle: no plane ahead has it
                 return self.leave_corner(stepper.here, 0.0)
-            step = 0.25 * min(step, reach)
+            step = 0.25 * min(step, corner)
         return Status.STALLED
 
     @cython.cfunc
@@ -254,7 +254,7 @@ class Follower:
         return self.options.user_points_only or not changes_sign(stepper) or parameter_is_even(stepper)
 
     @cython.cfunc
-    def pass_straight_corner(self, step: cython.double, reach: cython.double) -> object:
+    def pass_straight_corner(self, step: cython.double, corner: cython.double) -> object:
         """Go on from the corner where a margin vanishes that goes on as it does here.
 
         STALLED if none does, or that is where the prediction comes to it, too.
@@ -264,7 +264,7 @@ class Follower:
         at: cython.double = next_extrapolated_root(stepper)
         if self.is_at_corner():
             return Status.STALLED
-        if reach < step and reach > switching.root_fraction * at:
+        if corner < step and corner > switching.root_fraction * at:
             return Status.STALLED
         past: cython.double = switching.crossing_factor * at
         if 0.0 < past < step and stepper.try_step(past) and stepper.miss < 1.0 and changes_sign(stepper):

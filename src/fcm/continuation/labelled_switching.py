@@ -96,18 +96,18 @@ class LabelledSwitching:
                     self.control.any_turn_step, step * clipped(shorter, *self.options.rejection_factors)
                 )
                 continue
-            reach = next_corner(stepper, step)
-            if reach < min(step, max(self.switching.reached_distance, self.departure)):
-                return self.search_beyond(follower, min(reach, self.switching.reached_distance))
+            corner = next_corner(stepper, step)
+            if corner < min(step, max(self.switching.reached_distance, self.departure)):
+                return self.search_beyond(follower, min(corner, self.switching.reached_distance))
             if (
-                reach < step
-                and stepper.try_step(reach * (1.0 - self.options.margin_fraction))
+                corner < step
+                and stepper.try_step(corner * (1.0 - self.options.margin_fraction))
                 and self.acceptable(follower)
             ):
                 status = self.accept_step(follower, self.options.max_factor)
                 follower.limit_step(self.control.any_turn_step, False)
                 return status
-            step = self.options.retreat * min(step, reach)
+            step = self.options.retreat * min(step, corner)
         return self.search_beyond(
             follower, 0.0 if self.departure else next_corner(stepper, self.options.reached_distance)
         )
@@ -177,8 +177,7 @@ class LabelledSwitching:
             return Status.STALLED
         if self.store.count > count:
             follower.limit_step(
-                step * clipped(step_factor(self.options, error, cubic), self.options.min_factor, longer),
-                True,
+                step * clipped(step_factor(self.options, error, cubic), self.options.min_factor, longer), True
             )
             follower.limit_step(step * longer, False)
             self.departures, self.departure = 0, 0.0
@@ -197,7 +196,7 @@ class LabelledSwitching:
         away = (kept.z[old] - kept.z[new[-1]]) / np.asarray(self.stepper.newton.scale)
         return bool((np.abs(away).max(axis=1, initial=0.0) < self.options.fold_tolerance).any())
 
-    def search_beyond(self, follower: Follower, reach: float) -> object:
+    def search_beyond(self, follower: Follower, corner: float) -> object:
         """Leave a corner, a change of label this near; if nothing new leads on, look further beyond it."""
         stepper = self.stepper
         if self.departures > self.options.max_departures:
@@ -211,7 +210,7 @@ class LabelledSwitching:
             stepper.predictor.reset()
             self.store.drop()
             self.store.put(*self.incoming_point)
-            past = max(self.switching.departure_length, 3.0 * reach) * 10.0**self.departures
+            past = max(self.switching.departure_length, 3.0 * corner) * 10.0**self.departures
             self.departures += 1
             follower.leave_corner(stepper.here, 0.0, past)
             new = np.array(stepper.here.tangent)

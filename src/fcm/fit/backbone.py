@@ -13,7 +13,7 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.continuation.nearby_solution import solution_near
 from fcm.fit.forced import NoMotionError
-from fcm.fit.least_squares_rows import Rows
+from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.options import BACKBONE, FitOptions
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.static_equilibrium import RestError
@@ -27,7 +27,7 @@ from fcm.sensitivity.peak import STENCIL
 
 def backbone_rows(
     scene: Scene, numbers: Sequence[Number], harmonics: tuple[int, ...], data: Measured, options: FitOptions
-) -> Rows:
+) -> ResidualRows:
     """Residuals (point, 2) of frequency and damping, and their rates by numbers of the scene.
 
     Raises
@@ -55,7 +55,7 @@ def backbone_rows(
         value = z[-3:-1]
         residual[i] = np.where(known[i], (value - y[i]) / units[i], 0.0)
         rates[i] = np.where(known[i], 1.0 / units[i], 0.0)[:, None] * found.rates(z, moved)
-    return Rows(residual, rates, unreached, int(known.sum()))
+    return ResidualRows(residual, rates, unreached, int(known.sum()))
 
 
 def backbone_errors(data: Measured, options: FitOptions) -> FloatArray:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import t as student
 
-from fcm.fit.least_squares_rows import Rows
+from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import Parameters
 from fcm.frozen import Frozen
@@ -42,7 +42,9 @@ class Estimate(Frozen):
     alike: tuple[tuple[int, int, float], ...]
 
 
-def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: FitOptions = FIT) -> Estimate:
+def estimated(
+    parameters: Parameters, values: FloatArray, rows: ResidualRows, options: FitOptions = FIT
+) -> Estimate:
     """Estimates from the rows of residuals at the best-fit numbers."""
     rates = parameters.rates(values)
     J = rows.rates * rates
@@ -58,10 +60,10 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     spread = np.sqrt(np.where(np.isnan(np.diag(covariance)), np.inf, np.diag(covariance)))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(spread, spread)
-    reach = student.ppf(0.5 + 0.5 * options.confidence, freedom) * spread
+    half_width = student.ppf(0.5 + 0.5 * options.confidence, freedom) * spread
     x = parameters.unknowns(values)
     with np.errstate(over="ignore", invalid="ignore"):
-        ends = np.column_stack((parameters.values(x - reach), parameters.values(x + reach)))
+        ends = np.column_stack((parameters.values(x - half_width), parameters.values(x + half_width)))
         ends[ends[:, 0] < parameters.low, 0] = np.nan
         ends[ends[:, 1] > parameters.high, 1] = np.nan
     without = np.ones(count)

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from fcm.branches.trace import traced
 from fcm.continuation.corrector import Newton
-from fcm.fit.least_squares_rows import Rows
+from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.options import NEAREST, FitOptions, NearestOptions
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
@@ -42,27 +42,27 @@ class NoMotionError(ArithmeticError):
     """Raised when the model has no response in the range of the data."""
 
 
-class Errors(Frozen):
+class DataErrors(Frozen):
     """Errors (point,) of the frequencies and amplitudes of measured points."""
 
     frequency: FloatArray
     amplitude: FloatArray
 
 
-def errors_of(data: Measured, blurred: bool, options: FitOptions) -> Errors:
+def errors_of(data: Measured, blurred: bool, options: FitOptions) -> DataErrors:
     """Errors of measured points: stated or estimated; parts of the data's extent while a start is sought."""
     top = float(data.amplitude.max())
     if blurred:
         width = max(float(np.ptp(data.frequency)), 1e-3 * float(data.frequency.max()))
-        return Errors(
+        return DataErrors(
             np.full(data.points, options.search_error * width),
             np.full(data.points, options.search_error * top),
         )
     of_frequency = options.frequency_error if data.frequency_error is None else data.frequency_error
     if data.estimated is not None:
-        return Errors(of_frequency * data.frequency, data.estimated[:, 0])
+        return DataErrors(of_frequency * data.frequency, data.estimated[:, 0])
     of_amplitude = options.amplitude_error if data.amplitude_error is None else data.amplitude_error
-    return Errors(of_frequency * data.frequency, of_amplitude * top / np.sqrt(data.weight))
+    return DataErrors(of_frequency * data.frequency, of_amplitude * top / np.sqrt(data.weight))
 
 
 class Observed:
@@ -131,9 +131,9 @@ def forced_rows(
     keys: Sequence[str],
     harmonics: tuple[int, ...],
     data: Measured,
-    errors: Errors,
+    errors: DataErrors,
     options: FitOptions,
-) -> Rows:
+) -> ResidualRows:
     """Residuals of the points of a data set, and their rates by numbers of the scene.
 
     Raises
@@ -161,7 +161,7 @@ def forced_rows(
                 by_number[i] = nearest.rates(z, rates)
             low, high = scene.frequency_range
             unreached[i] = float(not low < z[-1] < high)
-    return Rows(residual, by_number, unreached, data.values)
+    return ResidualRows(residual, by_number, unreached, data.values)
 
 
 def range_of(data: Measured, options: FitOptions) -> tuple[float, float]:
@@ -171,7 +171,7 @@ def range_of(data: Measured, options: FitOptions) -> tuple[float, float]:
     return max(low - beyond, 0.5 * low), high + beyond
 
 
-def _units(data: Measured, errors: Errors) -> FloatArray:
+def _units(data: Measured, errors: DataErrors) -> FloatArray:
     """Errors (point, component) of the components of each measured point."""
     parts = [errors.frequency] + [errors.amplitude] * (1 if data.phase is None else 2)
     return np.column_stack(parts)
@@ -314,12 +314,7 @@ class Nearest:
 
 
 def sampled(
-    scene: Scene,
-    like: Measured,
-    level: float,
-    count: int,
-    harmonics: tuple[int, ...],
-    options: FitOptions,
+    scene: Scene, like: Measured, level: float, count: int, harmonics: tuple[int, ...], options: FitOptions
 ) -> Measured:
     """Points of the response as if they had been measured, over the range of a data set and where that was.
 

@@ -10,7 +10,7 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 
 
-class Rows(Frozen):
+class ResidualRows(Frozen):
     """residual (point, component) in units of the errors; rates (point, component, number), by the numbers.
 
     unreached: (point,) whether the curve of the model does not come there, so that its end is taken.
@@ -27,7 +27,7 @@ class Rows(Frozen):
         return 0.5 * float((self.residual**2).sum())
 
 
-def joined(parts: Sequence[Rows]) -> Rows:
+def joined(parts: Sequence[ResidualRows]) -> ResidualRows:
     """Rows of several data; components that some have not are 0."""
     most = max(part.residual.shape[1] for part in parts)
 
@@ -36,7 +36,7 @@ def joined(parts: Sequence[Rows]) -> Rows:
         missing[1] = (0, most - values.shape[1])
         return np.pad(values, missing)
 
-    return Rows(
+    return ResidualRows(
         np.concatenate([wide(part.residual) for part in parts]),
         np.concatenate([wide(part.rates) for part in parts]),
         np.concatenate([part.unreached for part in parts]),

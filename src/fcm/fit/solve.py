@@ -21,7 +21,7 @@ from scipy.optimize import least_squares
 
 from fcm.fit.backbone import backbone_rows
 from fcm.fit.forced import NoMotionError, errors_of, forced_rows
-from fcm.fit.least_squares_rows import Rows, joined
+from fcm.fit.least_squares_rows import ResidualRows, joined
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import FitError, Parameters
 from fcm.fit.weights import reweighted
@@ -56,7 +56,7 @@ class SavedSearches(Protocol):
 
 
 @dataclass
-class Start:
+class SearchStart:
     """Numbers that were tried: where they began, and where they came to, with the cost there.
 
     cost is that of a start while it is sought, of a finalist that of all points, with the errors of the best;
@@ -75,19 +75,19 @@ class Solved:
     """The best numbers, their rows by data set, the data with the errors they were given, and the starts."""
 
     values: FloatArray
-    parts: list[Rows]
+    parts: list[ResidualRows]
     data: list[Measured]
-    starts: list[Start]
+    starts: list[SearchStart]
     interrupted: bool = False
     settled: bool = True  # whether the search for these numbers ended at a minimum
 
     @property
-    def rows(self) -> Rows:
+    def rows(self) -> ResidualRows:
         return joined(self.parts)
 
 
 @dataclass
-class Problem:
+class FitProblem:
     """Residuals of all data as a function of the unknowns, each point evaluated once.
 
     best : of all unknowns that were evaluated, those of the least cost.
@@ -98,10 +98,10 @@ class Problem:
     harmonics: tuple[int, ...]
     blurred: bool
     options: FitOptions = FIT
-    known: tuple[bytes, list[Rows] | None] = field(default=(b"", None))
+    known: tuple[bytes, list[ResidualRows] | None] = field(default=(b"", None))
     best: SearchResult | None = None
 
-    def parts(self, x: FloatArray) -> list[Rows] | None:
+    def parts(self, x: FloatArray) -> list[ResidualRows] | None:
         """Rows of each data set; None where the model has no response."""
         if self.known[0] != x.tobytes():
             try:
@@ -110,7 +110,7 @@ class Problem:
                 self.known = (x.tobytes(), None)
         return self.known[1]
 
-    def _parts(self, x: FloatArray) -> list[Rows]:
+    def _parts(self, x: FloatArray) -> list[ResidualRows]:
         values = self.parameters.values(x)
         scene, numbers = self.parameters.at(values), self.parameters.numbers
         found = []
@@ -185,7 +185,7 @@ class Searches:
         self.kept, self.tell, self.number = kept, tell, 0
 
     def least(
-        self, problem: Problem, x: FloatArray, evaluations: int, share: tuple[float, float], what: str
+        self, problem: FitProblem, x: FloatArray, evaluations: int, share: tuple[float, float], what: str
     ) -> SearchResult:
         """Result of a search from given unknowns, taken from the saved ones if there.
 
@@ -243,9 +243,9 @@ def solved(
         If nothing is found then; else the best numbers so far are returned, and that it was interrupted.
     """
     few = [_thinned(one, options.few_points) for one in data]
-    rough = Problem(parameters, few, harmonics, True, options)
-    fine = Problem(parameters, data, harmonics, False, options)
-    searches, starts, ends = searches or Searches(), list[Start](), list[_End]()
+    rough = FitProblem(parameters, few, harmonics, True, options)
+    fine = FitProblem(parameters, data, harmonics, False, options)
+    searches, starts, ends = searches or Searches(), list[SearchStart](), list[_End]()
     try:
         begins = [parameters.unknowns(one) for one in begin]
         nearest = sorted(begins, key=rough.cost)[: options.finalists]
@@ -283,7 +283,7 @@ def solved(
     return _likeliest(ends, starts, options, interrupted)
 
 
-def _so_far(fine: Problem, rough: Problem, starts: list[Start]) -> Solved:
+def _so_far(fine: FitProblem, rough: FitProblem, starts: list[SearchStart]) -> Solved:
     """The best numbers of a fit that was interrupted: of all points where these were begun with.
 
     Raises
@@ -304,9 +304,9 @@ class _End:
     before : unknowns of the least cost with the errors that all finalists begin with.
     """
 
-    start: Start
+    start: SearchStart
     before: FloatArray
-    problem: Problem
+    problem: FitProblem
     x: FloatArray
     unlikely: float
     settled: bool
@@ -351,7 +351,9 @@ def _unstated(data: Sequence[Measured]) -> bool:
     return any(one.damping is None and one.amplitude_error is None for one in data)
 
 
-def _likeliest(ends: Sequence[_End], starts: list[Start], options: FitOptions, interrupted: bool) -> Solved:
+def _likeliest(
+    ends: Sequence[_End], starts: list[SearchStart], options: FitOptions, interrupted: bool
+) -> Solved:
     """The numbers of the likeliest end, and the costs of all finalists with its errors."""
     best = ends[0]
     for end in ends[1:]:
@@ -366,8 +368,8 @@ def _likeliest(ends: Sequence[_End], starts: list[Start], options: FitOptions, i
 
 def _tried(
     parameters: Parameters,
-    rough: Problem,
-    starts: list[Start],
+    rough: FitProblem,
+    starts: list[SearchStart],
     options: FitOptions,
     searches: Searches,
     begins: Sequence[FloatArray] = (),
@@ -382,7 +384,7 @@ def _tried(
         if found.x is None:
             continue
         effect = np.abs(rough.jacobian(found.x)).max(axis=0, initial=0.0) > options.min_effect
-        starts.append(Start(parameters.values(x), parameters.values(found.x), found.cost, effect))
+        starts.append(SearchStart(parameters.values(x), parameters.values(found.x), found.cost, effect))
         least = _by_cost(starts, options)[0]
         same = [
             np.isclose(one.end, least.end, rtol=options.number_tolerance, atol=0.0) | ~least.effect
@@ -392,7 +394,7 @@ def _tried(
             return
 
 
-def _by_cost(starts: Sequence[Start], options: FitOptions) -> list[Start]:
+def _by_cost(starts: Sequence[SearchStart], options: FitOptions) -> list[SearchStart]:
     """Starts ordered by cost; of equal costs the earlier one, nearer to the scene, is first."""
     least = min(one.cost for one in starts)
     return sorted(
@@ -400,7 +402,7 @@ def _by_cost(starts: Sequence[Start], options: FitOptions) -> list[Start]:
     )
 
 
-def _with_rows(problem: Problem, x: FloatArray, starts: list[Start], interrupted: bool) -> Solved:
+def _with_rows(problem: FitProblem, x: FloatArray, starts: list[SearchStart], interrupted: bool) -> Solved:
     parts = problem.parts(x)
     assert parts is not None
     values = problem.parameters.values(x)

@@ -19,13 +19,13 @@ from scipy.optimize import minimize
 
 from fcm.fit.backbone import backbone_errors
 from fcm.fit.forced import errors_of
-from fcm.fit.least_squares_rows import Rows
+from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.options import FitOptions
 from fcm.model.scene import FloatArray, Measured
 
 
 def reweighted(
-    data: Sequence[Measured], parts: Sequence[Rows], options: FitOptions, share: bool = False
+    data: Sequence[Measured], parts: Sequence[ResidualRows], options: FitOptions, share: bool = False
 ) -> tuple[list[Measured], float]:
     """The measured points with estimated errors unless they are stated, and how unlikely their distances are.
 
@@ -55,7 +55,7 @@ def reweighted(
     return found, unlikely
 
 
-def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> tuple[Measured, float]:
+def _of_backbone(data: Measured, rows: ResidualRows, options: FitOptions) -> tuple[Measured, float]:
     """A backbone with one error for all frequencies and one for all damping ratios, and its unlikeliness."""
     assert data.damping is not None
     distance = rows.residual[:, :2] * backbone_errors(data, options)
@@ -67,7 +67,7 @@ def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> tuple[Measu
     return replace(data, estimated=size / np.sqrt(data.weight[:, None])), unlikely
 
 
-def _squares(data: Measured, rows: Rows, options: FitOptions) -> FloatArray:
+def _squares(data: Measured, rows: ResidualRows, options: FitOptions) -> FloatArray:
     """Weighted squares of the distances of a response's points, for each independent component."""
     unit, components = errors_of(data, False, options).amplitude, data.components - 1
     distance: FloatArray = (rows.residual[:, : components + 1] ** 2).sum(axis=1) * unit**2

@@ -6,14 +6,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.model.scene import FloatArray
 
 
 @lru_cache(64)  # many balances have the same harmonics
-def waves(
-    harmonics: tuple[float, ...], samples_of_period: int = HARMONIC_BALANCE.extremes.samples
-) -> tuple[FloatArray, FloatArray]:
+def waves(harmonics: tuple[float, ...], samples_of_period: int) -> tuple[FloatArray, FloatArray]:
     """cos(h theta) and sin(h theta) (harmonic, sample) of each harmonic, so many samples for each period of
     the highest; one harmonic alone needs none."""
     samples = int(samples_of_period * harmonics[-1]) if len(harmonics) > 1 else 0

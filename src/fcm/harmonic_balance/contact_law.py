@@ -23,6 +23,7 @@ from fcm.contact.closed_form import CoefficientLaw
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Margins, Measures
 from fcm.harmonic_balance import options
+from fcm.model.scene import Contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
@@ -68,17 +69,11 @@ class Law:
     """
 
     def __init__(
-        self,
-        width: cython.int,
-        directions: cython.int,
-        margins: cython.int,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
+        self, width: cython.int, directions: cython.int, margins: cython.int, contact: Contact
     ) -> None:
         self.width, self.directions, self.margins = width, directions, margins
-        self.mu, self.k_u, self.k_v, self.n_0, self.nonlinear = mu, k_u, k_v, n_0, False
+        self.mu, self.k_u, self.k_v, self.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
+        self.nonlinear = False
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
@@ -136,17 +131,8 @@ class Law:
 class KernelLaw(Law):
     """A law with the forces of a kernel, exact for a motion of any harmonics; contacts may share it."""
 
-    def __init__(
-        self,
-        kernel: Any,
-        directions: cython.int,
-        margins: cython.int,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
-    ) -> None:
-        Law.__init__(self, kernel.unknowns, directions, margins, mu, k_u, k_v, n_0)
+    def __init__(self, kernel: Any, directions: cython.int, margins: cython.int, contact: Contact) -> None:
+        Law.__init__(self, kernel.unknowns, directions, margins, contact)
         self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
 
     @cython.ccall
@@ -202,16 +188,9 @@ class LineLaw(KernelLaw):
     """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
     is."""
 
-    def __init__(
-        self,
-        kernel: PeriodicContact,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
-    ) -> None:
+    def __init__(self, kernel: PeriodicContact, contact: Contact) -> None:
         self.kernel, self.bounds = kernel, Margins(kernel.cycle)
-        KernelLaw.__init__(self, kernel, 2, self.bounds.most, mu, k_u, k_v, n_0)
+        KernelLaw.__init__(self, kernel, 2, self.bounds.most, contact)
         self.state = kernel.cycle.state
         self.measures: Measures | None = None  # made when it is asked for
 
@@ -276,15 +255,8 @@ class SingleHarmonicLaw(Law):
     Its coefficients are a law's: the closed form, or a table.
     """
 
-    def __init__(
-        self,
-        coefficients: CoefficientLaw,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
-    ) -> None:
-        Law.__init__(self, 6, 2, 5, mu, k_u, k_v, n_0)
+    def __init__(self, coefficients: CoefficientLaw, contact: Contact) -> None:
+        Law.__init__(self, 6, 2, 5, contact)
         self.coefficients = coefficients
         self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))
         self.least, self.most = 0.0, 0.0  # see `limits`

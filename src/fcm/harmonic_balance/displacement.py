@@ -39,7 +39,7 @@ class Extremes:
         self.parts = np.zeros((4 * count, dofs))
         self.re, self.im, self.d_re, self.d_im = np.asarray(self.parts).reshape(4, count, dofs)
         self.amplitude, self.growth, self.angles = np.zeros(dofs), np.zeros(dofs), np.zeros((2, dofs))
-        self.cosine, self.sine = waves(tuple(np.asarray(harmonics).tolist()))
+        self.cosine, self.sine = waves(tuple(np.asarray(harmonics).tolist()), options.samples)
         self.samples = self.cosine.shape[1]
         self.sampling = np.concatenate((self.cosine, np.negative(self.sine)))
         self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)

@@ -348,11 +348,7 @@ class ModalEquations:
     @cython.ccall
     @cython.exceptval(-1.0, check=False)
     def correct(
-        self,
-        right: cython.double[::1],
-        found: cython.double[::1],
-        enough: cython.double,
-        most: cython.int,
+        self, right: cython.double[::1], found: cython.double[::1], enough: cython.double, most: cython.int
     ) -> cython.double:
         """Correct what was found for a right side by at most so many directions, to what is enough in units
         of scale; the length that is left of a correction. Fill `turned`."""

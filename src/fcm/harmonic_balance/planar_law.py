@@ -7,6 +7,7 @@ import cython
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures
 from fcm.harmonic_balance.contact_law import KernelLaw
+from fcm.model.scene import Contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.margins import SLIPS
@@ -27,16 +28,9 @@ class PlanarLaw(KernelLaw):
     """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
     is."""
 
-    def __init__(
-        self,
-        kernel: PlanarContact,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
-    ) -> None:
+    def __init__(self, kernel: PlanarContact, contact: Contact) -> None:
         self.kernel, self.bounds = kernel, PlanarMargins(kernel.cycle)
-        KernelLaw.__init__(self, kernel, 3, self.bounds.most, mu, k_u, k_v, n_0)
+        KernelLaw.__init__(self, kernel, 3, self.bounds.most, contact)
         self.measures = PlanarMeasures(kernel.cycle)
         self.state = self.measures.state
 

@@ -448,10 +448,7 @@ class PointQuantities:
         self.force, self.linear = np.zeros((count, balance.unknowns)), np.ones(count, dtype=np.intc)
 
     def evaluate(
-        self,
-        z: cython.double[:, ::1],
-        direction: cython.double[:, ::1],
-        level: cython.double[::1],
+        self, z: cython.double[:, ::1], direction: cython.double[:, ::1], level: cython.double[::1]
     ) -> PointQuantities:
         """Fill the quantities with the forces times level (point,); signals are polled between points."""
         b: Balance = self.balance

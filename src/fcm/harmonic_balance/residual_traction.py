@@ -29,7 +29,7 @@ from fcm.harmonic_balance.contact_law import Law, LineLaw
 from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray
+from fcm.model.scene import Contact, FloatArray
 
 if TYPE_CHECKING:
     from fcm.harmonic_balance.planar_law import PlanarLaw
@@ -83,8 +83,8 @@ TRACTION = TractionOptions()
 class FixedTractionContact(Law):
     """A contact that always sticks, with a mean friction force (direction,) that is given."""
 
-    def __init__(self, law: LineLaw | PlanarLaw) -> None:
-        super().__init__(law.width, law.directions, law.margins, law.mu, law.k_u, law.k_v, law.n_0)
+    def __init__(self, contact: Contact, law: LineLaw | PlanarLaw) -> None:
+        super().__init__(law.width, law.directions, law.margins, contact)
         self.kernel, self.mean = law.kernel, np.zeros(law.directions - 1)
         springs = np.append(np.full(law.directions - 1, law.k_u), law.k_v)
         waves = np.tile(np.repeat(springs, 2), (law.width - law.directions) // (2 * law.directions))
@@ -114,7 +114,8 @@ class _FixedTractionBalance:
         self.system, self.options = system, options
         self.balance: Balance = system.new_balance()
         self.free = system.exact_laws(system.harmonics)
-        self.laws = [FixedTractionContact(law) for law in self.free]  # type: ignore[arg-type]
+        each = zip(system.scene.contacts, self.free, strict=True)
+        self.laws = [FixedTractionContact(contact, law) for contact, law in each]  # type: ignore[arg-type]
         self.fix(np.zeros(0, dtype=np.intp), np.zeros((0, 0)))
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)
@@ -290,7 +291,7 @@ class _Family:
             by = amplitudes[:, self.dof].reshape(-1, self.along)
             by[self.fixed] = 0.0
             size = np.linalg.norm(by, axis=1, keepdims=True)
-            room = size[:, 0] @ np.array([self._reach(i, z) for i in self.contacts.tolist()])
+            room = size[:, 0] @ np.array([self._friction_bound(i, z) for i in self.contacts.tolist()])
             if room <= self.options.min_change * best[self.dof]:
                 towards = None if visited else self._by_nearest_load(z, normal)
                 if towards is None:
@@ -345,7 +346,7 @@ class _Family:
         found = np.zeros_like(towards)
         for k, i in enumerate(self.contacts.tolist()):
             block = np.ascontiguousarray(blocks[i])
-            far = self.options.start_distance * self._reach(i, z) / members.laws[i].k_u
+            far = self.options.start_distance * self._friction_bound(i, z) / members.laws[i].k_u
             start = block[: self.along] + far * towards[k] if towards[k].any() else np.zeros(self.along)
             one = members.laws[i].mean_from(block, start)
             if one is None:
@@ -353,7 +354,7 @@ class _Family:
             found[k] = one
         return found
 
-    def _reach(self, i: int, z: FloatArray) -> float:
+    def _friction_bound(self, i: int, z: FloatArray) -> float:
         """An upper bound of the friction force of a contact."""
         law, layout = self.members.laws[i], self.members.system.layout
         x = np.abs(layout.blocks(z[None])[0, i])
@@ -364,15 +365,15 @@ class _Family:
         """The peak with other forces, in as many steps as it takes; None where that is too many."""
         members, done, share = self.members, 0.0, 1.0
         for _ in range(self.options.max_members):
-            reach = min(done + share, 1.0)
-            members.fix(self.contacts, begin + reach * (end - begin))
+            at = min(done + share, 1.0)
+            members.fix(self.contacts, begin + at * (end - begin))
             found = self._top(z, row)
             if found is None:
                 share *= self.options.min_factor
                 if share < self.options.min_step:
                     return None
                 continue
-            z, done, share, row = found, reach, share * self.options.max_factor, self._row(row)
+            z, done, share, row = found, at, share * self.options.max_factor, self._row(row)
             if done == 1.0:
                 return z
         return None

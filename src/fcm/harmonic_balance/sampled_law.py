@@ -38,7 +38,7 @@ class SampledLaw(Law):
     ) -> None:
         assert contact.law is not None
         motion, answer = (Layout(1, directions, len(one)) for one in (harmonics, outputs))
-        super().__init__(motion.width, directions, margins, contact.mu, contact.k_u, contact.k_v, contact.n_0)
+        super().__init__(motion.width, directions, margins, contact)
         self.own, self.name = contact.law, contact.name
         self.without_margins()
         count = max(int(contact.law.samples), samples * max((*harmonics, *outputs)))

@@ -44,7 +44,7 @@ class RestError(ValueError):
     """No equilibrium under the static loads exists; the message says why."""
 
 
-class Held(Frozen):
+class HeldStructure(Frozen):
     """The structure in coordinates that the contacts at their stiffest hold: its modes, but of rigid-body
     modes adrift those combinations that move no contact with friction.
 
@@ -58,8 +58,8 @@ class Held(Frozen):
     load: FloatArray
 
     @classmethod
-    def of(cls, system: System) -> Held:
-        """The coordinates of a system, as `Held`."""
+    def of(cls, system: System) -> HeldStructure:
+        """The coordinates of a system, as `HeldStructure`."""
         linear = system.linear
         turn, count = _held_by_friction(linear, system.springs(stuck=True))
         modes = np.hstack(
@@ -87,11 +87,12 @@ def _held_by_friction(linear: Linear, springs: FloatArray) -> tuple[FloatArray, 
 class StaticLoadProblem(Problem):
     """Forces of the structure, the contacts and the static loads, followed in the share of the loads.
 
-    Unknowns are the coordinates of `Held`. Shares are measured by themselves, and below a unit by that.
+    Unknowns are the coordinates of `HeldStructure`. Shares are measured by themselves, and below a unit by
+    that.
     """
 
     def __init__(
-        self, system: System, held: Held, unit: float = HARMONIC_BALANCE.rest.min_share_unit
+        self, system: System, held: HeldStructure, unit: float = HARMONIC_BALANCE.rest.min_share_unit
     ) -> None:
         balance = system.new_balance(loaded=False)
         balance.load = 0.0
@@ -171,7 +172,7 @@ class AtRest(NamedTuple):
     adrift: FloatArray
 
 
-def at_rest(system: System) -> AtRest:
+def equilibrium(system: System) -> AtRest:
     """The equilibrium of a system under its static loads; zeros without any.
 
     Raises
@@ -189,7 +190,7 @@ def at_rest(system: System) -> AtRest:
         return nothing
     options = system.options.rest
     single = System(system.scene, options=system.options)
-    held = Held.of(single)
+    held = HeldStructure.of(single)
     for y in _linear(single, held, options.initial_share):
         problem = StaticLoadProblem(single, held, options.min_share_unit)
         start, span = np.append(y, options.initial_share), (options.initial_share, 1.0)
@@ -205,7 +206,7 @@ def at_rest(system: System) -> AtRest:
     raise RestError(NO_EQUILIBRIUM)
 
 
-def _found(linear: Linear, held: Held, y: FloatArray) -> AtRest:
+def _found(linear: Linear, held: HeldStructure, y: FloatArray) -> AtRest:
     return AtRest(y @ held.ports, np.where(linear.adrift, held.modes @ y, 0.0))
 
 
@@ -262,7 +263,7 @@ def check_contacts_can_close(system: System) -> None:
         raise RestError(FLOATING)
 
 
-def _linear(system: System, held: Held, share: float) -> Iterator[FloatArray]:
+def _linear(system: System, held: HeldStructure, share: float) -> Iterator[FloatArray]:
     """Linear equilibria: with the contacts as they are without the loads, then all stuck, then all open."""
     n_0 = np.array([c.n_0 for c in system.scene.contacts])
     d = system.layout.directions

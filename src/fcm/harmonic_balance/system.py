@@ -159,9 +159,9 @@ class System(Frozen):
     @cached_property
     def _at_rest(self) -> AtRest:
         """The equilibrium under static loads, see `harmonic_balance.static_equilibrium`."""
-        from fcm.harmonic_balance.static_equilibrium import at_rest  # which balances a system
+        from fcm.harmonic_balance.static_equilibrium import equilibrium  # which balances a system
 
-        return at_rest(self)
+        return equilibrium(self)
 
     @property
     def rest(self) -> FloatArray:
@@ -282,7 +282,7 @@ class System(Frozen):
         if self.harmonics != (1,) or not self._of_one_harmonic:
             return self.exact_laws(self.harmonics)
         of = ClosedForm() if self.corrected else self.coefficients
-        return [SingleHarmonicLaw(of, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        return [SingleHarmonicLaw(of, c) for c in self.scene.contacts]
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
         """Contact laws with the exact forces of the motion, in some harmonics."""
@@ -295,10 +295,10 @@ class System(Frozen):
             from fcm.harmonic_balance.planar_law import PlanarLaw  # most scenes have no contacts in a plane
 
             in_plane = planar_contact(harmonics, outputs)
-            found += [PlanarLaw(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+            found += [PlanarLaw(in_plane, c) for c in self.scene.contacts]
         else:
             kernel = periodic_contact(harmonics, outputs)
-            found += [LineLaw(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+            found += [LineLaw(kernel, c) for c in self.scene.contacts]
         directions = self.scene.directions_of_contact
         for i, c in enumerate(self.scene.contacts):
             if c.law is not None:

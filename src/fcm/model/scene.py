@@ -112,7 +112,7 @@ class Start(Frozen):
     angle: float  # omega t of the external forces [rad]
 
 
-class Held(Frozen):
+class HeldContact(Frozen):
     """A contact that is not computed, as it always sticks, or always is open."""
 
     place: int  # among all contacts of the scene
@@ -243,7 +243,9 @@ class Scene(Frozen):
     exchanged: float = 0.0  # [rad/s] of a mode if stiffness and mass are; see `scene.reduction.exchanged`
     files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
     interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # where pairs are
-    held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
+    held: tuple[
+        HeldContact, ...
+    ] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Source | None = field(default=None, repr=False, compare=False)  # what it was made of
     tuned: Scene | None = field(default=None, repr=False, compare=False)  # of a mistuned ring: a sector of it
 
@@ -288,7 +290,7 @@ class Scene(Frozen):
         curves = tuple(replace(curve, max_step=max_step) for curve in self.curves)
         return replace(self, max_step=max_step, curves=curves)
 
-    def holding(self, held: Sequence[Held]) -> Scene:
+    def holding(self, held: Sequence[HeldContact]) -> Scene:
         """The scene with some of its contacts held."""
         places = {one.place for one in held}
         contacts = tuple(one for i, one in enumerate(self.contacts) if i not in places)

@@ -16,7 +16,7 @@ from fcm.frozen import Frozen
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem, ComplexArray, Guess
+from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem, ComplexArray, ModeGuess
 from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions, TruncationOptions
 from fcm.nonlinear_modes.restart import follow_past_corners
 from fcm.scene.options import LIMITS
@@ -165,7 +165,9 @@ def damping_rounding(
     return found
 
 
-def linear_modes(system: System, number: int, options: NonlinearModeOptions = NONLINEAR_MODE) -> list[Guess]:
+def linear_modes(
+    system: System, number: int, options: NonlinearModeOptions = NONLINEAR_MODE
+) -> list[ModeGuess]:
     """The mode at very small amplitude; where a contact just touches, and may open, three guesses."""
     linear = system.linear
     loads = system.loads_at_rest
@@ -186,7 +188,7 @@ def linear_modes(system: System, number: int, options: NonlinearModeOptions = NO
         squares, shapes = _squares(system, share)
         omega, Q = float(np.sqrt(squares[i])), shapes[:, i]
         damping = float((linear.damping * linear.natural) @ Q**2) / omega
-        guesses.append(Guess(Q, omega, damping, kept))
+        guesses.append(ModeGuess(Q, omega, damping, kept))
     return guesses
 
 

@@ -40,7 +40,7 @@ ComplexArray = npt.NDArray[np.complex128]
 AMPLITUDE_UNIT = float(np.log(10.0))  # unit of the parameter
 
 
-class Guess(Frozen):
+class ModeGuess(Frozen):
     """Initial guess of a mode: modal amplitudes Q (mode,), frequency and damping.
 
     `kept` are the modes that it may come near.
@@ -52,7 +52,7 @@ class Guess(Frozen):
     kept: npt.NDArray[np.intp]
 
 
-class Motion(Frozen):
+class ModalMotion(Frozen):
     """Motion at a point of a mode: a, omega, D, and modal amplitudes over a.
 
     These are at rest, `mean` (mode,), and harmonics Q (harmonic, mode).
@@ -71,7 +71,9 @@ class AutonomousProblem(Problem):
     precision: of Newton's method, in the units of `evaluate_scale`.
     """
 
-    def __init__(self, system: System, guess: Guess, options: NonlinearModeOptions = NONLINEAR_MODE) -> None:
+    def __init__(
+        self, system: System, guess: ModeGuess, options: NonlinearModeOptions = NONLINEAR_MODE
+    ) -> None:
         self.contacts, self.linear, self.guess = ScaledContacts(system), system.linear, guess
         self.options, self.units = options, options.units
         many = len(self.contacts.laws) >= options.many.min_contacts
@@ -239,7 +241,7 @@ class AutonomousProblem(Problem):
         self.output[1], self.growth[1] = z[self.n - 2] / omega, direction[self.n - 2] / omega
         return 0
 
-    def motion(self, z: FloatArray) -> Motion:
+    def motion(self, z: FloatArray) -> ModalMotion:
         """The modes' motion at a point."""
         self.contacts.evaluate(z[: self.contact_unknowns], self.modal_amplitude(z))
         P, force = self.linear.ports, self.contacts.force
@@ -251,7 +253,7 @@ class AutonomousProblem(Problem):
         own = z[self.contact_unknowns : self.n - 2].reshape(-1, 2)
         Q[self.driven, self.guess.kept] = own[:, 0] + 1j * own[:, 1]
         mean = -self.linear.flexibility @ (P @ force[self.mean_rows])
-        return Motion(self.modal_amplitude(z), float(z[self.n - 2]), float(z[self.n - 1]), mean, Q)
+        return ModalMotion(self.modal_amplitude(z), float(z[self.n - 2]), float(z[self.n - 1]), mean, Q)
 
 
 def _complex(values: FloatArray, rows: npt.NDArray[np.intp]) -> ComplexArray:

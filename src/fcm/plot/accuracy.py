@@ -39,7 +39,7 @@ QUANTITIES = {
 }
 
 
-class Mark(NamedTuple):
+class DrawnRun(NamedTuple):
     """One run: processor time [s], error, whether this is only a limit, whether its curves are complete."""
 
     seconds: float
@@ -48,13 +48,13 @@ class Mark(NamedTuple):
     complete: bool
 
 
-class Panel(Frozen):
+class AccuracyPanel(Frozen):
     """Runs against one reference: of each method its marks, from long steps to short ones."""
 
     reference: str
     own_error: float | None
     max_step: float  # of the reference
-    lines: Mapping[tuple[str, bool], list[Mark]]  # by the method and whether its points are corrected
+    lines: Mapping[tuple[str, bool], list[DrawnRun]]  # by the method and whether its points are corrected
 
 
 class Accuracy(Frozen):
@@ -62,7 +62,7 @@ class Accuracy(Frozen):
 
     title: str
     quantity: str
-    panels: tuple[Panel, ...]
+    panels: tuple[AccuracyPanel, ...]
 
 
 @apart
@@ -83,8 +83,8 @@ def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
     return Accuracy(title, quantity, known)
 
 
-def _panel(summary: Any, reference: str, quantity: str) -> Panel:
-    lines: dict[tuple[str, bool], list[Mark]] = {}
+def _panel(summary: Any, reference: str, quantity: str) -> AccuracyPanel:
+    lines: dict[tuple[str, bool], list[DrawnRun]] = {}
     for run in sorted(summary["runs"], key=lambda run: -run["max_step"]):
         if run["corrected"] and not run["left_out"]:
             continue  # the same line once more
@@ -96,11 +96,11 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
         error, below = shown["errors"][quantity], shown["below"].get(quantity)
         if error or below:
             seconds, complete = _number(run["processor_seconds"]), bool(run["complete"])
-            mark = Mark(seconds, _number(error or below), error is None, complete)
+            mark = DrawnRun(seconds, _number(error or below), error is None, complete)
             lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
     one = summary["references"][reference]
     own = one["own_error"][quantity]
-    return Panel(reference, None if own is None else _number(own), _number(one["max_step"]), lines)
+    return AccuracyPanel(reference, None if own is None else _number(own), _number(one["max_step"]), lines)
 
 
 def _number(value: Any) -> float:
@@ -128,7 +128,7 @@ def draw_accuracy(accuracy: Accuracy) -> Figure:
     return figure
 
 
-def _draw_panel(axes: Axes, panel: Panel) -> None:
+def _draw_panel(axes: Axes, panel: AccuracyPanel) -> None:
     for (method, corrected), marks in panel.lines.items():
         marker, colour = STYLES.get(method, OTHER)
         label = method if corrected else f"{method}, as it is"

@@ -43,7 +43,7 @@ TUNED_LOOK: dict[str, Any] = {
 _GREY, _NOTE = "0.7", "#c03020"
 
 
-class Blades(Frozen):
+class DrawnBlades(Frozen):
     """What a file says of a mistuned ring beside its curves, in its units. All (curve, dof) of a sector."""
 
     names: tuple[str, ...]  # degrees of freedom of a sector
@@ -105,7 +105,7 @@ class Blades(Frozen):
         return ["" if place is None else self.label(curve, place) for curve in curves]
 
 
-def blades_of(variables: Mapping[str, Any]) -> Blades | None:
+def blades_of(variables: Mapping[str, Any]) -> DrawnBlades | None:
     """The blades of the variables of an open file; None of one that is of no mistuned ring."""
     if not all(name in variables for name in NEEDED):
         return None
@@ -113,7 +113,7 @@ def blades_of(variables: Mapping[str, Any]) -> Blades | None:
 
     names = tuple(str(name) for name in np.atleast_1d(variables["sector_dof"][:]))
     sectors = int(variables["stiffness_factor"].shape[1])
-    return Blades(names, sectors, *(floats(variables[name]) for name in (*_OF_CURVE, *_ENDS)))
+    return DrawnBlades(names, sectors, *(floats(variables[name]) for name in (*_OF_CURVE, *_ENDS)))
 
 
 def draw_blades(
@@ -151,7 +151,7 @@ def draw_blades(
     return notes
 
 
-def draw_tuned_peaks(figure: Figure, axes: Axes, blades: Blades, place: int, swept: FloatArray) -> None:
+def draw_tuned_peaks(figure: Figure, axes: Axes, blades: DrawnBlades, place: int, swept: FloatArray) -> None:
     """Beside the peaks of the worst blades those of the tuned ring: diamonds, or a line if it is one ring."""
     heights = blades.tuned_peaks(place)[1]
     known = np.isfinite(heights)
@@ -165,7 +165,7 @@ def draw_tuned_peaks(figure: Figure, axes: Axes, blades: Blades, place: int, swe
     figure.legend([line], [TUNED], loc="outside lower center")
 
 
-def name_amplification(axes: Axes, blades: Blades, place: int) -> FloatArray:
+def name_amplification(axes: Axes, blades: DrawnBlades, place: int) -> FloatArray:
     """The amplifications (curve,) for a panel, and its labels; NaN where they are bounds alone."""
     axes.set_ylabel("Amplification (–)")
     bound = (blades.at_end[:, place] == 1.0) | (blades.tuned_at_end[:, place] == 1.0)

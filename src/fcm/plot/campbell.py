@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 _NUMBER = (0.12, 0.01, 0.045)  # of diameters beside one, and of the axis below and above its foot: its room
 
 
-class Ring(Frozen):
+class DrawnRing(Frozen):
     """Contents of a Campbell diagram of a ring, in the scene's unit of frequency."""
 
     title: str
@@ -38,7 +38,7 @@ class Ring(Frozen):
     stuck: tuple[FloatArray, ...]
 
 
-class Bar(Frozen):
+class DrawnOrder(Frozen):
     """A harmonic of an engine order, over the range of the excitation."""
 
     order: int
@@ -47,7 +47,7 @@ class Bar(Frozen):
     high: float
 
 
-def draw_campbell(ring: Ring) -> Figure:
+def draw_campbell(ring: DrawnRing) -> Figure:
     """The figure: families of modes over the nodal diameters, and the lines of the engine orders."""
     from matplotlib.ticker import MaxNLocator
 
@@ -69,7 +69,7 @@ def draw_campbell(ring: Ring) -> Figure:
     return figure
 
 
-def _title(ring: Ring) -> str:
+def _title(ring: DrawnRing) -> str:
     """Title of the diagram; tells how many of the engine orders are shown."""
     count = len(ring.engine_orders)
     text = f"{ring.sectors} sectors"
@@ -80,7 +80,7 @@ def _title(ring: Ring) -> str:
     )
 
 
-def _top(ring: Ring) -> float:
+def _top(ring: DrawnRing) -> float:
     """Upper end of the frequency axis, above the modes of interest."""
     end = 0.0 if ring.span is None else ring.span[1]
     limit = LAYOUT.campbell_top * end if end else np.inf
@@ -101,7 +101,7 @@ def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatA
         )  # fmt: skip
 
 
-def _orders(axes: Axes, ring: Ring, top: float) -> None:
+def _orders(axes: Axes, ring: DrawnRing, top: float) -> None:
     """Draws each engine order's harmonics and the line of its highest speed; if alone, of both speeds.
 
     None without a range.
@@ -122,7 +122,9 @@ def _orders(axes: Axes, ring: Ring, top: float) -> None:
                 )  # fmt: skip
 
 
-def _bars(axes: Axes, ring: Ring, span: tuple[float, float], colours: dict[int, str], top: float) -> None:
+def _bars(
+    axes: Axes, ring: DrawnRing, span: tuple[float, float], colours: dict[int, str], top: float
+) -> None:
     """Draws the harmonics of engine orders as bars; those at one diameter stand side by side."""
     placed = [
         one
@@ -134,7 +136,7 @@ def _bars(axes: Axes, ring: Ring, span: tuple[float, float], colours: dict[int, 
             middle, bar.high - bar.low, width, bar.low, color=colours[bar.order], alpha=0.35, zorder=1,
             linewidth=0.0, label=f"order {bar.order}, its harmonics" if bar.harmonic == 1 else None,
         )  # fmt: skip
-    named: dict[tuple[int, int], list[tuple[Bar, float]]] = {}
+    named: dict[tuple[int, int], list[tuple[DrawnOrder, float]]] = {}
     for bar, middle, _ in placed:
         named.setdefault((round(middle), bar.harmonic), []).append((bar, middle))
     for (_, harmonic), some in named.items():
@@ -142,7 +144,7 @@ def _bars(axes: Axes, ring: Ring, span: tuple[float, float], colours: dict[int, 
         _number(axes, ring, harmonic, centre, some[0][0].high, top)
 
 
-def _number(axes: Axes, ring: Ring, harmonic: int, x: float, end: float, top: float) -> None:
+def _number(axes: Axes, ring: DrawnRing, harmonic: int, x: float, end: float, top: float) -> None:
     """The number of a harmonic where its bars end, legible where lines cross it."""
     from matplotlib.patheffects import withStroke
 
@@ -153,7 +155,7 @@ def _number(axes: Axes, ring: Ring, harmonic: int, x: float, end: float, top: fl
     )  # fmt: skip
 
 
-def free_height(ring: Ring, x: float, end: float, top: float) -> float:
+def free_height(ring: DrawnRing, x: float, end: float, top: float) -> float:
     """Height of a number at the end of a bar: above it, and above the modes in its way.
 
     Below the end, if the axis does not go so far.
@@ -176,7 +178,7 @@ def free_height(ring: Ring, x: float, end: float, top: float) -> float:
     return height
 
 
-def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, float]]:
+def _placed(ring: DrawnRing, x: float, bars: list[DrawnOrder]) -> list[tuple[DrawnOrder, float, float]]:
     """The bars at a diameter, with their middles and widths."""
     lanes = lanes_of([(bar.low, bar.high) for bar in bars])
     count = max(lanes) + 1
@@ -189,14 +191,16 @@ def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, flo
 
 def _met(
     sectors: int, span: tuple[float, float], orders: Sequence[int], top: float
-) -> dict[float, list[Bar]]:
+) -> dict[float, list[DrawnOrder]]:
     """The bars at each nodal diameter, as far as they are seen."""
-    met: dict[float, list[Bar]] = {}
+    met: dict[float, list[DrawnOrder]] = {}
     for order in orders:
         for harmonic in range(1, LAYOUT.campbell_harmonics + 1):
             low, high = (harmonic * end for end in span)
             if low < top:
-                met.setdefault(folded(harmonic * order, sectors), []).append(Bar(order, harmonic, low, high))
+                met.setdefault(folded(harmonic * order, sectors), []).append(
+                    DrawnOrder(order, harmonic, low, high)
+                )
     return met
 
 

@@ -50,10 +50,7 @@ def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:
 
 
 def leading_column(
-    dofs: Sequence[str],
-    dof: str | None,
-    amplitudes: npt.NDArray[np.float64],
-    asked: Sequence[str] = (),
+    dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray[np.float64], asked: Sequence[str] = ()
 ) -> int:
     """Column of a degree of freedom; by default, if there are many, that of the greatest amplitude (any,
     dof).

@@ -164,7 +164,7 @@ def _displacements(data: Any) -> list[dict[str, float]]:
     return found
 
 
-class Resonance(NamedTuple):
+class DrawnResonance(NamedTuple):
     """Resonance of a mode with the scene's forces, in the units of the file."""
 
     level: float  # of the forces
@@ -174,13 +174,13 @@ class Resonance(NamedTuple):
     amplitude: dict[str, float]  # of each degree of freedom
 
 
-def resonances_of(data: Any) -> list[tuple[Resonance, ...]]:
+def resonances_of(data: Any) -> list[tuple[DrawnResonance, ...]]:
     """Resonances of each curve, from the file's summary."""
     try:
         curves = summary_of(data).get("curves", ())
         return [
             tuple(
-                Resonance(
+                DrawnResonance(
                     _number(one["level"]),
                     _number(one["modal_amplitude"]),
                     _number(one["frequency"]),

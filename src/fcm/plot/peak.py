@@ -12,12 +12,12 @@ import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.plot.blades import ALSO as OF_BLADES
-from fcm.plot.blades import Blades, blades_of, draw_tuned_peaks, name_amplification
+from fcm.plot.blades import DrawnBlades, blades_of, draw_tuned_peaks, name_amplification
 from fcm.plot.dof import asked_for, greatest_column, leading_column
 from fcm.plot.draws import draw_scatter, say_scatter
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
-from fcm.plot.mode import Resonance, resonances_of
+from fcm.plot.mode import DrawnResonance, resonances_of
 from fcm.plot.read import BoolArray, FloatArray, drawn_keys, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours, swept_axis
@@ -53,7 +53,7 @@ class Peaks(Frozen):
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     damping: FloatArray | None = None  # (curve,) ratio, of the resonances of nonlinear modes
     at_end: BoolArray | None = None  # (curve, dof) whether it is at an end of the range; None: none is
-    blades: Blades | None = None  # of a mistuned ring, whose worst sectors are the last columns
+    blades: DrawnBlades | None = None  # of a mistuned ring, whose worst sectors are the last columns
 
     @property
     def random(self) -> tuple[str, ...]:
@@ -99,7 +99,7 @@ def read_peaks(path: Path) -> Peaks:
     return found if blades is None else _with_worst(found, blades)
 
 
-def _with_worst(peaks: Peaks, blades: Blades) -> Peaks:
+def _with_worst(peaks: Peaks, blades: DrawnBlades) -> Peaks:
     """The peaks with those of the worst blade of each curve as further columns."""
     from fcm.model.ring import of_sector
 
@@ -121,7 +121,7 @@ def _with_worst(peaks: Peaks, blades: Blades) -> Peaks:
     )  # fmt: skip
 
 
-def _of_modes(told: Peaks, found: Sequence[Sequence[Resonance]], path: Path) -> Peaks:
+def _of_modes(told: Peaks, found: Sequence[Sequence[DrawnResonance]], path: Path) -> Peaks:
     """The resonances of nonlinear modes with the scene's forces, as the peaks of a sweep; of several at a
     level that of the greatest amplitude. Several levels are swept as well."""
     levels = sorted({one.level for each in found for one in each})

@@ -39,7 +39,7 @@ class DrawnPlanarLoop(Frozen):
     dimensionless: bool = False
 
 
-class Path(Frozen):
+class DrawnPath(Frozen):
     """A cycle sampled: theta, disc's radius, states (sample,); displacement u, slider w, force f (sample, 2).
 
     Without tangential stiffness nothing drags the slider: it is where u is, and there is no disc.
@@ -53,14 +53,14 @@ class Path(Frozen):
     states: npt.NDArray[np.str_]
 
 
-def path_of(loop: PlanarLoop) -> Path:
+def path_of(loop: PlanarLoop) -> DrawnPath:
     """Samples, those of the transitions among them; 0 in a direction in which there is rounding alone."""
     theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, LAYOUT.planar_samples + 1), loop.angles)))
     u, stiff = loop.displacement(theta), loop.k_u > 0.0
     w = loop.slider(theta) if stiff else u
     radius = loop.slip_limit(theta) / loop.k_u if stiff else np.zeros_like(theta)
     u, w, f = (_without_rounding(one) for one in (u, w, loop.force(theta)))
-    return Path(theta, u, w, f, radius, np.asarray(loop.states(theta)))
+    return DrawnPath(theta, u, w, f, radius, np.asarray(loop.states(theta)))
 
 
 def _without_rounding(values: FloatArray) -> FloatArray:
@@ -118,7 +118,7 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
     return figure
 
 
-def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
+def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: DrawnPath) -> None:
     """The discs |u - w| <= mu n / k_u about u at some instants, with the force as a line from the slider."""
     from matplotlib.patches import Circle
 
@@ -151,7 +151,7 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
     axes.set_ylim(y - half, y + half)
 
 
-def _draw_forces(axes: Axes, loop: PlanarLoop, path: Path) -> None:
+def _draw_forces(axes: Axes, loop: PlanarLoop, path: DrawnPath) -> None:
     """The path of the friction force, and the circles of its least and greatest limit over the cycle."""
     from matplotlib.patches import Circle
 
@@ -172,7 +172,7 @@ def _draw_forces(axes: Axes, loop: PlanarLoop, path: Path) -> None:
     axes.set(xlim=(-half, half), ylim=(-half, half))
 
 
-def _draw_direction(axes: Axes, path: Path, i: int) -> None:
+def _draw_direction(axes: Axes, path: DrawnPath, i: int) -> None:
     axes.axhline(0.0, color="0.85", linewidth=0.5, zorder=0)
     axes.axvline(0.0, color="0.85", linewidth=0.5, zorder=0)
     for state in "EPS":
@@ -182,7 +182,7 @@ def _draw_direction(axes: Axes, path: Path, i: int) -> None:
     axes.margins(0.12)
 
 
-def _instants(path: Path, count: int) -> list[int]:
+def _instants(path: DrawnPath, count: int) -> list[int]:
     """Indices of the samples at angles evenly spread over the cycle."""
     wanted = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     return [int(np.abs(path.theta - angle).argmin()) for angle in wanted]

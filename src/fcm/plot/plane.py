@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm.contact.surface import Edges, Plane
+from fcm.contact.surface import Edges, ParameterPlane
 from fcm.plot.read import FloatArray
 from fcm.plot.style import LAYOUT, new_figure
 
@@ -63,7 +63,7 @@ def draw_boundaries(axes: Axes, edges: Edges) -> None:
         axes.plot(n0, edges.b_bar, color="black", linestyle=style, linewidth=1.0, label=label)
 
 
-def finish_plane(axes: list[Axes], plane: Plane) -> None:
+def finish_plane(axes: list[Axes], plane: ParameterPlane) -> None:
     """Limits of every panel, and the axes' labels at the outer ones only."""
     for index, one in enumerate(axes):
         one.set_xlim(plane.n0_range)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from fcm.files import NETCDF, no_file
 from fcm.frozen import Frozen
 from fcm.plot.blades import ALSO as OF_BLADES
-from fcm.plot.blades import ENVELOPE, Blades, blades_of
+from fcm.plot.blades import ENVELOPE, DrawnBlades, blades_of
 from fcm.plot.dof import asked_for, column_of, greatest_column, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import with_unit
@@ -70,6 +70,7 @@ class DrawnCurve(Frozen):
     table_error: FloatArray | None = None  # (point,) relative, before the correction
     truncation_error: FloatArray | None = None  # (point,) relative
     fundamental: FloatArray | None = None  # (point, dof) amplitude
+    note: str = ""  # a further line of its name
 
 
 class DrawnResponse(Frozen):
@@ -85,7 +86,7 @@ class DrawnResponse(Frozen):
         default_factory=Unfinished
     )  # of all curves, those without a point among them
     fitted: tuple[FittedNumber, ...] = ()  # that a fit found
-    blades: Blades | None = None  # of a mistuned ring, whose envelopes are the last columns
+    blades: DrawnBlades | None = None  # of a mistuned ring, whose envelopes are the last columns
 
     def column(self, dof: str | None, envelope: bool = True) -> int:
         """The place of a degree of freedom; by default that of `leading_column`.
@@ -172,7 +173,7 @@ class _Variables(dict[str, Any]):
         raise ValueError(f"it has no variable {name}")
 
 
-class Held:
+class OpenDataset:
     """An open netCDF dataset: variables by name, and its attributes as attributes of the object."""
 
     def __init__(self, dataset: Any) -> None:
@@ -187,8 +188,11 @@ class Held:
 
 @contextmanager
 def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = ()) -> Iterator[Any]:
-    """The open netCDF dataset, see `Held`; PlotError if it has not the variables needed, or if they, or
-    others that are read where they are there, are laid out otherwise."""
+    """The open netCDF dataset, see `OpenDataset`.
+
+    PlotError if it has not the variables needed, or if they, or others that are read where they are there,
+    are laid out otherwise.
+    """
     from netCDF4 import Dataset
 
     if what := no_file(path):
@@ -207,7 +211,7 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
             raise PlotError(f"{path}: not {kind}: it has no variable {names}{_hint(dataset)}")
         with read(path, f"not {kind}"):
             check_layout(dataset.variables, (*needed, *also))
-            yield Held(dataset)
+            yield OpenDataset(dataset)
 
 
 def _cause(error: BaseException) -> str:
@@ -264,23 +268,18 @@ def _response(dataset: Any) -> DrawnResponse:
     if blades is not None:
         dofs, amplitude = (*dofs, *blades.names), np.append(amplitude, floats(variables[ENVELOPE]), axis=2)
     free = "modal_amplitude" in variables  # motion, which is neither stable nor a response over a range
-    stable, *errors = (
-        floats(variables[name]) if name in variables and not free else None
-        for name in ("stable", "table_error", "truncation_error")
-    )
-    regime = variables["regime"][:] if "regime" in variables else None
+    names = ("fundamental", *(() if free else ("stable", "table_error", "truncation_error")))
+    others = {name: floats(variables[name]) for name in names if name in variables}
+    if "regime" in variables:
+        others["regime"] = variables["regime"][:]
     swept = swept_values(variables)
     level = floats(variables["level"]) if "level" in variables else None
-    fundamental = floats(variables["fundamental"]) if "fundamental" in variables else None
     curves = tuple(
         _curve(
             {name: float(values[i]) for name, values in swept.items()},
             frequency[i] if level is None else level[i],
             amplitude[i],
-            None if stable is None else stable[i],
-            None if regime is None else regime[i],
-            [None if error is None else error[i] for error in errors],
-            None if fundamental is None else fundamental[i],
+            {name: values[i] for name, values in others.items()},
         )
         for i in range(len(frequency))
     )
@@ -298,32 +297,22 @@ def _response(dataset: Any) -> DrawnResponse:
 
 
 def _curve(
-    parameters: dict[str, float],
-    frequency: FloatArray,
-    amplitude: FloatArray,
-    stable: FloatArray | None,
-    regime: Any,
-    errors: list[FloatArray | None],
-    fundamental: FloatArray | None,
+    parameters: dict[str, float], frequency: FloatArray, amplitude: FloatArray, others: dict[str, Any]
 ) -> DrawnCurve:
-    """Curve without its padding; points of NaN between branches stay, so that no line joins them."""
+    """Curve without its padding, with the other variables (point, ...) that the file has of it.
+
+    Points of NaN between branches stay, so that no line joins them.
+    """
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
-    unknown = None if stable is None else np.isfinite(frequency[there]) & unknown_stability(stable[there])
-    table_error, truncation_error, own = (
-        None if one is None else one[there] for one in (*errors, fundamental)
+    regimes = (
+        frozenset(map(str, np.unique(others.pop("regime")[known]))) if "regime" in others else frozenset()
     )
-    return DrawnCurve(
-        parameters,
-        frequency[there],
-        amplitude[there],
-        None if stable is None else stable[there] != 0,
-        unknown,
-        frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
-        table_error,
-        truncation_error,
-        own,
-    )
+    others = {name: values[there] for name, values in others.items()}
+    if "stable" in others:
+        others["unknown"] = np.isfinite(frequency[there]) & unknown_stability(others["stable"])
+        others["stable"] = others["stable"] != 0
+    return DrawnCurve(parameters, frequency[there], amplitude[there], regimes=regimes, **others)
 
 
 def swept_values(variables: Any) -> dict[str, FloatArray]:

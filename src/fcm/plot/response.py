@@ -117,8 +117,10 @@ def draw_response(
         if draws:
             _name_draws(figure, axes, response, draws, lines)
             return figure
-        more = [""] * len(curves) if blades is None else blades.labels(envelope, numbers)
-        beside = _name_curves(figure, axes, curves, lines, column, response.units, more)
+        if blades is not None:
+            notes_of_blades = blades.labels(envelope, numbers)
+            curves = [replace(one, note=note) for one, note in zip(curves, notes_of_blades, strict=True)]
+        beside = _name_curves(figure, axes, curves, lines, column, response.units)
         if above is not None and beside is not None:
             above.remove()
             name_measured(figure, response.fitted, others, beside)
@@ -163,8 +165,7 @@ def _name_draws(
     each = f"{len(draws)} curves, random draws of {names}"
     axes.set_title(each, loc="right", fontsize=8)
     if len(places) > 1:
-        more = [""] * len(places)
-        _legend(figure, [draws[i] for i in places], [lines[i] for i in places], response.units, more)
+        _legend(figure, [draws[i] for i in places], [lines[i] for i in places], response.units)
 
 
 def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
@@ -281,9 +282,9 @@ def doubtful(curve: DrawnCurve) -> BoolArray:
     return found
 
 
-def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True, more: str = "") -> str:
+def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True) -> str:
     state = {frozenset({"E"}): " (stuck)", frozenset({"S"}): " (open)"}.get(curve.regimes, "")
-    return f"{curve_label(curve.parameters, names, units)}{state}\n{more}".strip()
+    return f"{curve_label(curve.parameters, names, units)}{state}\n{curve.note}".strip()
 
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
@@ -304,26 +305,17 @@ def _name_curves(
     drawn: list[Line2D],
     column: int,
     units: Mapping[str, str],
-    more: Sequence[str],
 ) -> Legend | None:
-    """Writes the curves' names at the peaks if there is room, otherwise in a legend beside the axes.
-
-    more: further text of each
-    """
-    named = enumerate(zip(curves, more, strict=True))
-    names = [_named(curve, units, i == 0, text) for i, (curve, text) in named]
+    """Writes the curves' names at the peaks if there is room, otherwise in a legend beside the axes."""
+    names = [_named(curve, units, i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= LAYOUT.bar_names and label_at_peaks(figure, axes, lines, names):
         return None
-    return _legend(figure, curves, drawn, units, more) if any(names) else None
+    return _legend(figure, curves, drawn, units) if any(names) else None
 
 
 def _legend(
-    figure: Figure,
-    curves: list[DrawnCurve],
-    lines: list[Line2D],
-    units: Mapping[str, str],
-    more: Sequence[str],
+    figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]
 ) -> Legend | None:
     """Draws a legend beside the axes; several swept quantities are named once, above their values."""
     several = len(curves[0].parameters) > 1
@@ -335,7 +327,7 @@ def _legend(
         return None
     return figure.legend(
         lines,
-        [_named(curve, units, not several, text) for curve, text in zip(curves, more, strict=True)],
+        [_named(curve, units, not several) for curve in curves],
         title=",\n".join(title) if several else None,
         loc="outside right upper",
     )

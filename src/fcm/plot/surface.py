@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.ndimage import distance_transform_edt, minimum_filter
 
-from fcm.contact.surface import Regions, Surface
+from fcm.contact.surface import CoefficientSurface, Regions
 from fcm.plot.plane import (
     B_SYMBOL,
     MEANING,
@@ -70,7 +70,7 @@ _SPACE_HEIGHT, _FLAT_HEIGHT = 2.3, 2.5  # [inch] of a row of panels
 _VIEW = (24.0, -125.0)  # [degree] elevation and azimuth
 
 
-def draw_surfaces(surfaces: Sequence[Surface]) -> Figure:
+def draw_surfaces(surfaces: Sequence[CoefficientSurface]) -> Figure:
     """A surface in space for each coefficient and phase; the heights of one coefficient are comparable."""
     with house_style():
         figure, axes = panels(len(surfaces), _SPACE_HEIGHT, projection="3d")
@@ -80,7 +80,7 @@ def draw_surfaces(surfaces: Sequence[Surface]) -> Figure:
     return figure
 
 
-def draw_contours(surfaces: Sequence[Surface], found: Sequence[Regions]) -> Figure:
+def draw_contours(surfaces: Sequence[CoefficientSurface], found: Sequence[Regions]) -> Figure:
     """Filled contours with the lines between the regimes, and the sequence of states in each region."""
     with house_style():
         figure, axes = panels(len(surfaces), _FLAT_HEIGHT)
@@ -97,11 +97,11 @@ def draw_contours(surfaces: Sequence[Surface], found: Sequence[Regions]) -> Figu
     return figure
 
 
-def _titles(surfaces: Sequence[Surface]) -> list[str]:
+def _titles(surfaces: Sequence[CoefficientSurface]) -> list[str]:
     return panel_titles([(one.coefficient, one.plane.phi) for one in surfaces])
 
 
-def _range(surfaces: Sequence[Surface], coefficient: str) -> tuple[float, float]:
+def _range(surfaces: Sequence[CoefficientSurface], coefficient: str) -> tuple[float, float]:
     values = [one.values for one in surfaces if one.coefficient == coefficient]
     return shared_range(values, signed=coefficient == "F_b")
 
@@ -116,7 +116,7 @@ def _colours(signed: bool) -> Colormap:
     return ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0.0, 0.75, 256)))
 
 
-def _draw_in_space(axes: Any, drawn: Surface, span: tuple[float, float]) -> None:
+def _draw_in_space(axes: Any, drawn: CoefficientSurface, span: tuple[float, float]) -> None:
     from matplotlib.ticker import MaxNLocator
 
     n0, b = np.meshgrid(drawn.n0_bar, drawn.b_bar)
@@ -144,7 +144,7 @@ def _draw_in_space(axes: Any, drawn: Surface, span: tuple[float, float]) -> None
     axes.set_box_aspect((1.2, 1.0, 0.75), zoom=0.9)
 
 
-def _draw_bands(axes: Axes, drawn: Surface, span: tuple[float, float]) -> None:
+def _draw_bands(axes: Axes, drawn: CoefficientSurface, span: tuple[float, float]) -> None:
     from matplotlib.ticker import MaxNLocator
 
     signed = drawn.coefficient == "F_b"

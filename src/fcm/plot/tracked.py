@@ -282,12 +282,7 @@ def _name_swept(figure: Figure, drawn: DrawnTracking, colours: Mapping[tuple[flo
 
 
 def _line(
-    axes: Axes,
-    track: DrawnTrack,
-    y: FloatArray,
-    colour: str,
-    label: str | None = None,
-    width: float = _WIDTH,
+    axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None, width: float = _WIDTH
 ) -> None:
     """Solid where the motion is stable, dashed where it is not, dotted where that is unknown."""
     stable = track.stable == 1.0

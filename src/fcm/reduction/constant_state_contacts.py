@@ -15,7 +15,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Status
 from fcm.harmonic_balance.static_equilibrium import RestError
-from fcm.model.scene import Contact, Held, Scene, has_friction
+from fcm.model.scene import Contact, HeldContact, Scene, has_friction
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
@@ -32,7 +32,7 @@ WORDS = (  # on a contact that sticks, and on one that is open
 )
 
 
-def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> tuple[Held, ...]:
+def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> tuple[HeldContact, ...]:
     """The contacts that keep their state all along every branch of the converged balance.
 
     poll is called now and then.
@@ -67,18 +67,20 @@ def _balanced(scene: Scene, poll: Callable[[], None] | None) -> tuple[FloatArray
     return np.concatenate([path.z for path in branches.paths]), found.system.harmonics
 
 
-def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> Held | None:
+def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> HeldContact | None:
     """The contact as it is held, if it keeps its state in motions u and v (point, angle)."""
     load = contact.n_0 + contact.k_v * v
     if load.max() < REDUCTION.load_margin * min(contact.n_0, 0.0):
-        return Held(place, contact, True)
+        return HeldContact(place, contact, True)
     least = load.min(axis=1)
     if not (least > REDUCTION.load_margin * load.max(axis=1)).all():
         return None
     limit = contact.mu * load
     force = np.abs(contact.k_u * (u - rest)) if has_friction(contact) else np.zeros_like(u)
     return (
-        Held(place, contact, False, rest) if (force <= (1.0 - REDUCTION.load_margin) * limit).all() else None
+        HeldContact(place, contact, False, rest)
+        if (force <= (1.0 - REDUCTION.load_margin) * limit).all()
+        else None
     )
 
 

@@ -23,12 +23,12 @@ def contact_stiffnesses(scene: Scene) -> FloatArray:
 def comparison_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
     """Frequencies spread over the range, and those in it at which a driven harmonic is in resonance."""
     low, high = scene.frequency_range
-    natural = resonances(scene, springs) * (1.0 + REDUCTION.resonance_offset)
+    natural = natural_frequencies(scene, springs) * (1.0 + REDUCTION.resonance_offset)
     at = np.concatenate([natural / harmonic for harmonic in driven_harmonics(scene)])
     return np.concatenate((np.linspace(low, high, REDUCTION.frequencies), at[(at > low) & (at < high)]))
 
 
-def resonances(scene: Scene, springs: FloatArray) -> FloatArray:
+def natural_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
     """Natural frequencies with springs (port,) for contacts."""
     return linear_of(scene).stiffened(springs)
 

@@ -44,10 +44,7 @@ def unreduced(curves: tuple[Scene, ...]) -> ReducedScenes:
 
 
 def without_negligible_parts(
-    curves: tuple[Scene, ...],
-    tolerance: float,
-    highest: int = 1,
-    options: ReductionOptions = REDUCTION,
+    curves: tuple[Scene, ...], tolerance: float, highest: int = 1, options: ReductionOptions = REDUCTION
 ) -> ReducedScenes:
     """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
 

@@ -119,11 +119,7 @@ def respond(
 
 
 def _curves(
-    scene: Scene,
-    method: str,
-    at: Sequence[float] | None,
-    asked: dict[str, Any],
-    execution: Execution,
+    scene: Scene, method: str, at: Sequence[float] | None, asked: dict[str, Any], execution: Execution
 ) -> Response:
     if method not in (*METHODS, "exact"):
         raise ResponseError(f"method {quoted(method)} is not one of {', '.join((*METHODS, 'exact'))}")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fcm.model.scene import Scene
-from fcm.results.condensed_curves import condense
+from fcm.results.curve_extracts import extract_of
 from fcm.results.curve_summary import at_edge
 from fcm.results.result import Blades, Response
 from fcm.scene.mistuning import factors_of
@@ -29,9 +29,9 @@ def with_blades(response: Response, scene: Scene, trace: Callable[[Scene], Respo
     for row, ends, curve in zip(peaks, at_end, response.curves, strict=True):
         own = known.get(tuple(curve.parameters[key] for key in keys))
         if own is not None:
-            condensed = own.condensed or condense(own)
+            extract = own.extract or extract_of(own)
             row[:] = [own.peaks[name][:2] for name in names]
-            ends[:] = [at_edge(own, own.peaks[name], condensed) for name in names]
+            ends[:] = [at_edge(own, own.peaks[name], extract) for name in names]
     response.blades = Blades(names, _factors(scene), peaks[..., 0], peaks[..., 1], at_end)
     return response
 

@@ -28,9 +28,9 @@ from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.shooting.trace import with_unit
 from fcm.shooting.work_budget import UncertainFrequencies
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 class CoexistingOrbits(Frozen):
@@ -106,7 +106,7 @@ def _orbit_from(
     """The stable motion that a guess, or rest, leads to, if it does and that is not known."""
     if guess is None:
         return _simulated(problem, omega, unloaded(problem.scene), known, poll) if simulate else None
-    orbit = shoot(System(problem.scene, omega), guess, poll)
+    orbit = shoot(EquationsOfMotion(problem.scene, omega), guess, poll)
     if simulate and (orbit is None or (not orbit.stable and _disturbance_alternates(orbit))):
         return _simulated(problem, omega, guess, known, poll)
     return _stable(problem, orbit, known, poll)
@@ -140,7 +140,7 @@ def _simulated(
 
     If it repeats after each period, only one that is not known; None without any.
     """
-    system = System(problem.scene, omega)
+    system = EquationsOfMotion(problem.scene, omega)
     found = steady(system, guess, poll)
     if not isinstance(found, SteadyMotion):
         return None

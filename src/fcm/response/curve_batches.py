@@ -17,15 +17,15 @@ from fcm.model.scene import Scene
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.results.cause import Cause
-from fcm.results.condensed_curves import CondensedCurve, without_points
 from fcm.results.contact_maxima import Greatest
+from fcm.results.curve_extracts import CurveExtract, without_points
 from fcm.results.jumps import FrequencySweep, Jump, UnknownStability
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
 from fcm.results.result import DEFECT, NOT_BEGUN, Curve
 from fcm.run import (
-    Checkpoint,
+    CheckpointFile,
     Compute,
     Factory,
     Interrupted,
@@ -33,16 +33,16 @@ from fcm.run import (
     Progress,
     Report,
     Results,
+    compute_batches,
     fingerprint,
     place_for,
-    sweep,
 )
 
 Group = Sequence[Scene]
 KINDS = (
     Cause,
     Curve,
-    CondensedCurve,
+    CurveExtract,
     ContactMotions,
     Orbits,
     Stuck,
@@ -60,7 +60,7 @@ _BY_POINT = (
 )
 
 
-class Work(Frozen):
+class CurveTask(Frozen):
     """The task that traces a group of curves."""
 
     request: Request
@@ -130,7 +130,7 @@ def anonymous(scenes: Group) -> list[Scene]:
     ]
 
 
-def fit(groups: Sequence[Group], number: int, results: Any) -> bool:
+def are_curves_of(groups: Sequence[Group], number: int, results: Any) -> bool:
     """Whether results that were read from a file can be the curves of the group with this number."""
     if not 0 <= number < len(groups) or not isinstance(results, list):
         return False
@@ -197,7 +197,7 @@ class CurveBatches:
     """The place where curves are computed and kept: the same for everything that one run computes."""
 
     jobs: int  # processes of this machine
-    checkpoint: Checkpoint | None
+    checkpoint: CheckpointFile | None
     place: Factory | None = None  # instead: an executor or a cluster
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 
@@ -217,9 +217,11 @@ class CurveBatches:
         kept = Results()
         if self.checkpoint is not None:
             whole = fingerprint(mark, [anonymous(batch) for batch in batches])
-            kept = self.checkpoint.results(whole, (*KINDS, *states), lambda i, found: fit(batches, i, found))
+            kept = self.checkpoint.results(
+                whole, (*KINDS, *states), lambda i, found: are_curves_of(batches, i, found)
+            )
         place = self.place or place_for(self.jobs if len(batches) > 1 else 1)
-        outcome = sweep(compute, batches, place, kept, progress)
+        outcome = compute_batches(compute, batches, place, kept, progress)
         if outcome.lost:
             warnings.warn(outcome.lost, stacklevel=2)
         curves: list[Curve] = []

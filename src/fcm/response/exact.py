@@ -17,7 +17,7 @@ from fcm.reduction.sentences import on_modes
 from fcm.response.coexisting_orbits import CoexistingOrbits
 from fcm.response.coexisting_search import FOUND
 from fcm.response.curve_batches import CurveBatches
-from fcm.response.exact_curve import ExactWork
+from fcm.response.exact_curve import ExactCurveTask
 from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
 from fcm.response.request import ResponseError
 from fcm.response.resumable_branches import SAVED_KINDS
@@ -85,10 +85,10 @@ def trace_exact(
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     tolerance = options.reduction.tolerance
     with execution.checkpoint() as checkpoint:
-        work = ExactWork(
+        task = ExactCurveTask(
             frequencies, only is not None, tolerance is None, periods, options.shooting, options.exact
         )
-        run = _SweepRun(work, CurveBatches(execution.processes, checkpoint, execution.place))
+        run = _SweepRun(task, CurveBatches(execution.processes, checkpoint, execution.place))
         response = run.response(scene, tolerance, execution.progress)
         if not response.interrupted:
             execution.discard(checkpoint)
@@ -100,7 +100,7 @@ def trace_exact(
 class _SweepRun(Frozen):
     """The sweeps of a run, the second with all modes where they turn out to be needed."""
 
-    work: ExactWork
+    task: ExactCurveTask
     sweep: CurveBatches
 
     def response(self, scene: Scene, tolerance: float | None, progress: Progress | None) -> Response:
@@ -108,9 +108,9 @@ class _SweepRun(Frozen):
         scenes = scene.each_curve()
         if tolerance is None:
             return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
-        lighter = leave_out_modes(scenes, tolerance, self.work.options.max_harmonic)
+        lighter = leave_out_modes(scenes, tolerance, self.task.options.max_harmonic)
         if lighter.above is not None and 2.0 * expected_effect(lighter) > tolerance:
-            lighter = leave_out_modes(scenes, 0.0, self.work.options.max_harmonic)
+            lighter = leave_out_modes(scenes, 0.0, self.task.options.max_harmonic)
         response, said = self._swept(scene, lighter.curves, progress), list(lighter.sentences)
         if lighter.above is not None and not response.interrupted:
             change = effect(response, lighter)
@@ -119,15 +119,15 @@ class _SweepRun(Frozen):
             else:
                 response = self._swept(scene, lighter.exact, progress)
         said += on_contacts(response.curves, scenes[0].contacts)
-        response.left_out = [*said, *([ONLY_PEAKS] if self.work.only_peaks else [])]
+        response.left_out = [*said, *([ONLY_PEAKS] if self.task.only_peaks else [])]
         response.curves = [without_rounding(one) for one in response.curves]
         return response
 
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
-        mark = fingerprint(METHOD, replace(self.work, options=replace(self.work.options, max_seconds=None)))
+        mark = fingerprint(METHOD, replace(self.task, options=replace(self.task.options, max_seconds=None)))
         batches = [(one,) for one in scenes]
         curves = self.sweep.curves(
-            self.work, batches, mark, progress, (*STATES, CoexistingOrbits, *SAVED_KINDS, *FOUND)
+            self.task, batches, mark, progress, (*STATES, CoexistingOrbits, *SAVED_KINDS, *FOUND)
         )
         return Response.of(scene, curves, METHOD)
 

@@ -10,7 +10,7 @@ from functools import partial
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray, Held, Scene
+from fcm.model.scene import FloatArray, HeldContact, Scene
 from fcm.reduction.constant_state_contacts import NotKeptError, check, expected_constant
 from fcm.response.coexisting_orbits import coexisting_orbits
 from fcm.response.coexisting_search import Search
@@ -34,11 +34,11 @@ from fcm.shooting.trace import explore, incomplete, stop_reason, with_unit
 from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 
-Expected = Callable[[Scene, Callable[[], None]], tuple[Held, ...]]
+Expected = Callable[[Scene, Callable[[], None]], tuple[HeldContact, ...]]
 AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were sought"
 
 
-class ExactWork(Frozen):
+class ExactCurveTask(Frozen):
     """The task that makes exact curves: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
@@ -100,7 +100,7 @@ class _CurveFollower(Frozen):
     options: ShootingOptions = SHOOTING
     search: float = EXACT_CURVES.search_fraction
 
-    def with_held_contacts(self, scene: Scene, held: tuple[Held, ...]) -> Curve:
+    def with_held_contacts(self, scene: Scene, held: tuple[HeldContact, ...]) -> Curve:
         """The curve, followed without the contacts that keep their state all along it."""
         while True:
             lost: tuple[int, ...] = ()
@@ -116,7 +116,7 @@ class _CurveFollower(Frozen):
                 )  # what there is is not the motion of these contacts
             held = tuple(one for one in held if lost and one.place not in lost)
 
-    def _held_or_lost(self, scene: Scene, held: tuple[Held, ...]) -> Curve:
+    def _held_or_lost(self, scene: Scene, held: tuple[HeldContact, ...]) -> Curve:
         """The curve with contacts held; without a point, if it cannot be begun."""
         if not held:
             return self.curve(scene)
@@ -259,11 +259,7 @@ def _too_stiff(scene: Scene, options: ExactOptions) -> tuple[str, float | None]:
 
 
 def _visited(
-    scene: Scene,
-    at: tuple[float, ...],
-    report: Report,
-    options: ExactOptions,
-    shooting: ShootingOptions,
+    scene: Scene, at: tuple[float, ...], report: Report, options: ExactOptions, shooting: ShootingOptions
 ) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), options)

@@ -28,7 +28,7 @@ from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.results.fitted import Fitted, FittedData, FittedStart, misfit
 from fcm.results.result import Response
-from fcm.run import IN_THIS_PROCESS, Checkpoint, Execution, Results, fingerprint
+from fcm.run import IN_THIS_PROCESS, CheckpointFile, Execution, Results, fingerprint
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import number_of
 from fcm.scene.errors import quoted
@@ -228,7 +228,7 @@ def _fitted_parameters(
 
 
 def _kept(
-    scene: Scene, harmonics: tuple[int, ...], near: Sequence[FloatArray], checkpoint: Checkpoint
+    scene: Scene, harmonics: tuple[int, ...], near: Sequence[FloatArray], checkpoint: CheckpointFile
 ) -> Results:
     """The results of this fit that are kept; it is known by all that decides its numbers."""
     count = len(scene.fit.vary) if scene.fit is not None else 0

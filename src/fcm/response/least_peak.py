@@ -15,7 +15,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import RESPONSE, ResponseOptions
 from fcm.response.request import Request, ResponseError
-from fcm.response.tracked_work import as_curve
+from fcm.response.tracking_task import as_curve
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
 from fcm.run.progress import part

@@ -15,13 +15,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, evenness, stable_at_levels
+from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, stable_at_levels
 from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.required_harmonics import dofs_of_interest
 from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
@@ -48,17 +49,23 @@ from fcm.scene.errors import counted
 from fcm.units import EXCITATION, UNIT, in_unit
 
 
+class LevelRequest(Frozen):
+    """Curves that are asked for over a span of levels of the forces, at frequencies in the scene's unit."""
+
+    frequencies: Sequence[float]
+    span: tuple[float, float]
+
+
 def trace_levels(
     scene: Scene,
-    at: Sequence[float],
-    span: tuple[float, float],
+    asked: LevelRequest,
     execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """Trace a curve for each curve of the scene and each frequency, in the scene's unit.
+    """Trace a curve for each curve of the scene and each frequency.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
     with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
@@ -73,7 +80,7 @@ def trace_levels(
     KeyboardInterrupt
         If nothing is finished then; else what is finished is returned.
     """
-    low, high = span
+    (low, high), at = asked.span, asked.frequencies
     if fault := level_fault(low, high):
         raise ResponseError(f"level is from {low:g} to {high:g}: {fault}")
     if not all(np.isfinite(f) and f > 0.0 for f in at):
@@ -88,11 +95,11 @@ def trace_levels(
     tasks = [
         (
             _without(curve, omega, NOT_BEGUN, Cause.INTERRUPTED),
-            partial(_level_curve, curve, request, omega, span),
+            partial(_level_curve, curve, request, omega, asked.span),
         )
         for curve, omega in ways
     ]
-    of_curves = (request, tuple(at), span, anonymous(scene.each_curve()))
+    of_curves = (request, tuple(at), asked.span, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("level", *of_curves)
     curves = [without_rounding(one) for one in one_by_one(tasks, execution, mark)]
     response = Response.of(scene, curves, "level of the forces")
@@ -185,10 +192,10 @@ def _followed(system: System, omega: float, span: tuple[float, float], tell: Tel
     except RestError as error:
         return _without(system.scene, omega, str(error))
     # what folds back into the span from beyond it is part of the curve
-    reach = (span[0], max(span[1], highest_linear_limit(system, omega)))
-    beyond = (reach[1] - reach[0]) / (span[1] - span[0])
+    followed = (span[0], max(span[1], highest_linear_limit(system, omega)))
+    beyond = (followed[1] - followed[0]) / (span[1] - span[0])
     levels = LevelRange(
-        reach, system.scene.max_step, (1.0, span[1]), progress=lambda share: tell.covered(share * beyond)
+        followed, system.scene.max_step, (1.0, span[1]), progress=lambda share: tell.covered(share * beyond)
     )
     path = level_curve(system, omega, levels)
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
@@ -211,13 +218,13 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     z[:, -1] = omega
     X, mean, amplitude = recorded_at_levels(system, z, level)
     X = 1j * X
-    first, even = X[:, system.harmonics.index(1)], evenness(path)[inside]
+    first, parity = X[:, system.harmonics.index(1)], path.parity[inside]
     loop = loops(system, z)
     words, contact_loads = cycles(system, z, loop)
-    points = LevelPoints(z, level, amplitude, contact_loads, even)
+    points = LevelPoints(z, level, amplitude, contact_loads, parity)
     error, contact_load_errors = errors_at_levels(system, points)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
-    stable = stable_at_levels(system, z, even)
+    stable = stable_at_levels(system, z, parity)
     # with more harmonics there may be no solution where it is not
     known = truncation <= system.option(VALIDITY).max_error
     lost = no_steady_states(system, z, level)

@@ -21,13 +21,7 @@ from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_ca
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
-from fcm.nonlinear_modes.forced_response import (
-    at_amplitude,
-    flanks,
-    modal_force,
-    resonances,
-    resonant_level,
-)
+from fcm.nonlinear_modes.forced_response import at_amplitude, flanks, modal_force, resonances, resonant_level
 from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions
 from fcm.response.accuracy_shortfall import remedy
 from fcm.response.curve_batches import anonymous, lost_curve
@@ -107,10 +101,7 @@ def trace_modes(
     try:
         curves = one_by_one(
             [
-                (
-                    lost_curve(one, NOT_BEGUN, Cause.INTERRUPTED),
-                    partial(_curve, one, asked, request),
-                )
+                (lost_curve(one, NOT_BEGUN, Cause.INTERRUPTED), partial(_curve, one, asked, request))
                 for one in scene.each_curve()
             ],
             execution,

@@ -28,7 +28,7 @@ from fcm.shooting.harmonic_balance_state import state_of
 from fcm.shooting.initial_orbits import near_balance
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord
-from fcm.shooting.peaks_and_folds import Guess, located
+from fcm.shooting.peaks_and_folds import OrbitGuess, located
 from fcm.shooting.periodic_orbit import Poll
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.work_budget import UncertainFrequencies
@@ -47,11 +47,7 @@ class PeaksOnly(Frozen):
 
 
 def peaks_only(
-    scene: Scene,
-    known: list[OrbitRecord],
-    report: Report,
-    poll: Poll,
-    shooting: ShootingOptions = SHOOTING,
+    scene: Scene, known: list[OrbitRecord], report: Report, poll: Poll, shooting: ShootingOptions = SHOOTING
 ) -> PeaksOnly | None:
     """The peaks, folds and jumps of a scene; None where the balance has others.
 
@@ -138,7 +134,7 @@ def _paired(folds: dict[float, OrbitRecord], points: list[OrbitRecord]) -> bool:
     return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SHOOTING.peaks.peak_tolerance, atol=0.0)
 
 
-def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:
+def _guesses(scene: Scene, curve: Curve) -> Iterator[OrbitGuess]:
     """Guesses at points of the balance: its peaks, of which one may be the highest, and its folds."""
     if not curve.points:
         return
@@ -158,12 +154,12 @@ def _peaks(curve: Curve, dof: int) -> list[int]:
     return [int(k) for k in np.flatnonzero(tops)]
 
 
-def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> Guess:
+def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> OrbitGuess:
     there = np.flatnonzero(np.isfinite(curve.frequency))
     neighbour = min((int(i) for i in (k - 1, k + 1) if i in there), default=k)
     z = unknowns(curve, scene, np.array([k, neighbour]), curve.harmonics)
     one, other = (state_of(scene, curve.harmonics, row) for row in z)
-    return Guess(float(curve.frequency[k]), one, (float(curve.frequency[neighbour]), other), dof)
+    return OrbitGuess(float(curve.frequency[k]), one, (float(curve.frequency[neighbour]), other), dof)
 
 
 def _jump(scene: Scene, jump: Jump, fold: OrbitRecord | None) -> Jump | None:

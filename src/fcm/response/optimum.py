@@ -18,12 +18,12 @@ from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
-from fcm.response.tracked_work import STATES
-from fcm.results.condensed_curves import condense, without_points
+from fcm.response.tracking_task import STATES
+from fcm.results.curve_extracts import extract_of, without_points
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, TrackedCurve, Tracking
-from fcm.run import IN_THIS_PROCESS, Checkpoint, Execution, Progress, Results, fingerprint
+from fcm.run import IN_THIS_PROCESS, CheckpointFile, Execution, Progress, Results, fingerprint
 from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
@@ -219,7 +219,7 @@ def _with(harmonics: tuple[int, ...]) -> str:
 
 def _missed_peak(found: Optimal, curve: Curve) -> tuple[str, float] | None:
     """The highest peak of a minimised quantity in the response that was not followed."""
-    ends, higher = (curve.condensed or condense(curve)).ends, list[tuple[float, str]]()
+    ends, higher = (curve.extract or extract_of(curve)).ends, list[tuple[float, str]]()
     for name in found.minimised:
         what, _, dof = name.partition(".")
         peak = curve.peaks[dof]
@@ -238,7 +238,7 @@ KINDS = (Optimal, TrackedCurve)  # what is kept consists of these
 def optima(
     tasks: list[PeakTask],
     harmonics: tuple[int, ...] | None,
-    checkpoint: Checkpoint | None,
+    checkpoint: CheckpointFile | None,
     progress: Progress | None,
 ) -> tuple[list[Found], bool]:
     """The optimum of each task, all with the same harmonics; or those so far, and that it was interrupted.
@@ -264,7 +264,7 @@ def optima(
 def _optima(
     tasks: list[PeakTask],
     harmonics: tuple[int, ...] | None,
-    checkpoint: Checkpoint | None,
+    checkpoint: CheckpointFile | None,
     progress: Progress | None,
 ) -> Iterator[Found]:
     """The optimum of each task, kept as soon as it is found, with each response and curve that leads to it.
@@ -280,7 +280,7 @@ def _optima(
         yield kept.finished[i][0]
 
 
-def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: Checkpoint) -> Results:
+def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: CheckpointFile) -> Results:
     """The results of these tasks that are kept; they are known by all that decides their optima."""
     scenes = [replace(task.scene, name="", title="", curves=()) for task in tasks]
     mark = fingerprint(
@@ -300,7 +300,9 @@ def _fits(tasks: list[PeakTask], number: int, results: Any) -> bool:
     return curves and isinstance(found[0], Optimal) and found[0].parameters == tasks[number].scene.parameters
 
 
-def _with_the_same(tasks: list[PeakTask], found: list[Found], checkpoint: Checkpoint | None) -> list[Found]:
+def _with_the_same(
+    tasks: list[PeakTask], found: list[Found], checkpoint: CheckpointFile | None
+) -> list[Found]:
     """The optima with the same harmonics, those that any of them takes, as the curves of a response have."""
     every = {h for one, _ in found for h in one.harmonics}
     if all(len(one.harmonics) == len(every) for one, _ in found):

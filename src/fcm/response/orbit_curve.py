@@ -109,11 +109,7 @@ def visited_curve(
 
 
 def _curve(
-    scene: Scene,
-    points: Sequence[OrbitRecord | None],
-    reason: str,
-    search: Search,
-    everywhere: bool = False,
+    scene: Scene, points: Sequence[OrbitRecord | None], reason: str, search: Search, everywhere: bool = False
 ) -> Curve:
     empty = lost_curve(scene, reason)
     frequency = _numbers(points, "frequency")

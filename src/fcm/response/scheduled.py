@@ -6,14 +6,16 @@ from typing import Any
 
 from fcm.model.scene import Scene
 from fcm.response.curve_batches import anonymous
-from fcm.run import Checkpoint, Progress, fingerprint
+from fcm.run import CheckpointFile, Progress, fingerprint
 from fcm.time_domain import Energy, Histories, State, histories
-from fcm.time_domain.schedule_record import CompletedPhase, PhaseResult, Record
+from fcm.time_domain.schedule_record import CompletedPhase, PhaseResult, ScheduleRecord
 
-_KINDS = (Record, PhaseResult, CompletedPhase, State, Energy)  # what is kept consists of these
+_KINDS = (ScheduleRecord, PhaseResult, CompletedPhase, State, Energy)  # what is kept consists of these
 
 
-def simulated(scene: Scene, progress: Progress | None = None, keep: Checkpoint | None = None) -> Histories:
+def simulated(
+    scene: Scene, progress: Progress | None = None, keep: CheckpointFile | None = None
+) -> Histories:
     """The motion through the schedule for each curve of a scene.
 
     Whole curves, and of the one at work whole phases, go to the checkpoint; what that holds of them is not
@@ -39,7 +41,7 @@ def _fit(curves: tuple[Scene, ...], number: int, found: Any) -> bool:
     """Whether what was read from a file can be the record of the curve with this number."""
     if not 0 <= number < len(curves) or not isinstance(found, list) or len(found) != 1:
         return False
-    return isinstance(found[0], Record) and found[0].parameters == curves[number].parameters
+    return isinstance(found[0], ScheduleRecord) and found[0].parameters == curves[number].parameters
 
 
 def _begun(found: list[Any], phases: int) -> bool:

@@ -15,13 +15,13 @@ from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Progress
 from fcm.scene.errors import several
-from fcm.sensitivity.peak import Kind, Unknown
+from fcm.sensitivity.peak import PeakKind, Unknown
 from fcm.sensitivity.peaks import Sensitivities, sensitivities
 
 WITHOUT = f"{INTERRUPTED} before its sensitivities were known"
 REMARKS = {
-    Kind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
-    Kind.EDGE: "at an end of the range: the derivative of the amplitude there",
+    PeakKind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
+    PeakKind.EDGE: "at an end of the range: the derivative of the amplitude there",
 }
 MAY_BE_FOUND = (Unknown.NOT_SOLVED, Unknown.ONE_SIDED, Unknown.NO_MAXIMUM)  # from another point of the curve
 
@@ -85,7 +85,7 @@ def remarks(response: Response, scene: Scene) -> list[str]:
             kind, why = found.kind[d], found.why[d]
             if what := REMARKS.get(kind, ""):
                 groups.setdefault(what, []).append((number, dof))
-            elif kind is Kind.UNKNOWN:
+            elif kind is PeakKind.UNKNOWN:
                 groups.setdefault(f"are unknown: {_reason(why)}", []).append((number, dof))
             for key, one in zip(found.numbers, found.why_by_number[d], strict=True):
                 if one is not Unknown.NOTHING:

@@ -28,10 +28,10 @@ from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.shooting.trace import with_unit
 from fcm.time_domain.cycle_measures import Measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import CycleError, SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 class StepRecord(Frozen):
@@ -265,13 +265,15 @@ class SteppedSweep:
         """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""
         count = int(np.ceil(abs(omega - begin) / (STEPPED.irregular_step * min(omega, begin))))
         for between in np.linspace(begin, omega, count + 1)[1:-1].tolist():
-            for _, end in cycles_from(System(self.scene, between), STEPPED.irregular_cycles, self._state):
+            for _, end in cycles_from(
+                EquationsOfMotion(self.scene, between), STEPPED.irregular_cycles, self._state
+            ):
                 self.poll()
                 self._state = end
 
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
-        self._here, self._sample, system = None, None, System(self.scene, omega)
+        self._here, self._sample, system = None, None, EquationsOfMotion(self.scene, omega)
         found = steady(system, state, self.poll)
         if isinstance(found, State):
             self._state = found

@@ -17,7 +17,7 @@ from fcm.reduction.negligible_parts import ReducedScenes, unreduced, without_neg
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
-from fcm.response.curve_batches import CurveBatches, Work
+from fcm.response.curve_batches import CurveBatches, CurveTask
 from fcm.response.options import ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes, unknown
@@ -136,12 +136,7 @@ class _Sweep:
     """The sweeps of a run, each with less left out; they share one progress bar."""
 
     def __init__(
-        self,
-        scene: Scene,
-        method: str,
-        table: Table | None,
-        request: Request,
-        curves: CurveBatches,
+        self, scene: Scene, method: str, table: Table | None, request: Request, curves: CurveBatches
     ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
         self.request, self.peaks_only = request, request.options.sweep.peaks_only
@@ -155,8 +150,8 @@ class _Sweep:
         every = tuple(replace(scene, draft=None) for scene in lighter.curves)
         batches = in_batches(every, batch_size(every[0], self.request))
         samples = REDUCTION.max_checked_of_curve if lighter.above is not None else 0
-        work = Work(replace(self.request, table=self._table(lighter)), self.peaks_only, samples)
-        curves = self.curves.curves(work, batches, self.mark, progress)
+        task = CurveTask(replace(self.request, table=self._table(lighter)), self.peaks_only, samples)
+        curves = self.curves.curves(task, batches, self.mark, progress)
         response = Response.of(self.scene, curves, self.method)
         response.peaks_only = self.peaks_only
         return response

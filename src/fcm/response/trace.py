@@ -143,11 +143,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
         check_contacts_can_close(system)
         found = (
             refined_response(
-                system,
-                wanted.accuracy,
-                so_far.covered,
-                options=wanted.options.refinement,
-                on_traced=so_far,
+                system, wanted.accuracy, so_far.covered, options=wanted.options.refinement, on_traced=so_far
             )
             if by_need
             else with_given_harmonics(system, so_far.covered, on_traced=so_far)

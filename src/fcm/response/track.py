@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.accuracy.refinement import refined_response
+from fcm.frozen import Frozen
 from fcm.model.scene import Scene
 from fcm.quoting import quoted
 from fcm.response.accuracy_shortfall import remedy
@@ -18,21 +19,21 @@ from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
-from fcm.response.tracked_work import KINDS, STATES, TrackedScene, TrackedWork
+from fcm.response.tracking_task import KINDS, STATES, TrackedScene, TrackingTask
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
 from fcm.run import (
     IN_THIS_PROCESS,
-    Checkpoint,
+    CheckpointFile,
     Execution,
     Factory,
     Lost,
     Outcome,
     Progress,
     Results,
+    compute_batches,
     fingerprint,
     place_for,
-    sweep,
 )
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import Number, number_of
@@ -56,11 +57,27 @@ class SpanError(ResponseError):
         return ResponseError(f"{ends}: {self.fault}")
 
 
+class TrackRequest(Frozen):
+    """Special points of the response that are followed in a number of the scene.
+
+    Attributes
+    ----------
+    what : {"folds", "peaks", "slip", "separation", "closing"}
+        The frequencies at which the response turns back (jumps), its peaks, or the onsets of slip and of
+        separation, and of contact at all.
+    over : str
+        The number as in [sweep], "contact.shroud.n_0", or "level" of the forces. A sweep of it is left out.
+    span : (from, to)
+    """
+
+    what: str
+    over: str
+    span: tuple[float, float]
+
+
 def track(
     scene: Scene,
-    what: str,
-    over: str,
-    span: tuple[float, float],
+    asked: TrackRequest,
     execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
@@ -71,12 +88,6 @@ def track(
 
     Parameters
     ----------
-    what : {"folds", "peaks", "slip", "separation", "closing"}
-        The frequencies at which the response turns back (jumps), its peaks, or the onsets of slip and of
-        separation, and of contact at all.
-    over : str
-        The number as in [sweep], "contact.shroud.n_0", or "level" of the forces. A sweep of it is left out.
-    span : (from, to)
     execution : Execution, optional
         As in `fcm.response.trace`: where the curves of a sweep are followed, and what is kept of them.
     options : ResponseOptions, optional
@@ -96,9 +107,10 @@ def track(
     KeyboardInterrupt
         If no curve is finished then.
     """
+    what, span = asked.what, asked.span
     if what not in WHAT:
         raise ResponseError(f"track {quoted(what)} is not one of {', '.join(WHAT)}")
-    number = number_of(scene, over)
+    number = number_of(scene, asked.over)
     _check(scene, number, span)
     begin = time.perf_counter()
     free = number.freed(scene)
@@ -108,12 +120,12 @@ def track(
     chosen = request.harmonics or needed(curves, number, span, request)
     place = execution.place or place_for(execution.processes if len(curves) > 1 else 1)
     response = Response.without_curves(tracked)
-    response.tracking, response.method = Tracking(over, what, span, chosen, []), "tracked"
+    response.tracking, response.method = Tracking(asked.over, what, span, chosen, []), "tracked"
     with execution.checkpoint() as checkpoint:
         if what == "peaks":
             response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
-        work = TrackedWork(number, what, span, chosen, request.options)
-        outcome = _swept(work, curves, checkpoint, place, execution.progress)
+        task = TrackingTask(number, what, span, chosen, request.options)
+        outcome = _swept(task, curves, checkpoint, place, execution.progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
         if request.harmonics is None:
@@ -133,18 +145,18 @@ def _untracked(every: int, tracked: int) -> list[str]:
 
 
 def _swept(
-    work: TrackedWork,
+    task: TrackingTask,
     scenes: Sequence[Scene],
-    checkpoint: Checkpoint | None,
+    checkpoint: CheckpointFile | None,
     place: Factory,
     progress: Progress | None,
 ) -> Outcome:
     """The results of each scene, as far as the run came."""
     batches, kept = [(replace(one, curves=()),) for one in scenes], Results()
     if checkpoint is not None:
-        mark = fingerprint("tracked", work, [replace(one, name="", title="") for (one,) in batches])
+        mark = fingerprint("tracked", task, [replace(one, name="", title="") for (one,) in batches])
         kept = checkpoint.results(mark, (*KINDS, *STATES), lambda i, found: _fits(len(batches), i, found))
-    outcome = sweep(work, batches, place, kept, progress)
+    outcome = compute_batches(task, batches, place, kept, progress)
     if outcome.lost:
         warnings.warn(outcome.lost, stacklevel=2)
     return outcome

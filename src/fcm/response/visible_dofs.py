@@ -58,8 +58,8 @@ def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
         kinds = tuple(kind for kind, one in zip(by.kind, shown, strict=True) if one)
         by = replace(by, height=by.height[shown], frequency=by.frequency[shown], kind=kinds)
     peaks = {name: curve.peaks[name] for name in dofs}
-    condensed = None if curve.condensed is None else curve.condensed.at(shown)
-    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic, condensed=condensed, sensitivity=by)
+    extract = None if curve.extract is None else curve.extract.at(shown)
+    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic, extract=extract, sensitivity=by)
 
 
 def _record(record: Any, shown: Any) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.at_rest import RestOptions, at_rest
-from fcm.results.condensed_curves import CondensedCurve
+from fcm.results.curve_extracts import CurveExtract
 from fcm.results.jumps import FrequencySweep
 from fcm.results.nonlinear_mode import NonlinearMode
 from fcm.results.peak import Peak
@@ -45,8 +45,8 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
         changed["orbits"] = replace(orbits, **arrays)
     if curve.mode is not None:
         changed["mode"] = _mode(curve.mode, {dof for dof, one in zip(curve.peaks, rest, strict=True) if one})
-    if curve.condensed is not None:
-        changed["condensed"] = _condensed(curve.condensed, rest)
+    if curve.extract is not None:
+        changed["extract"] = _extract(curve.extract, rest)
     return replace(curve, **changed)
 
 
@@ -60,9 +60,9 @@ def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
     return np.where(rounding < 0.0, at_rest(size, options), told)
 
 
-def _condensed(condensed: CondensedCurve, rest: BoolArray) -> CondensedCurve:
-    lower = condensed.lower_peaks[~rest[condensed.lower_peaks[:, 0].astype(np.intp)]]
-    return replace(condensed, swept=_swept(condensed.swept, rest), lower_peaks=lower)
+def _extract(extract: CurveExtract, rest: BoolArray) -> CurveExtract:
+    lower = extract.lower_peaks[~rest[extract.lower_peaks[:, 0].astype(np.intp)]]
+    return replace(extract, swept=_swept(extract.swept, rest), lower_peaks=lower)
 
 
 def _mode(mode: NonlinearMode, rest: Collection[str]) -> NonlinearMode:

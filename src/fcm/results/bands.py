@@ -51,7 +51,6 @@ def bands_of(
     column: int,
     span: tuple[float, float],
     wide: bool = False,
-    count: int = RESULTS.draws.band_frequencies,
 ) -> list[Band]:
     """A band for each combination of the swept values that are not drawn.
 
@@ -67,12 +66,10 @@ def bands_of(
         The percentages of the band.
     wide : bool
         Whether the frequencies of the band are in geometric progression.
-    count : int
-        How many these are.
     """
     frequencies = np.concatenate([curve.frequency for curve in curves])
     ends = float(np.nanmin(frequencies)), float(np.nanmax(frequencies))
-    places = (np.geomspace if wide else np.linspace)(*ends, count)
+    places = (np.geomspace if wide else np.linspace)(*ends, RESULTS.draws.band_frequencies)
     groups: dict[tuple[tuple[str, float], ...], list[FloatArray]] = {}
     for curve in curves:
         key = tuple((k, v) for k, v in curve.parameters.items() if k not in drawn)

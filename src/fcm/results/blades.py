@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.frozen import Frozen
-from fcm.results.condensed_curves import condense
+from fcm.results.curve_extracts import extract_of
 from fcm.results.curve_summary import at_edge
 from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve, Response
@@ -49,7 +49,7 @@ def worst_of(response: Response) -> Worst:
     amplitude, frequency = (
         np.take_along_axis(each[..., i], sector[..., None], axis=2)[..., 0] for i in range(2)
     )
-    every = [(curve, curve.condensed or condense(curve)) for curve in response.curves]
+    every = [(curve, curve.extract or extract_of(curve)) for curve in response.curves]
     ends = np.array([[at_edge(curve, one, brief) for one in curve.peaks.values()] for curve, brief in every])
     at_end = np.take_along_axis(ends[:, columns], sector[..., None], axis=2)[..., 0]
     return Worst(

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fcm.results.condensed_curves import CondensedCurve, condense
 from fcm.results.contact_maxima import Greatest
+from fcm.results.curve_extracts import CurveExtract, extract_of
 from fcm.results.curve_summary import at_edge
 from fcm.results.options import RESULTS
 from fcm.results.padded_arrays import Field, by_fold
@@ -21,30 +21,30 @@ from fcm.units import CF_UNIT, in_unit
 
 def condensed_fields(response: Response) -> dict[str, Field]:
     """Variables that summarise all points of each curve, where the points are not written."""
-    condensed_curves = [curve.condensed or condense(curve) for curve in response.curves]
+    extracts = [curve.extract or extract_of(curve) for curve in response.curves]
     of_all = {
         "greatest_table_error": (
             "largest table_error of the curve",
-            [one.table_error for one in condensed_curves],
+            [one.table_error for one in extracts],
         ),
         "greatest_truncation_error": (
             "largest truncation_error of the curve",
-            [one.truncation_error for one in condensed_curves],
+            [one.truncation_error for one in extracts],
         ),
-        "points": ("points that were computed", [one.points for one in condensed_curves]),
+        "points": ("points that were computed", [one.points for one in extracts]),
     }
     out = {
         name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
         for name, (meaning, values) in of_all.items()
     }
-    out |= _caveats(response, condensed_curves)
+    out |= _caveats(response, extracts)
     if not response.complete:
         reasons = np.array([curve.reason for curve in response.curves])
         out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
     return out
 
 
-def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> dict[str, Field]:
+def _caveats(response: Response, extracts: Sequence[CurveExtract]) -> dict[str, Field]:
     """Variables on what may be missing in curves, or lacking.
 
     A file with all points has this in its summary.
@@ -73,12 +73,12 @@ def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> 
         meaning = "frequencies at which symmetry is lost by harmonics that are not balanced"
         lost = by_fold(curves, lambda curve: in_unit(np.array(curve.symmetry_lost), unit))
         out["symmetry_lost_at"] = Field(("curve", "symmetry_lost"), lost, {"long_name": meaning} | in_file)
-    if any(condensed.unstable for condensed in condensed_curves):
+    if any(extract.unstable for extract in extracts):
         meaning = "from and to which frequency no stable motion was found"
-        most = max(len(condensed.unstable) for condensed in condensed_curves)
-        ends = np.full((len(condensed_curves), most, 2), np.nan)
-        for row, condensed in zip(ends, condensed_curves, strict=True):
-            row[: len(condensed.unstable)] = np.array(sorted(condensed.unstable)).reshape(-1, 2)
+        most = max(len(extract.unstable) for extract in extracts)
+        ends = np.full((len(extracts), most, 2), np.nan)
+        for row, extract in zip(ends, extracts, strict=True):
+            row[: len(extract.unstable)] = np.array(sorted(extract.unstable)).reshape(-1, 2)
         of = ("curve", "stretch", "end")
         out["no_stable_motion"] = Field(of, in_unit(ends, unit), {"long_name": meaning} | in_file)
     if any(curve.short_of for curve in curves):
@@ -109,14 +109,10 @@ def curve_fields(response: Response) -> dict[str, Field]:
             {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
         ),
         "peak_frequency_error": Field(
-            by_dof,
-            peaks[..., 5],
-            {"long_name": "estimated error of peak_frequency, relative", "units": "1"},
+            by_dof, peaks[..., 5], {"long_name": "estimated error of peak_frequency, relative", "units": "1"}
         ),
         "peak_stable": Field(
-            by_dof,
-            peaks[..., 3],
-            {"long_name": "stable of the greatest amplitude", "units": "1"},
+            by_dof, peaks[..., 3], {"long_name": "stable of the greatest amplitude", "units": "1"}
         ),
         "peak_residual_change": Field(
             by_dof,
@@ -151,8 +147,8 @@ _AT_END = {
 
 def _peaks_at_end(curves: Sequence[Curve]) -> NDArray[np.int8]:
     """Flags (curve, dof): 1 where the greatest amplitude is not a peak of the curve."""
-    every = [(curve, curve.condensed or condense(curve)) for curve in curves]
-    rows = [[at_edge(curve, one, condensed) for one in curve.peaks.values()] for curve, condensed in every]
+    every = [(curve, curve.extract or extract_of(curve)) for curve in curves]
+    rows = [[at_edge(curve, one, extract) for one in curve.peaks.values()] for curve, extract in every]
     return np.array(rows, dtype=np.int8)
 
 

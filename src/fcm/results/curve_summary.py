@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.results.cause import Cause
-from fcm.results.condensed_curves import CondensedCurve, condense, worst
 from fcm.results.contact_maxima import Greatest
+from fcm.results.curve_extracts import CurveExtract, extract_of, worst
 from fcm.results.jumps import Jump, UnknownStability
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
@@ -27,11 +27,11 @@ _ON_ISOLATED = "on_isolated_branch"  # key of a peak that is
 
 def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
     """The curve as `fcm respond --json` prints it, frequencies in unit; what it does not have is left out."""
-    condensed = curve.condensed or condense(curve)
-    swept, dofs = condensed.swept, tuple(curve.peaks)
+    extract = curve.extract or extract_of(curve)
+    swept, dofs = extract.swept, tuple(curve.peaks)
     out: dict[str, Any] = {
         "parameters": curve.parameters,
-        "points": condensed.points,
+        "points": extract.points,
         "complete": curve.complete,
     }
     if not curve.complete:
@@ -46,9 +46,9 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["folds_unsure_at"] = in_unit(curve.folds_uncertain_at, unit).tolist()
     if curve.symmetry_lost:
         out["symmetry_lost_at"] = in_unit(curve.symmetry_lost, unit).tolist()
-    if condensed.unstable:
-        out["no_stable_motion"] = in_unit(sorted(condensed.unstable), unit).tolist()
-    missing = [] if curve.levels is None else without_frequencies(condensed.unstable, curve.levels)
+    if extract.unstable:
+        out["no_stable_motion"] = in_unit(sorted(extract.unstable), unit).tolist()
+    missing = [] if curve.levels is None else without_frequencies(extract.unstable, curve.levels)
     if missing:
         out["no_stable_motion_not_looked_at"] = in_unit(sorted(missing), unit).tolist()
     if curve.folds_between is not None:
@@ -57,8 +57,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["stability_not_confirmed"] = curve.not_confirmed
     if curve.mirrored:
         out["mirrored_branches"] = curve.mirrored
-    if condensed.linear:
-        out[condensed.linear] = True
+    if extract.linear:
+        out[extract.linear] = True
     if np.isfinite(curve.shakedown_at):
         out["shakedown_at"] = float(in_unit(curve.shakedown_at, unit))
     if curve.may_wedge:
@@ -66,17 +66,17 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {
-        dof: _peak(curve, peak, condensed, unit)
+        dof: _peak(curve, peak, extract, unit)
         | _error_there(curve, d)
         | _stable_peak(peak, stays, unit)
-        | ({_ON_ISOLATED: True} if condensed.highest_on_isolated[d] else {})
+        | ({_ON_ISOLATED: True} if extract.highest_on_isolated[d] else {})
         for d, ((dof, peak), stays) in enumerate(
-            zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
+            zip(curve.peaks.items(), extract.stable_peaks.tolist(), strict=True)
         )
     }
-    if condensed.isolated_branches:
-        out["isolated_branches"] = in_unit(np.array(condensed.isolated_branches), unit).tolist()
-    if peaks := _every_peak(out["peak"], condensed, unit):
+    if extract.isolated_branches:
+        out["isolated_branches"] = in_unit(np.array(extract.isolated_branches), unit).tolist()
+    if peaks := _every_peak(out["peak"], extract, unit):
         out["peaks"] = peaks
     if curve.greatest is not None and contacts:
         out["contacts"] = _contacts(curve.greatest, contacts, unit)
@@ -93,13 +93,13 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
     if swept.unknown and not _unjudged(curve):
         out["stability_untold"] = [_unknown(one, dofs, unit) for one in swept.unknown]
-    out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
-    if np.isfinite(condensed.truncation_error_at):
-        out["truncation_error_at"] = float(in_unit(condensed.truncation_error_at, unit))
-    if condensed.inaccurate:
+    out |= {name: getattr(extract, name) for name in ("stable", "table_error", "truncation_error")}
+    if np.isfinite(extract.truncation_error_at):
+        out["truncation_error_at"] = float(in_unit(extract.truncation_error_at, unit))
+    if extract.inaccurate:
         out["large_errors"] = [
             {"from": float(in_unit(low, unit)), "to": float(in_unit(high, unit)), "error": error}
-            for low, high, error in condensed.inaccurate
+            for low, high, error in extract.inaccurate
         ]
     if curve.orbits is not None:
         out |= _of_orbits(curve, curve.orbits, unit)
@@ -153,7 +153,7 @@ def _unknown(one: UnknownStability, dofs: tuple[str, ...], unit: str) -> dict[st
     }
 
 
-def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dict[str, Any]:
+def _peak(curve: Curve, peak: Peak, extract: CurveExtract, unit: str) -> dict[str, Any]:
     """A peak, and whether it is where the range ends."""
     return {
         "amplitude": peak.amplitude,
@@ -161,15 +161,15 @@ def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dic
         "error": peak.error,
         "frequency_error": peak.frequency_error,
         "stable": None if np.isnan(peak.stable) else bool(peak.stable),
-        "at_edge": at_edge(curve, peak, condensed),
+        "at_edge": at_edge(curve, peak, extract),
         "residual_change": peak.residual,
     }
 
 
-def at_edge(curve: Curve, peak: Peak, condensed: CondensedCurve) -> bool:
+def at_edge(curve: Curve, peak: Peak, extract: CurveExtract) -> bool:
     """Whether a peak is where the range ends, so that it is none of the curve's own."""
     moves = peak.amplitude > 0.0
-    return bool(moves and curve.complete and curve.level is None and peak.frequency in condensed.ends)
+    return bool(moves and curve.complete and curve.level is None and peak.frequency in extract.ends)
 
 
 def _error_there(curve: Curve, d: int) -> dict[str, float]:
@@ -185,13 +185,13 @@ def _error_there(curve: Curve, d: int) -> dict[str, float]:
 
 
 def _every_peak(
-    highest: dict[str, dict[str, Any]], condensed: CondensedCurve, unit: str
+    highest: dict[str, dict[str, Any]], extract: CurveExtract, unit: str
 ) -> dict[str, list[dict[str, Any]]]:
     """All peaks in order of frequency, for the degrees of freedom with more than one."""
     keys = ("amplitude", "frequency", "error", "stable", "at_edge")
     found: dict[str, list[dict[str, Any]]] = {}
     dofs = list(highest)
-    for d, amplitude, omega, error, stable, isolated in condensed.lower_peaks.tolist():
+    for d, amplitude, omega, error, stable, isolated in extract.lower_peaks.tolist():
         dof = dofs[int(d)]
         top = {key: highest[dof][key] for key in (*keys, _ON_ISOLATED) if key in highest[dof]}
         every = found.setdefault(dof, [top])

@@ -47,10 +47,7 @@ MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] 
     "resonant_level": (
         _of_mode("resonant_level"),
         (),
-        {
-            "long_name": "level of the scene's forces with which the resonance has the amplitude",
-            "units": "1",
-        },
+        {"long_name": "level of the scene's forces with which the resonance has the amplitude", "units": "1"},
     ),
     "steady_state": (
         lambda c: c.frequency if c.mode is None else c.mode.steady.astype(float),
@@ -196,13 +193,11 @@ def _add_contacts(found: _Points) -> None:
     )
     found.add("regime", lambda c: c.regime, ("contact",), long_name=states)
     for i, (name, meaning, units) in enumerate(LOOP):
-        found.add(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
+        found.add(name, _column("loop", i), ("contact",), long_name=meaning, **units)
     for i, (name, meaning) in enumerate(CYCLE):
-        found.add(name, partial(_of_cycle, column=i), ("contact",), long_name=meaning)
+        found.add(name, _column("cycle", i), ("contact",), long_name=meaning)
         error = CYCLE_ERROR.format(name)
-        found.add(
-            f"{name}_error", partial(_of_cycle_error, column=i), ("contact",), long_name=error, units="1"
-        )
+        found.add(f"{name}_error", _column("cycle_error", i), ("contact",), long_name=error, units="1")
 
 
 def _add_trust(found: _Points) -> None:
@@ -265,16 +260,8 @@ def _of_orbits(curve: Curve, name: str) -> npt.NDArray[Any]:
     return values
 
 
-def _of_loop(curve: Curve, column: int) -> FloatArray:
-    return curve.loop[..., column]
-
-
-def _of_cycle_error(curve: Curve, column: int) -> FloatArray:
-    return curve.cycle_error[..., column]
-
-
-def _of_cycle(curve: Curve, column: int) -> FloatArray:
-    return curve.cycle[..., column]
+def _column(name: str, column: int) -> Callable[[Curve], FloatArray]:
+    return lambda curve: getattr(curve, name)[..., column]
 
 
 def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:

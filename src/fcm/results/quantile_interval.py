@@ -42,22 +42,19 @@ def _lower_rank(count: int, share: float, confidence: float) -> int:
     return int(np.searchsorted(below, 0.5 * (1.0 - confidence), side="right"))
 
 
-def draws_needed(percent: float, confidence: float = RESULTS.draws.confidence) -> float:
+def draws_needed(percent: float) -> float:
     """Least number of draws with which both ends of the interval of a percentile are known.
 
     >>> [draws_needed(percent) for percent in (5.0, 25.0, 50.0, 95.0, 100.0)]
     [59, 11, 5, 59, inf]
     """
     inner = max(percent, 100.0 - percent) / 100.0
-    return math.ceil(math.log(0.5 * (1.0 - confidence)) / math.log(inner)) if inner < 1.0 else math.inf
+    outside = 0.5 * (1.0 - RESULTS.draws.confidence)
+    return math.ceil(math.log(outside) / math.log(inner)) if inner < 1.0 else math.inf
 
 
 def intervals(
-    values: FloatArray,
-    errors: FloatArray,
-    percents: tuple[float, ...],
-    confidence: float,
-    left_out: int = 0,
+    values: FloatArray, errors: FloatArray, percents: tuple[float, ...], confidence: float, left_out: int = 0
 ) -> FloatArray:
     """Intervals (percent, 2) of percentiles of values with relative errors, NaN where an end is unknown.
 

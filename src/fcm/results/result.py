@@ -15,8 +15,8 @@ from fcm.frozen import Frozen
 from fcm.model.ring import of_sector
 from fcm.model.scene import InTime, Scene, in_time
 from fcm.results.cause import Cause
-from fcm.results.condensed_curves import CondensedCurve
 from fcm.results.contact_maxima import Greatest
+from fcm.results.curve_extracts import CurveExtract
 from fcm.results.curve_summary import curve_summary
 from fcm.results.directions import directions_of, positions_of
 from fcm.results.jumps import FrequencySweep, Jump, swept
@@ -85,7 +85,7 @@ class Curve:
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
     undetermined: int = 0  # points at which a contact never slips and another may feel it, if that is unknown
-    condensed: CondensedCurve | None = (
+    extract: CurveExtract | None = (
         None  # if that is known; in the place of most points, where only peaks and folds were asked for
     )
     mode: NonlinearMode | None = None
@@ -106,7 +106,7 @@ class Curve:
     @property
     def points(self) -> int:
         """Number of points that were computed, be they kept or not."""
-        return int(np.isfinite(self.frequency).sum()) if self.condensed is None else self.condensed.points
+        return int(np.isfinite(self.frequency).sum()) if self.extract is None else self.extract.points
 
     @property
     def branch(self) -> npt.NDArray[np.intp]:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
-from fcm.results.condensed_curves import condense
+from fcm.results.curve_extracts import extract_of
 from fcm.results.options import RESULTS
 from fcm.results.peak import Peak
 from fcm.results.quantile_interval import draws_needed, intervals
@@ -108,8 +108,8 @@ def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_toler
 
     That no motion is stable where the sweep begins is no jump.
     """
-    condensed, ahead = curve.condensed or condense(curve), 1.0 if sweep == "up" else -1.0
-    met, begin = condensed.swept, condensed.ends[0 if sweep == "up" else 1]
+    extract, ahead = curve.extract or extract_of(curve), 1.0 if sweep == "up" else -1.0
+    met, begin = extract.swept, extract.ends[0 if sweep == "up" else 1]
     jumps = [ahead * one.frequency for one in met.jumps if one.sweep == sweep and one.frequency != begin]
     unknown = [ahead * one.start for one in met.unknown if one.sweep == sweep]
     first = min(jumps, default=NONE)

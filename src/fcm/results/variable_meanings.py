@@ -55,14 +55,8 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
         ("dof",),
         {"long_name": "greatest half the peak-to-peak of a cycle that was looked at"},
     ),
-    "family_least": (
-        ("dof",),
-        {"long_name": f"least amplitude {_OVER_FRICTION}"},
-    ),
-    "family_greatest": (
-        ("dof",),
-        {"long_name": f"greatest amplitude {_OVER_FRICTION}"},
-    ),
+    "family_least": (("dof",), {"long_name": f"least amplitude {_OVER_FRICTION}"}),
+    "family_greatest": (("dof",), {"long_name": f"greatest amplitude {_OVER_FRICTION}"}),
     "family_complete": (
         (),
         {

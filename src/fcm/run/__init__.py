@@ -1,19 +1,19 @@
-"""Sweeps: many items computed in batches, here, in threads, in processes or on a cluster; kept until written.
+"""Sweeps: many items computed in batches, here, in processes or on a cluster; kept until written.
 
-Knows nothing of what is computed. `sweep` is given the batches and a function that computes one; `Checkpoint`
-keeps what is finished; `fingerprint` says of what the results depend.
+Knows nothing of what is computed. `compute_batches` is given the batches and a function that computes one;
+`CheckpointFile` keeps what is finished; `fingerprint` says of what the results depend.
 """
 
 from typing import TYPE_CHECKING
 
 from fcm.lazy_import import on_demand
-from fcm.run.checkpoint import Checkpoint, Results
+from fcm.run.batches import Outcome, compute_batches, place_for, place_of
+from fcm.run.checkpoint_file import CheckpointFile, Results
 from fcm.run.execution import IN_THIS_PROCESS, Execution
 from fcm.run.fingerprint import fingerprint
 from fcm.run.lock import CheckpointError
-from fcm.run.places import Factory, Gone, Place, PlaceClosed, SerialPlace, Threads
-from fcm.run.sweep import Outcome, place_for, place_of, sweep
-from fcm.run.work import Compute, Interrupted, Lost, Progress, Report
+from fcm.run.places import Factory, Gone, Place, PlaceClosed, SerialPlace
+from fcm.run.tasks import Compute, Interrupted, Lost, Progress, Report
 
 if TYPE_CHECKING:
     from fcm.run.executor_place import ExecutorPlace
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "IN_THIS_PROCESS",
-    "Checkpoint",
     "CheckpointError",
+    "CheckpointFile",
     "Compute",
     "Execution",
     "ExecutorPlace",
@@ -38,11 +38,10 @@ __all__ = [
     "Report",
     "Results",
     "SerialPlace",
-    "Threads",
+    "compute_batches",
     "fingerprint",
     "place_for",
     "place_of",
-    "sweep",
 ]
 
 _HOME = {"ExecutorPlace": "executor_place", "Processes": "processes"}  # places that few runs need

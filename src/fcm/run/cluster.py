@@ -22,7 +22,7 @@ from fcm.run.options import RUN, RunOptions
 from fcm.run.places import Factory, NotComputed, PlaceClosed
 from fcm.run.scheduler_address import LATE, answering
 from fcm.run.scheduler_address import within as _within
-from fcm.run.work import Attempt, Compute
+from fcm.run.tasks import Attempt, Compute
 from fcm.signals import undisturbed
 
 NOISY = r"(distributed|dask|tornado|asyncio)(\.|$)"  # modules
@@ -151,10 +151,7 @@ class Workers:
             return
         asked_by = identity()
         answers = self.client.run(
-            identity,
-            workers=new,
-            on_error="return",
-            callback_timeout=self.options.scheduler_answer,
+            identity, workers=new, on_error="return", callback_timeout=self.options.scheduler_answer
         )
         for address, found in answers.items():
             self.fits[address] = found == asked_by

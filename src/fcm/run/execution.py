@@ -9,10 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from fcm.frozen import Frozen
-from fcm.run.checkpoint import Checkpoint
+from fcm.run.checkpoint_file import CheckpointFile
 from fcm.run.places import Factory
 from fcm.run.progress import part
-from fcm.run.work import Progress
+from fcm.run.tasks import Progress
 
 
 class Execution(Frozen):
@@ -25,7 +25,7 @@ class Execution(Frozen):
     place : optional
         Place where curves are computed instead: `fcm.run.place_of` an executor, or
         `fcm.run.cluster.connected`.
-    keep : Path or Checkpoint, optional
+    keep : Path or CheckpointFile, optional
         File for what is finished. Of a path it is there only while the calculation is not finished; a
         checkpoint is the caller's, to be kept until the response is written.
     resume : bool
@@ -36,7 +36,7 @@ class Execution(Frozen):
 
     jobs: int = 1
     place: Factory | None = None
-    keep: Path | Checkpoint | None = None
+    keep: Path | CheckpointFile | None = None
     resume: bool = False
     progress: Progress | None = None
 
@@ -46,15 +46,15 @@ class Execution(Frozen):
         return self.jobs or os.cpu_count() or 1
 
     @contextmanager
-    def checkpoint(self) -> Iterator[Checkpoint | None]:
+    def checkpoint(self) -> Iterator[CheckpointFile | None]:
         """The checkpoint: the caller's, who knows when it is not needed any more, or one of its own."""
         if not isinstance(self.keep, Path):
             yield self.keep
             return
-        with Checkpoint(self.keep, self.resume) as own:
+        with CheckpointFile(self.keep, self.resume) as own:
             yield own
 
-    def discard(self, checkpoint: Checkpoint | None) -> None:
+    def discard(self, checkpoint: CheckpointFile | None) -> None:
         """Remove the file of a calculation that is finished, unless it is the caller's."""
         if isinstance(self.keep, Path) and checkpoint is not None:
             checkpoint.done()

@@ -14,7 +14,7 @@ import fcm
 from fcm.run.fingerprint import program
 from fcm.run.options import RUN
 from fcm.run.places import Place, PlaceClosed
-from fcm.run.work import Attempt, Batch, Compute, Lost, Report, attempt
+from fcm.run.tasks import Attempt, Batch, Compute, Lost, Report, attempt
 from fcm.threads import one_thread
 
 

@@ -1,13 +1,13 @@
-"""Places where batches are computed: their interface, and this process or its threads as the nearest ones."""
+"""Places where batches are computed: their interface, and this process as the nearest one."""
 
 from __future__ import annotations
 
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 
-from fcm.run.work import Attempt, Batch, Compute, Report, attempt
+from fcm.run.tasks import Attempt, Batch, Compute, Report, attempt
 
 
 class WorkerDied(Exception):  # noqa: N818
@@ -59,24 +59,6 @@ class SerialPlace(Place):
         future: Future[Attempt] = Future()
         future.set_result(attempt(self.compute, batch, report))
         return future
-
-
-class Threads(Place):
-    """Threads of this process, for a compute function that lets others run meanwhile."""
-
-    def __init__(self, compute: Compute, count: int) -> None:
-        self.compute, self.width = compute, count
-        self._executor, self._stopped = ThreadPoolExecutor(count), threading.Event()
-
-    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
-        return self._executor.submit(attempt, self.compute, batch, until(self._stopped, report))
-
-    def stop(self) -> None:
-        self._stopped.set()
-
-    def close(self) -> None:
-        self.stop()
-        self._executor.shutdown(wait=True, cancel_futures=True)
 
 
 def until(stopped: threading.Event, report: Report) -> Report:

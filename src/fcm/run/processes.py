@@ -19,7 +19,7 @@ from typing import BinaryIO, cast
 from fcm import signals
 from fcm.run.message_frames import BATCH, PROGRESS, SHARE, STATE, STOP, WORK, receive, send
 from fcm.run.places import Place, WorkerDied
-from fcm.run.work import Attempt, Batch, Compute, Report
+from fcm.run.tasks import Attempt, Batch, Compute, Report
 from fcm.threads import one_each
 
 

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterable, Sequence
 
 from fcm.run.options import RUN
-from fcm.run.work import Progress
+from fcm.run.tasks import Progress
 
 
 class Bar:

@@ -17,7 +17,7 @@ from typing import BinaryIO
 from fcm.run.message_frames import BATCH, PROGRESS, RESULT, SHARE, STATE, STOP, WORK, receive, send
 from fcm.run.options import RUN
 from fcm.run.places import until
-from fcm.run.work import Lost, Report, attempt
+from fcm.run.tasks import Lost, Report, attempt
 
 
 def main() -> None:

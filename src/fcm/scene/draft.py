@@ -16,7 +16,7 @@ from fcm.scene.address import LEVEL, Addresses, overlap, replaced
 from fcm.scene.cyclic import ring_of
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.excitation import DIRECTIONS, base_force, load_of
-from fcm.scene.mistuning import mistuned_modes, turned
+from fcm.scene.mistuning import mistuned_modes, standing_drafts
 from fcm.scene.modal import modal_of
 from fcm.scene.parts import contact_of, force_of
 from fcm.scene.rules import RULES, Rule
@@ -210,7 +210,7 @@ def forces_of(parts: Parts) -> tuple[Force, ...]:
     of_base = (base_force(draft, parts["modal"]["dofs"]) for draft in parts["base"])
     own = parts["force"]
     if parts.get("whole"):
-        own = [one for draft in own for one in turned(draft, parts["whole"][0])]
+        own = [one for draft in own for one in standing_drafts(draft, parts["whole"][0])]
     return (*map(force_of, own), *of_base)
 
 

@@ -16,6 +16,7 @@ from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.measured_function import (
+    ComparedFile,
     Excitation,
     Surroundings,
     compare,
@@ -151,8 +152,9 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
     count = scaled.size
     levels = np.full(count, 1.0 if isinstance(level, str) else level)
+    compared = ComparedFile(name, scene, driven, section.wrong)
     if isinstance(level, str):
-        force = columns[level] * force_factor(read.units.get(level, ""), name, driven, scene, section.wrong)
+        force = columns[level] * force_factor(compared, read.units.get(level, ""))
         levels = force / abs(_force(driven))
     if read.function is None and "phase" in columns:
         largest = float(np.abs(columns["phase"]).max())
@@ -162,7 +164,7 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
     function = read.function or _function_of_table(section, read, scaled, name, dof, scene)
     if function is not None:
         given = quantity if "quantity" in section.data or backbone else ""
-        quantity, factor = compare(function, name, dof, given, driven, scene, section.wrong)
+        quantity, factor = compare(compared, function, dof, given)
         value = factor * function.value
         if function.per_reference and driven is not None:
             value = value * levels * driven.amplitude * scaled**driven.power

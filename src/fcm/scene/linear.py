@@ -24,12 +24,14 @@ from fcm.structure.rigid_body import MOST, rigid_by_gap
 from fcm.units import UNIT
 
 if TYPE_CHECKING:
-    from fcm.scene.structure_table import Matrices
+    from fcm.scene.structure_table import StructureMatrices
 
 HIDDEN = "\0"  # how the name of a displacement begins that a load over many rows works on
 
 
-def read_linear(top: Section, files: Files, unit: str, cyclic: list[Part]) -> tuple[Parts, Matrices | None]:
+def read_linear(
+    top: Section, files: Files, unit: str, cyclic: list[Part]
+) -> tuple[Parts, StructureMatrices | None]:
     """The draft of the modal table, and the matrices that it is still to be made of.
 
     Of a ring's sector, the degrees of freedom of the next are there as well.
@@ -50,7 +52,12 @@ def read_linear(top: Section, files: Files, unit: str, cyclic: list[Part]) -> tu
 
 
 def with_modes(
-    top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
+    top: Section,
+    parts: Parts,
+    matrices: StructureMatrices,
+    output: list[str],
+    ends: tuple[float, float],
+    unit: str,
 ) -> tuple[Parts, list[str]]:
     """The parts with the modes of matrices at all rows, and what is to be said of them."""
     from fcm.scene.reduction import exchanged, modal_of_matrices
@@ -97,7 +104,9 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
     return True
 
 
-def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: tuple[float, float]) -> None:
+def check_matrices(
+    top: Section, matrices: StructureMatrices, cyclic: list[Part], ends: tuple[float, float]
+) -> None:
     """Note that matrices are not those of a structure, of a scene that has other mistakes."""
     from fcm.scene.reduction import modal_of_matrices
     from fcm.scene.ring_reduction import LoadedRing, modal_of_ring
@@ -113,7 +122,12 @@ def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: t
 
 
 def _of_ring(
-    top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
+    top: Section,
+    parts: Parts,
+    matrices: StructureMatrices,
+    output: list[str],
+    ends: tuple[float, float],
+    unit: str,
 ) -> tuple[Parts, list[str]]:
     """The parts of a ring scene with the modes of every nodal diameter, see `with_modes`."""
     from fcm.scene.reduction import exchanged
@@ -130,10 +144,7 @@ def _of_ring(
     only = [own.place[name] for name in output]
     sectors = int(parts["cyclic"][0]["sectors"])
     draft, notes = modal_of_ring(
-        top,
-        LoadedRing(matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed),
-        only,
-        ends,
+        top, LoadedRing(matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed), only, ends
     )
     if draft is None:
         return parts, notes
@@ -153,7 +164,7 @@ def with_base(parts: Parts) -> Parts:
     return with_displacements(parts, {BASE: parts["modal"]["participation"]}) if parts["base"] else parts
 
 
-def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
+def with_exact_rigid_modes(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
     """The parts with frequencies that are the rounding of rigid-body modes set to 0."""
     frequency = parts["modal"]["frequency"]
     bodies = len(parts["contact"]) + 1  # that are held together by contacts alone

@@ -27,7 +27,7 @@ METRIC_SLIPS = {  # what the frequencies are to be multiplied by: how that comes
 }
 IMPERIAL_SLIPS = {
     POUND_AND_INCH: "the range would hold modes if frequencies were 19.6 times as high. So it is with a "
-    "stiffness in lbf/in and a mass in lb: divide the mass by 386",
+    "stiffness in lbf/in and a mass in lb: divide the mass by 386"
 }
 
 FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out

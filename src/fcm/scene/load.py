@@ -32,9 +32,9 @@ from fcm.scene.linear import (
     read_output,
     reported_of,
     with_base,
+    with_exact_rigid_modes,
     with_modes,
     without_others,
-    without_rounding,
 )
 from fcm.scene.mistuning import KEY as MISTUNING
 from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_sweep, whole_ring
@@ -329,7 +329,7 @@ def _parts(
     if matrices is not None:
         parts, notes = with_modes(top, parts, matrices, output, ends, unit)
     else:
-        parts, notes = without_rounding(with_base(parts), ends, unit)
+        parts, notes = with_exact_rigid_modes(with_base(parts), ends, unit)
         notes = [*modal["notes"], *notes]
     notes = [*notes, *notes_of_shares(parts["contact"])]
     if not cyclic:

@@ -8,6 +8,7 @@ that readers of one's own know, see `fcm.scene.readers`.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from fcm.scene.npz_file import Arrays, read_npz
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.readers import own_endings, own_reader, read_own
 
+Reader = Callable[[Path, str, Files], dict[str, Labelled]]
 ENDINGS = (
     *(".npz", ".mat", ".h5", ".hdf5", ".mtx", ".sti", ".mas", ".pch", ".op4"),
     *(".hb", ".rsa", ".rua", ".matrix"),
@@ -118,16 +120,9 @@ def _from_mtx(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
     return {chosen or "matrix": Labelled(read_matrix_market(path, files))}
 
 
-def _from_calculix(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
-    return read_calculix(path, files.largest)
-
-
-def _from_dmig(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
-    return read_dmig(path, files.largest)
-
-
-def _from_harwell_boeing(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
-    return read_harwell_boeing(path, files.largest)
+def _of_program(read: Callable[[Path, int], dict[str, Labelled]]) -> Reader:
+    """The reader of a finite-element program's files, which are read up to a size."""
+    return lambda path, _chosen, files: read(path, files.largest)
 
 
 def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
@@ -187,13 +182,13 @@ def _matrix(found: Any, path: str, files: Files) -> Any:
     return matrix
 
 
-_READERS = {
+_READERS: dict[str, Reader] = {
     ".npz": _from_npz,
     ".mtx": _from_mtx,
     **dict.fromkeys((".mat", ".h5", ".hdf5", ".op4"), _from_others),
-    **dict.fromkeys((".sti", ".mas"), _from_calculix),
-    ".pch": _from_dmig,
-    **dict.fromkeys((".hb", ".rsa", ".rua", ".matrix"), _from_harwell_boeing),
+    **dict.fromkeys((".sti", ".mas"), _of_program(read_calculix)),
+    ".pch": _of_program(read_dmig),
+    **dict.fromkeys((".hb", ".rsa", ".rua", ".matrix"), _of_program(read_harwell_boeing)),
 }
 
 

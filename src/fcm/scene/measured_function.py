@@ -21,7 +21,7 @@ from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.measured_units import force_unit, length_unit, motion_unit, ratio_of
 from fcm.scene.names import motion_of
-from fcm.scene.uff_functions import Axis, Function, Place
+from fcm.scene.uff_functions import Axis, Function, Location
 from fcm.scene.uff_qualifiers import UNKNOWN, Qualifiers
 from fcm.units import PER_TIME, QUANTITIES
 
@@ -69,8 +69,8 @@ def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit
         value=columns["amplitude"] * np.exp(1j * (np.zeros_like(omega) if phase is None else phase)),
         phased=phase is not None,
         per_reference=bool(lower),
-        response=Place(),
-        reference=Place(),
+        response=Location(),
+        reference=Location(),
         ordinate=Axis("", unit),
         denominator=Axis(),
         system=None,
@@ -78,198 +78,172 @@ def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit
     )
 
 
-class _Told:
-    """A function beside its measurement; collects mistakes and notes."""
+class ComparedFile(NamedTuple):
+    """A file of measured data beside the scene it is compared with; takes mistakes and notes on it."""
 
-    def __init__(self, name: str, wrong: Callable[[str, str], None], noted: list[str]) -> None:
-        self.name = name
-        self.wrong = wrong
-        self.noted = noted
+    name: str
+    scene: Surroundings
+    excitation: Excitation | None
+    wrong: Callable[[str, str], None]  # takes a key and what is wrong there
 
     def mistake(self, what: str, key: str = "file") -> None:
         self.wrong(key, f"{quoted(self.name)} {what}")
 
     def note(self, what: str) -> None:
-        self.noted.append(f"fit: {self.name} {what}")
+        self.scene.noted.append(f"fit: {self.name} {what}")
 
     def ask(self, what: str) -> None:
-        self.noted.append(Question(f"fit: {self.name} {what}"))
+        self.scene.noted.append(Question(f"fit: {self.name} {what}"))
 
     def note_once(self, what: str) -> None:
         """Notes what is true of all files."""
-        if (said := f"fit: {what}") not in self.noted:
-            self.noted.append(said)
+        if (said := f"fit: {what}") not in self.scene.noted:
+            self.scene.noted.append(said)
 
 
-def compare(
-    function: Function,
-    name: str,
-    dof: str,
-    quantity: str,
-    excitation: Excitation | None,
-    scene: Surroundings,
-    wrong: Callable[[str, str], None],
-) -> Scale:
+def compare(file: ComparedFile, function: Function, dof: str, quantity: str) -> Scale:
     """The quantity and the factor of a function's values; mistakes and notes on what does not agree.
 
-    Parameters
-    ----------
-    name : of the file
-    dof, quantity : of the measurement; the quantity is empty where the scene does not say it
-    wrong : takes a key and what is wrong there
+    dof and quantity are of the measurement; the quantity is empty where the scene does not say it.
     """
-    told, units = _Told(name, wrong, scene.noted), scene.units
-    _compare_places(told, function, dof, excitation, scene.dofs)
+    _compare_places(file, function, dof)
     upper, lower = ratio_of(function.ordinate.unit)
     ordinate = function.ordinate._replace(unit=upper)
     if function.unknown_unit:
-        told.ask(f"has frequencies in {quoted(function.unknown_unit)}, taken for Hz. Are they?")
-    found = _quantity(told, ordinate, dof, quantity)
-    factor = _factor(told, ordinate, dof, found, units, function.system)
+        file.ask(f"has frequencies in {quoted(function.unknown_unit)}, taken for Hz. Are they?")
+    found = _quantity(file, ordinate, dof, quantity)
+    factor = _factor(file, ordinate, dof, found, function.system)
     if not function.of_table:
-        factor *= _of_qualifiers(told, function)
+        factor *= _of_qualifiers(file, function)
     if function.per_reference:
-        factor /= _reference_factor(told, function, lower, excitation, units)
+        factor /= _reference_factor(file, function, lower)
     if not function.phased and not function.of_table:
-        told.note("has no phase: a displacement is taken as half the peak-to-peak value")
+        file.note("has no phase: a displacement is taken as half the peak-to-peak value")
     return Scale(found, factor)
 
 
-def _of_qualifiers(told: _Told, function: Function) -> float:
+def _of_qualifiers(file: ComparedFile, function: Function) -> float:
     """By what amplitudes are multiplied to be half of peak to peak, as dataset 1858 says."""
     known, spectrum = function.qualifiers or Qualifiers(), not function.per_reference
     if fault := known.fault(spectrum):
-        told.mistake(fault)
+        file.mistake(fault)
         return 1.0
     if known.damps:
-        told.note(
+        file.note(
             "was measured with an exponential window (dataset 1858), which adds damping: a fit takes it for "
             "that of the structure"
         )
     if not spectrum:
         return 1.0
     if known.scale == UNKNOWN:
-        told.ask(
+        file.ask(
             "does not say whether its amplitudes are peak values or RMS (dataset 1858): taken for peak "
             "values. Are they? RMS are 0.707 of these: export peak values, or that dataset, too"
         )
     elif known.factor() != 1.0:
-        told.note("has RMS amplitudes (dataset 1858), multiplied by the square root of 2")
+        file.note("has RMS amplitudes (dataset 1858), multiplied by the square root of 2")
     return known.factor()
 
 
-def force_factor(
-    unit: str,
-    name: str,
-    excitation: Excitation | None,
-    scene: Surroundings,
-    wrong: Callable[[str, str], None],
-) -> float:
+def force_factor(file: ComparedFile, unit: str) -> float:
     """By what a column of forces, or of accelerations of the base, is multiplied to be those of the scene."""
-    told, units = _Told(name, wrong, scene.noted), scene.units
-    if excitation is not None and excitation.base:
-        return _factor(told, Axis("", unit), "", "acceleration", units, None)
+    units = file.scene.units
+    if file.excitation is not None and file.excitation.base:
+        return _factor(file, Axis("", unit), "", "acceleration", None)
     if unit in ("", units[1]):
         return 1.0
     if (size := force_unit(unit)) is None:
-        told.mistake(f"has levels in {quoted(unit)}, which is no known unit of force", "level")
+        file.mistake(f"has levels in {quoted(unit)}, which is no known unit of force", "level")
         return 1.0
-    return _converted(told, size, unit, force_unit(units[1]), units[1], "N")
+    return _converted(file, size, unit, force_unit(units[1]), units[1], "N")
 
 
-def _compare_places(
-    told: _Told, function: Function, dof: str, excitation: Excitation | None, dofs: Sequence[str]
-) -> None:
+def _compare_places(file: ComparedFile, function: Function, dof: str) -> None:
     """Ask where node and direction, or the name, are those of another degree of freedom."""
+    excitation = file.excitation
     pairs = [("the response at", "the measurement is at", function.response, dof)]
     if function.per_reference and excitation is not None and excitation.dof:
         pairs.append(("a force at", "the force of the scene is at", function.reference, excitation.dof))
     for what, own, place, name in pairs:
-        if other := _elsewhere(place, name, dofs):
-            told.ask(f"has {what} {other}, and {own} {name}. Is it the right file?")
+        if other := _elsewhere(place, name, file.scene.dofs):
+            file.ask(f"has {what} {other}, and {own} {name}. Is it the right file?")
 
 
-def _elsewhere(place: Place, dof: str, dofs: Sequence[str]) -> str:
+def _elsewhere(place: Location, dof: str, dofs: Sequence[str]) -> str:
     """Where a place is, if it is another degree of freedom by node and direction, or by name; else empty."""
     if motion_of(dof):
         return place.dof if place.dof != motion_of(dof) else ""
     return place.entity if place.entity != dof and place.entity in dofs else ""
 
 
-def _quantity(told: _Told, ordinate: Axis, dof: str, given: str) -> str:
+def _quantity(file: ComparedFile, ordinate: Axis, dof: str, given: str) -> str:
     """Measured quantity, as the file declares it by type or unit; what contradicts the scene is a mistake."""
     unit = motion_unit(ordinate.unit)
     if ordinate.what and ordinate.what not in QUANTITIES:
-        told.mistake(
+        file.mistake(
             f"says that it is of {ordinate.what}, and a fit is to {given or 'the motion'} at {quoted(dof)}: "
             "displacement, velocity or acceleration"
         )
         return given or "displacement"
     if ordinate.what and unit and unit.quantity != ordinate.what:
-        told.mistake(f"says that it is {ordinate.what}, in {ordinate.unit}, the unit of {unit.quantity}")
+        file.mistake(f"says that it is {ordinate.what}, in {ordinate.unit}, the unit of {unit.quantity}")
     found = ordinate.what or (unit.quantity if unit else "")
     if found and given and found != given:
-        told.wrong("quantity", f"is {quoted(given)}, and {quoted(told.name)} says that it is {quoted(found)}")
+        file.wrong("quantity", f"is {quoted(given)}, and {quoted(file.name)} says that it is {quoted(found)}")
     if unit and unit.angular != is_rotation(dof):
         kinds = ["a displacement", "a rotation"]
         kinds = kinds if unit.angular else kinds[::-1]
-        told.mistake(f"is in {ordinate.unit}, the unit of {kinds[1]}, and {quoted(dof)} is {kinds[0]}")
+        file.mistake(f"is in {ordinate.unit}, the unit of {kinds[1]}, and {quoted(dof)} is {kinds[0]}")
     if not found and not given:
-        told.ask("does not say what its values are of: are they displacements? Say it by quantity")
+        file.ask("does not say what its values are of: are they displacements? Say it by quantity")
     return found or given or "displacement"
 
 
 def _factor(
-    told: _Told,
-    ordinate: Axis,
-    dof: str,
-    quantity: str,
-    units: tuple[str, str],
-    system: tuple[float, float] | None,
+    file: ComparedFile, ordinate: Axis, dof: str, quantity: str, system: tuple[float, float] | None
 ) -> float:
     """By what values of the file are multiplied to be in the unit of the scene."""
+    units = file.scene.units
     turning, end = is_rotation(dof), PER_TIME[quantity]
     own = f"rad{end}" if turning else f"{units[0]}{end}" if units[0] else ""
     known, size, label = motion_unit(ordinate.unit), None, ordinate.unit
     if known is None and label:
-        told.ask(f"is in {quoted(label)}, which is not known: taken for {own or 'that of the scene'}")
+        file.ask(f"is in {quoted(label)}, which is not known: taken for {own or 'that of the scene'}")
         return 1.0
     if known:
         size = known.size
     elif system and not turning:
         size, label = system[0], f"m{end}" if system[0] == 1.0 else f"units of {system[0]:g} m{end}"
-    return _converted(told, size, label, 1.0 if turning else length_unit(units[0]), own, f"m{end}")
+    return _converted(file, size, label, 1.0 if turning else length_unit(units[0]), own, f"m{end}")
 
 
-def _reference_factor(
-    told: _Told, function: Function, lower: str, excitation: Excitation | None, units: tuple[str, str]
-) -> float:
+def _reference_factor(file: ComparedFile, function: Function, lower: str) -> float:
     """By what the reference is multiplied to be in the unit of the scene; a mistake if it is another one."""
-    denominator = function.denominator
+    denominator, excitation, units = function.denominator, file.excitation, file.scene.units
     if excitation is None:
-        told.mistake("has responses per unit of force, which needs a scene with one [[force]] or a [base]")
+        file.mistake("has responses per unit of force, which needs a scene with one [[force]] or a [base]")
         return 1.0
     if denominator.what and excitation.base != (denominator.what not in FORCES):
         driven = "the acceleration of its base" if excitation.base else "a [[force]]"
-        told.mistake(f"is per unit of {denominator.what}, and the scene is driven by {driven}")
+        file.mistake(f"is per unit of {denominator.what}, and the scene is driven by {driven}")
         return 1.0
     if excitation.base:
         if denominator.what not in ("", "acceleration"):
-            told.mistake(f"is per unit of {denominator.what}, and the scene has the acceleration of its base")
-        return _factor(told, denominator, "", "acceleration", units, function.system)
+            file.mistake(f"is per unit of {denominator.what}, and the scene has the acceleration of its base")
+        return _factor(file, denominator, "", "acceleration", function.system)
     label = denominator.unit or lower
     size = force_unit(label) if label else (function.system[1] if function.system else None)
     if size is None and label:
         own = units[1] or "that of the scene"
-        told.ask(f"is per unit of force in {quoted(label)}, which is not known: taken for {own}")
+        file.ask(f"is per unit of force in {quoted(label)}, which is not known: taken for {own}")
         return 1.0
     if not label and size is not None:
         label = "N" if size == 1.0 else f"units of {size:g} N"
-    return _converted(told, size, label, force_unit(units[1]), units[1], "N")
+    return _converted(file, size, label, force_unit(units[1]), units[1], "N")
 
 
 def _converted(
-    told: _Told, size: float | None, label: str, own: float | None, unit: str, plain: str
+    file: ComparedFile, size: float | None, label: str, own: float | None, unit: str, plain: str
 ) -> float:
     """A unit of the file over one of the scene, told where they differ; 1 where one is not known.
 
@@ -278,13 +252,13 @@ def _converted(
     if size is None:
         return 1.0
     if own is None and isclose(size, 1.0):
-        told.note_once(f"measured in {plain}: the scene, without known [units], has to be in these, too")
+        file.note_once(f"measured in {plain}: the scene, without known [units], has to be in these, too")
         return 1.0
     if own is None:
-        told.ask(f"is in {label}: is the scene, too? With its [units] of length and force it is converted")
+        file.ask(f"is in {label}: is the scene, too? With its [units] of length and force it is converted")
         return 1.0
     if not isclose(size, own):
-        told.note(f"is in {label}, converted to {unit}")
+        file.note(f"is in {label}, converted to {unit}")
     return size / own
 
 

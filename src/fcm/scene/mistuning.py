@@ -23,7 +23,7 @@ from fcm.scene.section import Part, Parts, Section
 from fcm.scene.sweep import SweptKey, draws_in
 
 if TYPE_CHECKING:
-    from fcm.scene.structure_table import Matrices
+    from fcm.scene.structure_table import StructureMatrices
 
 KEY = "cyclic.mistuning"
 DRAW = f"{KEY}.draw"
@@ -96,7 +96,7 @@ def drawn_rings(parts: Parts) -> list[SweptKey]:
 
 
 def read_blade(
-    top: Section, files: Files, cyclic: list[Part], dofs: Names | None, matrices: Matrices | None
+    top: Section, files: Files, cyclic: list[Part], dofs: Names | None, matrices: StructureMatrices | None
 ) -> None:
     """Note in the draft of a mistuned ring what of a sector is its blade: "rows", or "stiffness"."""
     found = cyclic[0].get("mistuning") if cyclic else None
@@ -140,7 +140,7 @@ def _rows(table: Section, dofs: Names | None) -> list[int] | None:
     return sorted(rows) if table.mistakes.count == before else None
 
 
-def _check_apart(table: Section, matrices: Matrices, rows: list[int]) -> None:
+def _check_apart(table: Section, matrices: StructureMatrices, rows: list[int]) -> None:
     """Note a blade that is coupled to the next sector, whose stiffness is then not its own."""
     if matrices.coupling is None:
         return
@@ -361,7 +361,7 @@ def mistuned_modes(modal: Part, whole: Part, unit: float) -> Part:
     }
 
 
-def turned(draft: Part, whole: Part) -> list[Part]:
+def standing_drafts(draft: Part, whole: Part) -> list[Part]:
     """A force on all sectors, which travels around, as two drafts that stand: that of the sines, and cosines.
 
     sin(h w t + p + h k phi) = cos(h k phi) sin(h w t + p) + sin(h k phi) sin(h w t + p + pi / 2)

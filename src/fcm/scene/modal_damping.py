@@ -7,7 +7,7 @@ import numpy as np
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.scene.options import MESSAGES
-from fcm.scene.structure_table import Matrices
+from fcm.scene.structure_table import StructureMatrices
 from fcm.structure.damping import (
     DampedModes,
     check_dissipates,
@@ -35,7 +35,7 @@ class Damping(Frozen):
 
 
 def damping_of(
-    matrices: Matrices,
+    matrices: StructureMatrices,
     found: Reduced,
     loads: FloatArray,
     springs: FloatArray,

@@ -16,14 +16,7 @@ from fcm.scene.files import DataFileError, Files
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
 from fcm.scene.number_text import fault_of_number, number_in
-from fcm.scene.pair_file import (
-    COORDINATES,
-    NODES,
-    NUMBERS,
-    PairTable,
-    read_numbers_of_pairs,
-    read_pair_table,
-)
+from fcm.scene.pair_file import COORDINATES, NODES, NUMBERS, PairTable, read_numbers_of_pairs, read_pair_table
 from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import Section, described
 

@@ -12,14 +12,14 @@ from fcm.scene.modal_damping import Damping, damping_of
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.scene.rules import RULES
 from fcm.scene.section import Section
-from fcm.scene.structure_table import Matrices
+from fcm.scene.structure_table import StructureMatrices
 from fcm.structure.eigen import StructureError, unit_columns
 from fcm.structure.reduced import ModeSelection, Reduced, reduced
 
 
 def modal_of_matrices(
     top: Section,
-    matrices: Matrices,
+    matrices: StructureMatrices,
     loads: FloatArray,
     springs: FloatArray,
     outputs: list[int],
@@ -71,7 +71,7 @@ def modal_of_matrices(
     )
 
 
-def _same(matrices: Matrices) -> bool:
+def _same(matrices: StructureMatrices) -> bool:
     """Whether stiffness and mass are one matrix, with entries beside its diagonal.
 
     Then every mode has 1 rad/s, and no structure but single masses on springs has that.
@@ -81,7 +81,7 @@ def _same(matrices: Matrices) -> bool:
     return bool(beside_diagonal and abs(K - M).max() == 0.0)
 
 
-def _exchanged_mesh(matrices: Matrices, ends: tuple[float, float]) -> float:
+def _exchanged_mesh(matrices: StructureMatrices, ends: tuple[float, float]) -> float:
     """Detects exchanged matrices of a mesh, as `exchanged`, before its modes are computed.
 
     By Rayleigh's quotient the highest mode is not below that of any row alone. So of matrices that are in
@@ -95,7 +95,7 @@ def _exchanged_mesh(matrices: Matrices, ends: tuple[float, float]) -> float:
     return exchanged(matrices, np.zeros(0), ends)
 
 
-def exchanged(matrices: Matrices, kept: FloatArray, ends: tuple[float, float]) -> float:
+def exchanged(matrices: StructureMatrices, kept: FloatArray, ends: tuple[float, float]) -> float:
     """A frequency [rad/s] that a mode near the range has with stiffness and mass in each other's place.
 
     Only where the structure as it is given has no mode near the range or above it: the highest is the
@@ -130,7 +130,7 @@ def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]
     return np.concatenate((loads, unit_columns(len(loads), outputs[:few])), axis=1), outputs[few:]
 
 
-def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
+def at_many(matrices: StructureMatrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
     """Note on outputs whose own flexibility is not kept, where some is."""
     if not (count > LIMITS.outputs and any(aside)):
         return []
@@ -162,7 +162,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
     return said
 
 
-def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
+def _kept(matrices: StructureMatrices, found: Reduced, damping: Damping) -> str:
     """Note on what is kept of the structure, and on its error."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
     verb = "is" if found.kept == 1 else "are"
@@ -183,7 +183,7 @@ def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
     return f"{text}. {how_far_off(matrices, found.bound, found.damping, damping.lost)}"
 
 
-def how_far_off(matrices: Matrices, bound: float, damping: float, lost: float) -> str:
+def how_far_off(matrices: StructureMatrices, bound: float, damping: float, lost: float) -> str:
     """Clause on the error of receptances and, with one damping ratio for all modes, of resonance heights.
 
     lost is the part that the damping of rigid-body modes has in it (`modal_damping.Damping`), which is told

@@ -13,12 +13,12 @@ from fcm.scene.errors import counted
 from fcm.scene.modal_damping import Damping, damping_of
 from fcm.scene.reduction import at_many, how_far_off, of_rounding, split
 from fcm.scene.section import Section
-from fcm.scene.structure_table import Matrices
+from fcm.scene.structure_table import StructureMatrices
 from fcm.structure.eigen import StructureError
 from fcm.structure.reduced import ModeSelection, Reduced, reduced
 
 
-class Diameter(Frozen):
+class DiameterModes(Frozen):
     """The modes of one nodal diameter."""
 
     number: int
@@ -29,7 +29,7 @@ class Diameter(Frozen):
 class LoadedRing(Frozen):
     """The matrices of a ring's sector, and what acts on it."""
 
-    matrices: Matrices
+    matrices: StructureMatrices
     sectors: int
     pushed: FloatArray  # (rows of two sectors, load) directions of contacts and forces
     springs: FloatArray  # (load,) stiffness of contacts along theirs
@@ -72,18 +72,18 @@ def modal_of_ring(
     return draft, [first, *at_many(matrices, len(outputs), _error_at_other_rows(diameters), lost), *others]
 
 
-def all_alike(matrices: Matrices) -> Matrices:
+def all_alike(matrices: StructureMatrices) -> StructureMatrices:
     """The matrices of a sector whose neighbours move as it does."""
     return _at_diameter(matrices, 1.0)
 
 
-def _error_at_other_rows(diameters: list[Diameter]) -> tuple[float, float]:
+def _error_at_other_rows(diameters: list[DiameterModes]) -> tuple[float, float]:
     """The greatest of all diameters."""
     own, damped = zip(*(one.found.other_rows for one in diameters), strict=True)
     return max(own), max(damped)
 
 
-def _at_diameter(matrices: Matrices, turn: complex) -> Matrices:
+def _at_diameter(matrices: StructureMatrices, turn: complex) -> StructureMatrices:
     """The matrices of a sector whose next one moves as itself, times a factor of magnitude 1."""
     if matrices.coupling is None:
         return matrices
@@ -91,7 +91,7 @@ def _at_diameter(matrices: Matrices, turn: complex) -> Matrices:
     return replace(matrices, K=(matrices.K + K).tocsc(), M=(matrices.M + M).tocsc())
 
 
-def _plain(matrices: Matrices, loads: ComplexArray, standing: bool) -> tuple[Matrices, Any]:
+def _plain(matrices: StructureMatrices, loads: ComplexArray, standing: bool) -> tuple[StructureMatrices, Any]:
     """Real arrays where they are real: of standing waves, and of couplings that turn nothing."""
     imaginary = any(np.any(matrix.imag.data) for matrix in (matrices.K, matrices.M)) or loads.imag.any()
     if standing or not imaginary:
@@ -100,21 +100,23 @@ def _plain(matrices: Matrices, loads: ComplexArray, standing: bool) -> tuple[Mat
 
 
 def _modes(
-    matrices: Matrices,
+    matrices: StructureMatrices,
     loads: Any,
     springs: FloatArray,
     number: int,
     outputs: list[int],
     ends: tuple[float, float],
-) -> Diameter:
+) -> DiameterModes:
     directions, others = split(loads, outputs)
     top = ends[1] if np.isfinite(ends[1]) else 0.0
     selection = ModeSelection(matrices.modes, matrices.flexibility, others)
     found = reduced(matrices.K, matrices.M, directions, top, selection)
-    return Diameter(number, found, damping_of(matrices, found, loads, springs, outputs, ends))
+    return DiameterModes(number, found, damping_of(matrices, found, loads, springs, outputs, ends))
 
 
-def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, float]) -> list[str]:
+def _notes(
+    matrices: StructureMatrices, diameters: list[DiameterModes], ends: tuple[float, float]
+) -> list[str]:
     """Notes on what is kept of the structure, on its error, and on what is amiss."""
     all_found = [one.found for one in diameters]
     kept = sorted({one.kept for one in all_found})

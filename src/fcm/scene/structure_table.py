@@ -23,10 +23,10 @@ from fcm.scene.options import TOLERANCES
 from fcm.scene.row_names import in_order, labels_of, row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section, written_as
-from fcm.structure.eigen import StructureError, system_of
+from fcm.structure.eigen import StructureError, factored_structure
 
 
-class Matrices(Frozen):
+class StructureMatrices(Frozen):
     """Contents of a [structure] table."""
 
     dofs: Names
@@ -49,7 +49,7 @@ class Coupling(Frozen):
     M: Any
 
 
-def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices | None]:
+def read_structure(top: Section, files: Files) -> tuple[Names | None, StructureMatrices | None]:
     """The names of the rows, and all that the table says; None for what is mistaken."""
     section = top.table("structure", "")
     if section is None:
@@ -87,7 +87,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
         return dofs, None
     files.masses.update(translated(M, dofs))
     files.meshes.append(is_mesh(K, dofs))
-    return dofs, Matrices(
+    return dofs, StructureMatrices(
         dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
 
@@ -155,7 +155,7 @@ def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
 def _check_definite(section: Section, K: Any, M: Any) -> None:
     """Note that matrices are not those of a structure."""
     try:
-        system_of(symmetric(K), symmetric(M))
+        factored_structure(symmetric(K), symmetric(M))
     except StructureError as error:
         section.wrong("", str(error))
 

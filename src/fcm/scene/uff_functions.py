@@ -48,7 +48,7 @@ ENTITIES = ((31, 41, 51, 55), (56, 66, 76, 80))  # columns of name, node and dir
 UNITS_AT = 46  # columns before the unit of an axis: a type, three exponents, the axis' label
 
 
-class Place(NamedTuple):
+class Location(NamedTuple):
     """Where a response or its reference is: a name, a node, and a direction with its sign."""
 
     entity: str = ""
@@ -85,8 +85,8 @@ class Function(Frozen):
     value: ComplexArray  # along the positive axes
     phased: bool
     per_reference: bool  # whether values are those per unit of the reference
-    response: Place
-    reference: Place
+    response: Location
+    reference: Location
     ordinate: Axis
     denominator: Axis
     system: tuple[float, float] | None  # unit of length [m] and of force [N] of the whole file
@@ -158,7 +158,7 @@ def _line(one: Dataset, at: int) -> str:
     return one.lines[at] if at < len(one.lines) else ""
 
 
-def _places(one: Dataset) -> tuple[Place, Place]:
+def _places(one: Dataset) -> tuple[Location, Location]:
     """Response and reference; by words, or by columns where a name has a space or touches its node."""
     text = _line(one, FUNCTION)
     words = text.split()
@@ -167,7 +167,8 @@ def _places(one: Dataset) -> tuple[Place, Place]:
         parts = []
     parts = parts or [[text[a:b], text[b:c], text[c:d]] for a, b, c, d in ENTITIES]
     first, second = (
-        Place(_said(entity), _whole(node) or 0, _whole(direction) or 0) for entity, node, direction in parts
+        Location(_said(entity), _whole(node) or 0, _whole(direction) or 0)
+        for entity, node, direction in parts
     )
     return first, second
 

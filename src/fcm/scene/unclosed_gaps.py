@@ -67,23 +67,23 @@ def questions_of_gaps(scene: Scene) -> list[str]:
         return []
     if varies(scene, ".n_0", ".gap", ".amplitude") or varies(scene, "level"):
         return []
-    reach = _reach(scene)
-    far = np.flatnonzero((gap > MESSAGES.far_gap * reach) & (reach > 0.0))
+    most = _amplitude_bounds(scene)
+    far = np.flatnonzero((gap > MESSAGES.far_gap * most) & (most > 0.0))
     if not far.size:
         return []
-    first = int(far[np.argmax(gap[far] / reach[far])])
+    first = int(far[np.argmax(gap[far] / most[far])])
     said = f'contact "{contacts[first].name}": is a gap of {gap[first]:.6g} {length} (-n_0 / k_v) right?'
     meant = f". If it is in {SHORTER[length]}, divide it by 1000" if length in SHORTER else ""
     others = f". So of {far.size - 1} more" if far.size > 1 else ""
     return [
         Question(
-            f"{said} Forces move its faces by {reach[first]:.2g} {length} at most, so that it never closes"
+            f"{said} Forces move its faces by {most[first]:.2g} {length} at most, so that it never closes"
             f"{meant}{others}"
         )
     ]
 
 
-def _reach(scene: Scene) -> FloatArray:
+def _amplitude_bounds(scene: Scene) -> FloatArray:
     """Bounds (contact,) of the amplitude along the normals, without contact where there is a gap."""
     modal = scene.modal
     mass_one = modal.shapes / np.sqrt(modal.mass)[:, None]

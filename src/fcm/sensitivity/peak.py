@@ -25,7 +25,7 @@ STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))  # of the first derivative, of the 
 ONE_SIDED = ((0, -25.0 / 12.0), (1, 4.0), (2, -3.0), (3, 4.0 / 3.0), (4, -0.25))  # for numbers at a limit
 
 
-class Kind(Enum):
+class PeakKind(Enum):
     """Kind of a peak, which decides how its derivatives are computed."""
 
     SMOOTH = "smooth"
@@ -79,7 +79,7 @@ class Peak:
     ) -> None:
         self.options = options
         self.dof, self.newton, self.edge = dof, Newton(system.new_balance()), edge
-        self.kind, self.margin, self.curvature = Kind.UNKNOWN, -1, np.nan
+        self.kind, self.margin, self.curvature = PeakKind.UNKNOWN, -1, np.nan
         self.why = Unknown.NOT_SOLVED  # where the kind is unknown
         balance = self.newton.problem
         balance.evaluate_scale(z)
@@ -95,7 +95,7 @@ class Peak:
         if point is None:
             return
         self.z = point
-        self.kind, self.why = (Kind.EDGE, Unknown.NOTHING) if edge else self._kind()
+        self.kind, self.why = (PeakKind.EDGE, Unknown.NOTHING) if edge else self._kind()
 
     def solved(self, newton: Newton, guess: FloatArray) -> FloatArray | None:
         """The point of a curve in the plane across the direction through the guess; tangent is that there."""
@@ -116,7 +116,7 @@ class Peak:
         guess: FloatArray = self.z + length * self.scale * self.unit
         return guess
 
-    def _kind(self) -> tuple[Kind, Unknown]:
+    def _kind(self) -> tuple[PeakKind, Unknown]:
         """Find the peak next to where it is said to be, and what it is, or why that is unknown."""
         before, after = (
             self._at_length(-self.options.side_distance),
@@ -124,16 +124,16 @@ class Peak:
         )
         size = self._height(self.newton, self.z)
         if before is None or after is None:
-            return Kind.UNKNOWN, Unknown.ONE_SIDED
+            return PeakKind.UNKNOWN, Unknown.ONE_SIDED
         flat = max(abs(before[0]), abs(after[0])) < self.options.flat_slope * size
         changed = np.flatnonzero(before[1] * after[1] < 0.0)
         if flat or not changed.size:  # a steep one without a corner is narrow
             found = self._climb()
-            return (Kind.SMOOTH, Unknown.NOTHING) if found else (Kind.UNKNOWN, Unknown.NO_MAXIMUM)
+            return (PeakKind.SMOOTH, Unknown.NOTHING) if found else (PeakKind.UNKNOWN, Unknown.NO_MAXIMUM)
         if changed.size > 1:
-            return Kind.UNKNOWN, Unknown.SEVERAL
+            return PeakKind.UNKNOWN, Unknown.SEVERAL
         self.margin = int(changed[0])
-        return Kind.CORNER, Unknown.NOTHING
+        return PeakKind.CORNER, Unknown.NOTHING
 
     def _at_length(self, length: float) -> tuple[float, FloatArray] | None:
         """Slope and margins at a length along the curve."""
@@ -174,9 +174,9 @@ class Peak:
 
     def derivatives(self, rates: Rates, moved: ParameterStencil) -> tuple[float, float]:
         """Derivatives of the height and the frequency of the peak by a number."""
-        if self.kind is Kind.UNKNOWN:
+        if self.kind is PeakKind.UNKNOWN:
             return np.nan, np.nan
-        if self.kind is Kind.CORNER:
+        if self.kind is PeakKind.CORNER:
             return self._of_corner(moved)
         balance = self.newton.problem
         assert isinstance(balance, Balance)
@@ -184,7 +184,7 @@ class Peak:
         across = lu_solve(self._factors, np.append(-R_p / self.scale[:-1], 0.0)) * self.scale
         balance.evaluate_outputs(self.z, np.ascontiguousarray(across))
         height = float(growth_of(balance, X)[self.dof] + balance.growth[self.dof])
-        if self.kind is Kind.EDGE:
+        if self.kind is PeakKind.EDGE:
             return height, 0.0
         alpha = -self._slope_by_number(moved) / self.curvature
         return height, float(across[-1] + alpha * self.unit[-1] * self.scale[-1])

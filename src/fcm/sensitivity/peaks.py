@@ -26,7 +26,7 @@ from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import rates_of
-from fcm.sensitivity.peak import Kind, Peak, Unknown, moved_by
+from fcm.sensitivity.peak import Peak, PeakKind, Unknown, moved_by
 
 
 class Sensitivities(Frozen):
@@ -36,7 +36,7 @@ class Sensitivities(Frozen):
     values: FloatArray  # (number,)
     height: FloatArray  # (dof, number) derivative of the peak's height
     frequency: FloatArray  # (dof, number) and of its frequency [rad/s]
-    kind: tuple[Kind, ...]  # (dof,)
+    kind: tuple[PeakKind, ...]  # (dof,)
     why: tuple[Unknown, ...]  # (dof,) of derivatives that are unknown by every number
     why_by_number: tuple[tuple[Unknown, ...], ...]  # (dof, number) of those of a known kind
 
@@ -44,7 +44,7 @@ class Sensitivities(Frozen):
 def numbers_of(scene: Scene) -> list[Number]:
     """The numbers of a scene by which peaks have derivatives: contacts, forces, loads, modes.
 
-    Contacts of one group are moved together. The scene is that of one curve, `settled`.
+    Contacts of one group are moved together. The scene is that of one curve, `unswept`.
     """
     assert scene.draft is not None
     parts = scene.draft.parts
@@ -71,7 +71,7 @@ def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:
     return [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
 
 
-def settled(scene: Scene) -> Scene:
+def unswept(scene: Scene) -> Scene:
     """The scene of one curve as if nothing had been swept: its values are those of the curve."""
     draft = scene.draft
     if not isinstance(draft, Draft):
@@ -98,7 +98,7 @@ def sensitivities(
     options : SensitivityOptions, optional
         Steps and tolerances.
     """
-    scene = settled(scene)
+    scene = unswept(scene)
     system = System(scene, harmonics)
     points = [Peak(system, d, z, edge, options) for d, z, edge in peaks]
     numbers = numbers_of(scene)
@@ -116,10 +116,10 @@ def sensitivities(
             found = height[point.dof, k], frequency[point.dof, k] = point.derivatives(rates, moved)
             if not np.isfinite(found).all():
                 why_by_number[point.dof][k] = Unknown.LOST
-    kind, why = [Kind.UNKNOWN] * dofs, [Unknown.AT_REST] * dofs
+    kind, why = [PeakKind.UNKNOWN] * dofs, [Unknown.AT_REST] * dofs
     for point in points:
         kind[point.dof], why[point.dof] = point.kind, point.why
-        if point.kind is Kind.UNKNOWN:
+        if point.kind is PeakKind.UNKNOWN:
             why_by_number[point.dof] = [Unknown.NOTHING] * len(numbers)
     values = np.array([number.value(scene) for number in numbers])
     keys = tuple(number.key for number in numbers)

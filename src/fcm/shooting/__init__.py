@@ -14,15 +14,7 @@ if TYPE_CHECKING:
     from fcm.shooting.residual import Shooting
     from fcm.shooting.trace import Branch, trace_orbits
 
-__all__ = [
-    "Branch",
-    "Orbit",
-    "OrbitProblem",
-    "Shooting",
-    "harmonic_state",
-    "periodic",
-    "trace_orbits",
-]
+__all__ = ["Branch", "Orbit", "OrbitProblem", "Shooting", "harmonic_state", "periodic", "trace_orbits"]
 
 _HOME = {
     "Branch": "trace",

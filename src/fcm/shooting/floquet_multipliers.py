@@ -7,11 +7,11 @@ import numpy.typing as npt
 
 from fcm.stability.disturbance import Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.segments import Segments, SegmentSequence
-from fcm.time_domain.system import System
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -19,7 +19,7 @@ ComplexArray = npt.NDArray[np.complex128]
 class Floquet:
     """Computes Floquet `multipliers` of motions of a scene at any frequency; a workspace."""
 
-    def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
+    def __init__(self, system: EquationsOfMotion, options: StabilityOptions = STABILITY) -> None:
         scene, unit = system.scene, 1.0 / np.sqrt(system.scene.modal.mass)
         held = [one.contact for one in scene.held if not one.open]
         contacts = (*scene.contacts, *held)
@@ -34,7 +34,7 @@ class Floquet:
             self.monodromy = Monodromy(stiffness, self.states)
         else:
             none = np.zeros(modal.frequency.size, dtype=bool)
-            modes = Modes(ports, modal.frequency, modal.damping, none)
+            modes = PortModes(ports, modal.frequency, modal.damping, none)
             self.monodromy = ManyMonodromy(modes, law, self.states)
 
     def multipliers(self, segments: Segments, duration: float) -> ComplexArray:
@@ -50,7 +50,7 @@ class Floquet:
         return np.full(len(matrix), np.inf, dtype=complex) if found is None else np.array(found)
 
 
-def floquet_of(system: System) -> Floquet:
+def floquet_of(system: EquationsOfMotion) -> Floquet:
     """The `Floquet` workspace of a system, one for all frequencies."""
     if "floquet" not in system.made:
         system.made["floquet"] = Floquet(system)

@@ -262,8 +262,8 @@ def _highest_level(one: System, omega: float, options: ShootingOptions = SHOOTIN
     from fcm.branches.linear_limits import highest_linear_limit
     from fcm.branches.options import LEVEL_CURVE
 
-    reach = solutions(one.with_harmonics(options.balance.guess_harmonics), omega).max_level
+    highest = solutions(one.with_harmonics(options.balance.guess_harmonics), omega).max_level
     return min(
         highest_linear_limit(one, omega),
-        reach if np.isfinite(reach) else LEVEL_CURVE.reach_factor * LEVEL_CURVE.clear_level,
+        highest if np.isfinite(highest) else LEVEL_CURVE.reach_factor * LEVEL_CURVE.clear_level,
     )

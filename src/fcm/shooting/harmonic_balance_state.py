@@ -13,17 +13,13 @@ from fcm.contact.closed_form import ClosedForm
 from fcm.harmonic_balance.contact_law import SingleHarmonicLaw
 from fcm.model.scene import Contact, FloatArray, Scene, has_friction
 from fcm.shooting.options import SHOOTING, ShootingOptions
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 def harmonic_state(
-    scene: Scene,
-    frequency: float,
-    amplitude: npt.ArrayLike,
-    phase: npt.ArrayLike,
-    mean: npt.ArrayLike,
+    scene: Scene, frequency: float, amplitude: npt.ArrayLike, phase: npt.ArrayLike, mean: npt.ArrayLike
 ) -> State:
     """The state at the forces' angle 0 of the motion mean + amplitude sin(omega t + phase) (section 4.3).
 
@@ -62,7 +58,7 @@ def harmonic_state(
     average = np.asarray(mean, dtype=np.float64)
     if not (np.isfinite(x).all() and np.isfinite(average).all()):
         raise SimulationError("the point of the response curve to start from is not finite")
-    system = System(scene, frequency)
+    system = EquationsOfMotion(scene, frequency)
     wave, steady = system.wave[0], system.static.copy()
     friction = np.zeros(len(scene.contacts))
     for j, contact in enumerate(scene.contacts):
@@ -101,11 +97,11 @@ def balance_solutions(
     if not (whole.modal.frequency.all() and whole.contacts):
         return [], True
     from fcm.branches.force_level import solutions
-    from fcm.harmonic_balance.system import System as Balanced
+    from fcm.harmonic_balance.system import System
 
     few = len(whole.contacts) < options.balance.many_contacts
     harmonics = options.balance.guess_harmonics if few else (1,)
-    balanced = Balanced(whole, harmonics, other_options=options.balance.others)
+    balanced = System(whole, harmonics, other_options=options.balance.others)
     balanced.work.poll = poll or balanced.work.poll
     found = solutions(balanced, frequency)
     states = [computed_state(scene, balanced.harmonics, z, options) for z in found.solutions]
@@ -130,7 +126,7 @@ def state_of(
 
     The contacts' forces on the balanced motion have more harmonics than that, and move the modes by them.
     """
-    system, highest = System(scene, float(z[-1])), options.balance.force_harmonics * max(harmonics)
+    system, highest = EquationsOfMotion(scene, float(z[-1])), options.balance.force_harmonics * max(harmonics)
     driven = list(system.harmonics)
     width = 2 + 4 * len(harmonics)
     wave = np.zeros((highest + 1, system.modes), dtype=np.complex128)  # modal forces
@@ -154,7 +150,7 @@ def state_of(
 
 
 def _modal(
-    system: System, wave: npt.NDArray[np.complex128], steady: FloatArray, friction: FloatArray
+    system: EquationsOfMotion, wave: npt.NDArray[np.complex128], steady: FloatArray, friction: FloatArray
 ) -> State:
     """State of the modes at the angle 0 under harmonic and steady modal forces."""
     modal, omega = system.scene.modal, system.omega
@@ -175,7 +171,7 @@ def _forces(
     contact: Contact, u: complex, v: complex, u_mean: float, v_mean: float
 ) -> tuple[tuple[complex, complex], tuple[float, float], float]:
     """Balanced friction and normal force of a contact: fundamentals, means, and friction at the angle 0."""
-    law = SingleHarmonicLaw(ClosedForm(), contact.mu, contact.k_u, contact.k_v, contact.n_0)
+    law = SingleHarmonicLaw(ClosedForm(), contact)
     x = np.array([u_mean, v_mean, u.real, u.imag, v.real, v.imag])
     law.evaluate(x, 0)
     mean_u, mean_v, *parts = (float(f) for f in law.force)

@@ -21,9 +21,9 @@ from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt
 from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.residual import Shot
 from fcm.shooting.traction_families import member_at_start
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 from fcm.units import spoken
 
 if TYPE_CHECKING:
@@ -179,10 +179,10 @@ def _corrected_states(
     if not (whole.modal.frequency.all() and whole.contacts):
         return
     from fcm.branches.force_level import solutions
-    from fcm.harmonic_balance.system import System as Balanced
+    from fcm.harmonic_balance.system import System
 
-    one = Balanced(whole, options.start.harmonics, other_options=options.balance.others)
-    more = Balanced(whole, options.start.corrected_harmonics)
+    one = System(whole, options.start.harmonics, other_options=options.balance.others)
+    more = System(whole, options.start.corrected_harmonics)
     newton = Newton(more.new_balance())
     one.work.poll = poll
     for solution in solutions(one, omega).solutions:
@@ -234,7 +234,7 @@ def _shot(
     """The motions that shooting finds from guesses."""
     for guess in guesses:
         try:
-            orbit = shoot(System(scene, omega), guess, poll, options)
+            orbit = shoot(EquationsOfMotion(scene, omega), guess, poll, options)
         except SimulationError:
             continue
         if orbit is not None:
@@ -250,7 +250,7 @@ def _from_rest(
 ) -> list[Orbit]:
     """The motion that a simulation from rest comes to; none if it comes to none and there are others."""
     try:
-        return [approached(System(scene, omega), poll, options)]
+        return [approached(EquationsOfMotion(scene, omega), poll, options)]
     except SimulationError:
         if others:
             return []
@@ -259,11 +259,11 @@ def _from_rest(
 
 def inner_resonances(scene: Scene) -> list[float]:
     """Natural frequencies inside the range, contacts all stuck and all open; none without a balance."""
-    from fcm.branches.force_level import resonances
-    from fcm.harmonic_balance.system import System as Balanced
+    from fcm.branches.force_level import linear_resonances
+    from fcm.harmonic_balance.system import System
 
     scene = scene.whole()
-    return resonances(Balanced(scene)) if scene.modal.frequency.all() and scene.contacts else []
+    return linear_resonances(System(scene)) if scene.modal.frequency.all() and scene.contacts else []
 
 
 def _add_distinct(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:

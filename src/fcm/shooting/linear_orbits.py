@@ -22,8 +22,8 @@ from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import unloaded
 from fcm.shooting.residual_traction import resting
 from fcm.signals import undisturbed
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 class LinearOrbit(Frozen):
@@ -45,7 +45,7 @@ def linear_motions(
     Their residual friction is the nearest to that of the scene's start, or just that.
     """
     whole = scene.whole()
-    system, count = System(whole, omega), len(whole.contacts)
+    system, count = EquationsOfMotion(whole, omega), len(whole.contacts)
     wanted = system.k_u * resting(whole)
     closed = (
         product((True, False), repeat=count) if count <= options.linear.max_combined else [(True,) * count]
@@ -65,7 +65,7 @@ def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
     """Guesses at a level of the forces: about rest with the contacts as they are there, then all stuck, then
     all open."""
     whole, computed = scene.whole(), scene.computed()
-    system, rest = System(whole, omega).at_level(level), unloaded(whole)
+    system, rest = EquationsOfMotion(whole, omega).at_level(level), unloaded(whole)
     at_rest = system.preload + system.stiffness * (system.normal @ rest.q) > 0.0
     for closed in (at_rest, np.ones_like(at_rest), np.zeros_like(at_rest)):
         stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(whole.contacts[j])]
@@ -77,7 +77,7 @@ def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
 
 
 def _motion(
-    system: System,
+    system: EquationsOfMotion,
     closed: npt.NDArray[np.bool_],
     wanted: FloatArray,
     as_started: bool,
@@ -105,7 +105,7 @@ def _motion(
 
 
 def linear_answer(
-    system: System, closed: npt.NDArray[np.bool_], stuck: list[int]
+    system: EquationsOfMotion, closed: npt.NDArray[np.bool_], stuck: list[int]
 ) -> tuple[npt.NDArray[np.complex128], FloatArray, FloatArray]:
     """The modes' harmonic answer (driven, mode), their mean without residual friction, what that adds."""
     modal, across, along = system.scene.modal, system.normal, system.tangential
@@ -125,7 +125,7 @@ def linear_answer(
 
 
 def _limits(
-    system: System,
+    system: EquationsOfMotion,
     closed: npt.NDArray[np.bool_],
     stuck: list[int],
     wave: npt.NDArray[np.complex128],
@@ -145,7 +145,7 @@ def _limits(
 
 
 def sticking(
-    system: System,
+    system: EquationsOfMotion,
     j: int,
     own: npt.NDArray[np.bool_],
     wave: npt.NDArray[np.complex128],
@@ -165,7 +165,7 @@ def sticking(
         yield row, _greatest_descent(system, swing) - constant
 
 
-def _greatest_descent(system: System, swing: npt.NDArray[np.complex128]) -> float:
+def _greatest_descent(system: EquationsOfMotion, swing: npt.NDArray[np.complex128]) -> float:
     """Depth below zero of the least value of Im(sum_h swing_h exp(i h theta)), swing (driven,)."""
     if swing.size == 1:
         return float(abs(swing[0]))

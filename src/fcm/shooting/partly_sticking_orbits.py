@@ -13,7 +13,7 @@ from itertools import combinations, product
 import numpy as np
 
 from fcm.frozen import Frozen
-from fcm.model.scene import FloatArray, Held, Scene, has_friction
+from fcm.model.scene import FloatArray, HeldContact, Scene, has_friction
 from fcm.shooting.linear_orbits import linear_answer, sticking
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import (
@@ -28,10 +28,10 @@ from fcm.shooting.periodic_orbit import (
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import always_stuck, resting, resting_at
 from fcm.shooting.traction_families import Family, family
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 Choices = list[FloatArray]
 
@@ -57,7 +57,7 @@ def partly_stuck_motions(
     None are sought of more contacts than `options.linear.max_combined`.
     """
     whole, found, families = scene.whole(), list[PartlyStickingOrbit](), list(known)
-    system = System(whole, omega)
+    system = EquationsOfMotion(whole, omega)
     for stuck, residual in _residual_guesses(system, poll, options):
         if any(_has_family(one, stuck, residual) for one in families):
             continue
@@ -77,7 +77,7 @@ def partly_stuck_as_started(
 ) -> list[State]:
     """Guesses from partly sticking motions whose contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
-    system = System(whole, omega)
+    system = EquationsOfMotion(whole, omega)
     wanted = system.k_u * resting(whole)
     return [
         State(orbit.state.q, orbit.state.velocity, orbit.state.friction[computed])
@@ -96,7 +96,7 @@ def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[i
 
 
 def _residual_guesses(
-    system: System, poll: Poll, options: ShootingOptions = SHOOTING
+    system: EquationsOfMotion, poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
     """Sets of contacts, and residual friction with which they may stick."""
     for stuck in _sets(system.scene, options):
@@ -106,7 +106,7 @@ def _residual_guesses(
 
 
 def _choices(
-    system: System,
+    system: EquationsOfMotion,
     stuck: tuple[int, ...],
     just: FloatArray | None = None,
     options: ShootingOptions = SHOOTING,
@@ -172,7 +172,7 @@ def _contains(known: Family, orbit: Orbit, options: ShootingOptions = SHOOTING) 
 
 
 def _with_held(
-    system: System,
+    system: EquationsOfMotion,
     stuck: tuple[int, ...],
     residual: FloatArray,
     poll: Poll,
@@ -181,15 +181,15 @@ def _with_held(
     """The stable motion with contacts held on residual friction, if they stick in it by themselves."""
     contacts = system.scene.contacts
     rest = {j: float(force) / contacts[j].k_u for j, force in zip(stuck, residual, strict=True)}
-    held = system.scene.holding([Held(j, contacts[j], False, w) for j, w in rest.items()])
+    held = system.scene.holding([HeldContact(j, contacts[j], False, w) for j, w in rest.items()])
     try:
-        orbit = _approached(System(held, system.omega), poll, options)
+        orbit = _approached(EquationsOfMotion(held, system.omega), poll, options)
         return None if orbit is None else _released(system, orbit.state, rest, poll, options)
     except SimulationError:  # it cannot be computed
         return None
 
 
-def _approached(system: System, poll: Poll, options: ShootingOptions = SHOOTING) -> Orbit | None:
+def _approached(system: EquationsOfMotion, poll: Poll, options: ShootingOptions = SHOOTING) -> Orbit | None:
     """The stable motion that a simulation from no displacement comes to soon; None without any."""
     state = State.unloaded(system.scene)
     for count in options.partly_sticking.cycles:
@@ -203,7 +203,11 @@ def _approached(system: System, poll: Poll, options: ShootingOptions = SHOOTING)
 
 
 def _released(
-    system: System, state: State, rest: dict[int, float], poll: Poll, options: ShootingOptions = SHOOTING
+    system: EquationsOfMotion,
+    state: State,
+    rest: dict[int, float],
+    poll: Poll,
+    options: ShootingOptions = SHOOTING,
 ) -> Orbit | None:
     """The motion with no contact held, if those stick all through it; else None."""
     contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
@@ -223,7 +227,7 @@ def _released(
 
 def _with_family(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> PartlyStickingOrbit | None:
     """The motion with its family; None if that is unknown."""
-    system, state = System(orbit.scene, orbit.frequency), orbit.state
+    system, state = EquationsOfMotion(orbit.scene, orbit.frequency), orbit.state
     x = np.concatenate((state.q, state.velocity, state.friction))
     try:
         found = family(orbit.scene, orbit.frequency, state, poll=poll, options=options)

@@ -21,7 +21,7 @@ from fcm.time_domain.state import State
 PeakDofs = npt.NDArray[np.bool_]  # (dof,)
 
 
-class Guess(Frozen):
+class OrbitGuess(Frozen):
     """A state near a peak or a fold, with a second state nearby for the direction of the curve."""
 
     frequency: float  # [rad/s]
@@ -30,7 +30,7 @@ class Guess(Frozen):
     dof: int | None  # whose peak is sought; a fold if None
 
 
-def located(problem: OrbitProblem, guess: Guess, known: list[OrbitRecord]) -> OrbitRecord | None:
+def located(problem: OrbitProblem, guess: OrbitGuess, known: list[OrbitRecord]) -> OrbitRecord | None:
     """The peak or fold near a guess; None where there is none.
 
     known : pieces' peaks and folds that were found before, to which those of this piece are added.
@@ -49,7 +49,7 @@ def located(problem: OrbitProblem, guess: Guess, known: list[OrbitRecord]) -> Or
     return None
 
 
-def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
+def _on_curve(problem: OrbitProblem, guess: OrbitGuess) -> FloatArray | None:
     """The point of the curve in the plane through a guess, across the curve; else at its frequency."""
     z = problem.z(guess.state, guess.frequency)
     other = problem.z(guess.neighbour[1], guess.neighbour[0])
@@ -153,7 +153,7 @@ def _differ(one: OrbitRecord, other: OrbitRecord, options: ShootingOptions = SHO
     )
 
 
-def _distance_from_guess(one: OrbitRecord, guess: Guess) -> float:
+def _distance_from_guess(one: OrbitRecord, guess: OrbitGuess) -> float:
     """A measure of how far a point is from what was looked for: the highest peak, or the nearest fold."""
     if guess.dof is not None:
         return -float(one.measure.amplitude[guess.dof])

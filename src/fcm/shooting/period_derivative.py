@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.model.scene import FloatArray
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.segments import Segments
-from fcm.time_domain.system import System
 
 
 class InstantDerivative(NamedTuple):
@@ -18,7 +18,9 @@ class InstantDerivative(NamedTuple):
     rate: FloatArray  # (d,) of the state [1/s]
 
 
-def derivative_at(system: System, segments: Segments, last: int, position: float) -> InstantDerivative:
+def derivative_at(
+    system: EquationsOfMotion, segments: Segments, last: int, position: float
+) -> InstantDerivative:
     """The derivative of the state at a position (in steps) in a segment."""
     kernel = system.derivative()
     kernel.begins(segments, system.by_level)
@@ -27,7 +29,9 @@ def derivative_at(system: System, segments: Segments, last: int, position: float
     return InstantDerivative(np.array(kernel.columns), np.array(kernel.rate))
 
 
-def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:
+def period_derivative(
+    system: EquationsOfMotion, segments: Segments, duration: float
+) -> tuple[FloatArray, FloatArray]:
     """Derivatives of x = (q, q', f) after periods of a duration T by x at their start, and by the frequency
     or by the level, whichever is the parameter.
 
@@ -41,7 +45,9 @@ def period_derivative(system: System, segments: Segments, duration: float) -> tu
     return by_state, by_parameter
 
 
-def along(system: System, segments: Segments, places: FloatArray, way: FloatArray, rate: float) -> FloatArray:
+def along(
+    system: EquationsOfMotion, segments: Segments, places: FloatArray, way: FloatArray, rate: float
+) -> FloatArray:
     """The derivative of the modal displacements along a way of x and the frequency, at places: (place, mode).
 
     Parameters

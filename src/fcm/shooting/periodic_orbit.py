@@ -15,10 +15,10 @@ from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Measure, measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 from fcm.time_domain.trajectory import Motion
 from fcm.units import spoken
 
@@ -98,7 +98,7 @@ def periodic(
     >>> orbit.stable, orbit.states
     (True, ('SPEN',))
     """
-    system = System(scene, frequency)
+    system = EquationsOfMotion(scene, frequency)
     if guess is not None:
         orbit = shoot(system, guess, options=options)
         if orbit is None:
@@ -120,7 +120,9 @@ def unloaded(scene: Scene) -> State:
     return State(rest.q, rest.velocity, friction)
 
 
-def approached(system: System, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING) -> Orbit:
+def approached(
+    system: EquationsOfMotion, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
+) -> Orbit:
     """The periodic solution that a simulation from rest comes near to.
 
     Raises
@@ -147,7 +149,9 @@ def approached(system: System, poll: Poll = never_interrupt, options: ShootingOp
     )
 
 
-def _description(system: System, amplitude: FloatArray, options: ShootingOptions = SHOOTING) -> str:
+def _description(
+    system: EquationsOfMotion, amplitude: FloatArray, options: ShootingOptions = SHOOTING
+) -> str:
     """Sentence on a motion that has not become periodic, by the amplitudes of its last cycles."""
     first, second = np.array_split(amplitude, 2)
     if abs(second.mean() - first.mean()) > options.approach.max_drift * np.ptp(amplitude):
@@ -164,7 +168,7 @@ def _description(system: System, amplitude: FloatArray, options: ShootingOptions
 
 
 def shoot(
-    system: System, guess: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
+    system: EquationsOfMotion, guess: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit | None:
     """The orbit by Newton's method from a state at the forces' angle 0; None when it does not converge."""
     x = np.concatenate((guess.q, guess.velocity, guess.friction))

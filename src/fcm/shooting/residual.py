@@ -13,10 +13,10 @@ from fcm.shooting.period_derivative import period_derivative
 from fcm.shooting.residual_traction import Choice, choices, one_sided_slips, resting, stuck_of
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Displaced, Scanned, displaced, scanned
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.flow import STICKING
 from fcm.time_domain.simulation import march_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 class Shot:
@@ -24,7 +24,7 @@ class Shot:
 
     Parameters
     ----------
-    system : System
+    system : EquationsOfMotion
     x : (unknown,)
     resting : (contact,), optional
         The slip motions w that contacts which always stick are to have; any will do by default.
@@ -33,7 +33,7 @@ class Shot:
     """
 
     def __init__(
-        self, system: System, x: FloatArray, resting: FloatArray | None = None, periods: int = 1
+        self, system: EquationsOfMotion, x: FloatArray, resting: FloatArray | None = None, periods: int = 1
     ) -> None:
         self.system, self.x, self.resting, self.periods = system, x, resting, periods
         self.duration = periods * system.period  # [s]
@@ -177,12 +177,14 @@ class Shooting:
         self.free = np.flatnonzero(np.concatenate((np.ones(2 * scene.modal.mass.size, dtype=bool), carries)))
         self.size = 2 * scene.modal.mass.size + len(scene.contacts)
         self.periods = 0  # that have been computed
-        self._system: System | None = None
+        self._system: EquationsOfMotion | None = None
 
-    def system(self, omega: float) -> System:
+    def system(self, omega: float) -> EquationsOfMotion:
         """The system of the scene at a frequency [rad/s]."""
         if self._system is None or self._system.omega != omega:
-            self._system = System(self.scene, omega) if self._system is None else self._system.at(omega)
+            self._system = (
+                EquationsOfMotion(self.scene, omega) if self._system is None else self._system.at(omega)
+            )
         return self._system
 
     def unknowns(self, state: State) -> FloatArray:

@@ -16,10 +16,10 @@ from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ResidualFrictionOptions
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import Extreme, extremes_by
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.flow import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 BOTH_SIGNS = (
     1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP
@@ -42,7 +42,7 @@ def resting(scene: Scene) -> FloatArray:
     return _resting(scene.contacts, scene.modal.shapes.T @ start.q, start.friction)
 
 
-def resting_at(system: System, x: FloatArray) -> FloatArray:
+def resting_at(system: EquationsOfMotion, x: FloatArray) -> FloatArray:
     """The slip motions w of the contacts at x = (q, q', f): (contact,)."""
     displacement = system.scene.modal.shapes.T @ x[system.q]
     return _resting(system.contacts, displacement, x[system.f])
@@ -56,18 +56,18 @@ def _resting(contacts: tuple[Contact, ...], displacement: FloatArray, friction: 
     return w
 
 
-def always_stuck(system: System, segments: Segments) -> list[int]:
+def always_stuck(system: EquationsOfMotion, segments: Segments) -> list[int]:
     """The contacts that stick all through the segments."""
     return stuck_of(system, segments.seen())
 
 
-def stuck_of(system: System, seen: list[int]) -> list[int]:
+def stuck_of(system: EquationsOfMotion, seen: list[int]) -> list[int]:
     """Contacts that stick all the time, by the states that each has been in: see `Segments.seen`."""
     return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
 
 
 def choices(
-    system: System,
+    system: EquationsOfMotion,
     segments: Segments,
     wanted: FloatArray,
     stuck: list[int],
@@ -95,7 +95,11 @@ def choices(
 
 
 def _choice(
-    system: System, segments: Segments, of: tuple[int, float, float], above: Extreme, below: Extreme
+    system: EquationsOfMotion,
+    segments: Segments,
+    of: tuple[int, float, float],
+    above: Extreme,
+    below: Extreme,
 ) -> Choice:
     """Choice of the force for the w that is wanted, or the nearest with |f| <= mu n all through the period.
 
@@ -118,14 +122,17 @@ def _choice(
     )  # fmt: skip
 
 
-def _margin(system: System, y: FloatArray, j: int, options: ResidualFrictionOptions) -> float:
+def _margin(system: EquationsOfMotion, y: FloatArray, j: int, options: ResidualFrictionOptions) -> float:
     contact = system.contacts[j]
     limit = contact.mu * (abs(contact.n_0) + abs(y[system.n.start + j]))
     return options.margin * float(abs(y[system.f.start + j]) + limit)
 
 
 def one_sided_slips(
-    system: System, segments: Segments, seen: list[int], options: ResidualFrictionOptions = SHOOTING.traction
+    system: EquationsOfMotion,
+    segments: Segments,
+    seen: list[int],
+    options: ResidualFrictionOptions = SHOOTING.traction,
 ) -> list[tuple[int, float]]:
     """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
 
@@ -141,7 +148,7 @@ def one_sided_slips(
 
 
 def limit_distances(
-    system: System, segments: Segments, contacts: list[int]
+    system: EquationsOfMotion, segments: Segments, contacts: list[int]
 ) -> dict[int, tuple[Extreme, Extreme]]:
     """Least values of mu n - f and of mu n + f over the segments, for each contact."""
     found, _ = extremes_by(system.limits, system, segments)
@@ -149,7 +156,7 @@ def limit_distances(
 
 
 def _room_derivative(
-    system: System, segments: Segments, j: int, sign: float, place: Extreme
+    system: EquationsOfMotion, segments: Segments, j: int, sign: float, place: Extreme
 ) -> tuple[FloatArray, float]:
     """The derivatives of the least of mu n - sign f by x and by the frequency."""
     columns = derivative_at(system, segments, place.segment, place.position).columns

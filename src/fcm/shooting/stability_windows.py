@@ -35,7 +35,7 @@ from fcm.stability.options import StabilityOptions
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class Point(Protocol):
+class ClassifiedPoint(Protocol):
     """A point of a path with its multipliers and states."""
 
     @property
@@ -96,7 +96,9 @@ class _PathSamples(NamedTuple):
         return found
 
 
-def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> tuple[Path, list[int]]:
+def with_windows(
+    problem: OrbitProblem, path: Path, points: Sequence[ClassifiedPoint]
+) -> tuple[Path, list[int]]:
     """A path with a point inside each window, and the numbers of these points.
 
     points : of the path, in its order.
@@ -183,7 +185,7 @@ def _multiplier_sample(
     return multiplier_sample(length, classified, options)
 
 
-def _path_samples(path: Path, points: Sequence[Point], options: StabilityOptions) -> _PathSamples:
+def _path_samples(path: Path, points: Sequence[ClassifiedPoint], options: StabilityOptions) -> _PathSamples:
     """Samples of all points of a path at once."""
     values = np.array([point.multipliers for point in points])
     kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= options.windows.max_multipliers)

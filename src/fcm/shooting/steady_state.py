@@ -24,10 +24,10 @@ from fcm.shooting.residual_traction import resting_at
 from fcm.time_domain.contact_loads import contact_loads
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Measure, measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 class SteadyMotion(NamedTuple):
@@ -46,7 +46,7 @@ class SteadyMotion(NamedTuple):
 
 
 def steady(
-    system: System, state: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
+    system: EquationsOfMotion, state: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> SteadyMotion | State:
     """The steady motion that a simulation from a state comes to; without any, the state at its end.
 
@@ -56,7 +56,7 @@ def steady(
     --------
     >>> import fcm
     >>> scene = fcm.load_scene("yang1998-n5")
-    >>> found = steady(System(scene, 1.3), State.rest(scene))
+    >>> found = steady(EquationsOfMotion(scene, 1.3), State.rest(scene))
     >>> found.periods, found.states, found.measure.amplitude.round(4)
     (1, ('SPEN',), array([7.1681, 7.1663]))
     """
@@ -105,7 +105,7 @@ def _linear(cycles: Sequence[Cycle]) -> bool:
 
 
 def _repeating(
-    system: System, state: State, periods: int, near: float, options: ShootingOptions = SHOOTING
+    system: EquationsOfMotion, state: State, periods: int, near: float, options: ShootingOptions = SHOOTING
 ) -> SteadyMotion | None:
     """The stable motion near a state that repeats after so many periods and not before."""
     x = np.concatenate((state.q, state.velocity, state.friction))
@@ -136,7 +136,11 @@ def _of_shot(shot: Shot) -> SteadyMotion:
 
 
 def _closed(
-    system: System, x: FloatArray, member: FloatArray, periods: int, options: ShootingOptions = SHOOTING
+    system: EquationsOfMotion,
+    x: FloatArray,
+    member: FloatArray,
+    periods: int,
+    options: ShootingOptions = SHOOTING,
 ) -> Shot | None:
     """The shot of so many periods near x that closes; None without any.
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from fcm.branches.branch_points import branch_points_of, sign_changes
+from fcm.branches.branch_points import BranchPoint, branch_points_of, sign_changes, with_leaving
 from fcm.branches.mirror_images import symmetric_half
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
@@ -26,8 +26,8 @@ from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.work_budget import BranchBudget, UncertainFrequencies
 from fcm.stability.unstable_ranges import unstable_stretches
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
-from fcm.time_domain.system import System
 from fcm.units import UNIT
 
 Progress = Callable[[float, str], None]
@@ -249,20 +249,20 @@ class _BranchSearch:
         self, paths: tuple[Path, ...], options: BranchingOptions = BRANCHING
     ) -> tuple[Path, ...]:
         """Paths with those that leave them at branch points, unless too many break off."""
-        problem, known, left = self.problem, 0, options.max_starts
-        for _ in range(options.max_rounds):
-            fresh, known = paths[known:], len(paths)
-            points = branch_points_of(problem, lambda: np.array(problem.jacobian), fresh, options)
-            for point in islice(self.bounded.each(points), left):
-                left -= 1
-                if self.too_many_broken(paths):
-                    break
-                paths = self._with_leaving(paths, point.starts, options)
-            if len(paths) == known or not left:
-                break
-        return paths
+        problem = self.problem
 
-    def _with_leaving(
+        def points(fresh: Sequence[Path]) -> Iterator[BranchPoint]:
+            found = branch_points_of(problem, lambda: np.array(problem.jacobian), fresh, options)
+            return self.bounded.each(found)
+
+        def extended(paths: tuple[Path, ...], point: BranchPoint) -> tuple[Path, ...] | None:
+            if self.too_many_broken(paths):
+                return None
+            return self._with_branches_at(paths, point.starts, options)
+
+        return with_leaving(paths, lambda paths: paths, points, extended, options)
+
+    def _with_branches_at(
         self, paths: tuple[Path, ...], starts: Sequence[FloatArray], options: BranchingOptions
     ) -> tuple[Path, ...]:
         """Paths with the branches through starts at a branch point, unless they have them already.
@@ -387,7 +387,7 @@ def orbits_in_unstable_ranges(
     parts = [(path.parameter, np.array([_stable(problem, z) for z in path.z])) for path in paths]
     for low, high in unstable_stretches(parts, scene.frequency_range)[: problem.options.stability.max_ranges]:
         try:
-            orbit = approached(System(scene, 0.5 * (low + high)), poll, problem.options)
+            orbit = approached(EquationsOfMotion(scene, 0.5 * (low + high)), poll, problem.options)
             if orbit.stable:
                 yield first_point(problem, orbit, poll)
         except SimulationError:  # it does not become periodic, or is not determined

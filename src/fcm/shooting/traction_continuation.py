@@ -31,11 +31,11 @@ class TractionPath:
         self.beyond: Shot | None = None  # the motion just beyond the end, where others stick
         self.tried = 0  # motions that were looked for
         self.room = self._limit_distances(begun)
-        self.reach = self.room.sum(axis=1)  # the greatest so far
+        self.most_room = self.room.sum(axis=1)  # the greatest so far
         self.push = np.zeros(len(self.system.contacts))
-        self.push[contacts] = sense * self.reach / self.options.family.steps
+        self.push[contacts] = sense * self.most_room / self.options.family.steps
         self.far = self.options.family.max_distance * float(
-            max(self.reach.max(), np.abs(residual_of(begun)).max())
+            max(self.most_room.max(), np.abs(residual_of(begun)).max())
         )
         self.slope: FloatArray | None = None  # of x by the share of the push
 
@@ -63,8 +63,8 @@ class TractionPath:
         Most of a step moves the structure where that is softer than the contact.
         """
         before, self.room = self.room, self._limit_distances(new)
-        self.reach = np.maximum(self.reach, before.sum(axis=1))
-        used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)
+        self.most_room = np.maximum(self.most_room, before.sum(axis=1))
+        used = np.abs(self.room - before).max(axis=1) / np.where(self.most_room > 0.0, self.most_room, 1.0)
         return 1.0 / (self.options.family.steps * max(float(used.max()), self.options.family.zero_distance))
 
     def _limit_distances(self, shot: Shot) -> FloatArray:

@@ -28,9 +28,9 @@ from fcm.shooting.traction_continuation import (
     sticking_contacts,
     with_traction,
 )
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 from fcm.units import spoken
 
 
@@ -88,7 +88,7 @@ def family(
     >>> bool(found.spread.max() < 1e-9)  # nothing else feels it
     True
     """
-    system = System(scene, frequency)
+    system = EquationsOfMotion(scene, frequency)
     x = np.concatenate((state.q, state.velocity, state.friction))
     found = converged(Shot(system, x, resting_at(system, x), periods), poll=poll, options=options)
     if found is None:
@@ -253,10 +253,10 @@ def member_at_start(
     begin, end = -residual_of(shot), shot.system.k_u * wanted
     done, share = 0.0, 1.0
     while done < 1.0 and share > options.family.min_step:
-        reach = min(done + share, 1.0)
-        new = with_traction(shot, begin + reach * (end - begin), poll=poll, options=options)
+        at = min(done + share, 1.0)
+        new = with_traction(shot, begin + at * (end - begin), poll=poll, options=options)
         if new is None:
             share *= 0.25
         else:
-            shot, done, share = new, reach, 2.0 * share
+            shot, done, share = new, at, 2.0 * share
     return shot if done == 1.0 else None

@@ -18,7 +18,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 
-class Modes(NamedTuple):
+class PortModes(NamedTuple):
     """Modes of mass 1 on the contacts' ports, of which some follow the contacts' forces without delay."""
 
     shapes: FloatArray  # (mode, port)

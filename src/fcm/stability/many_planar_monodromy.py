@@ -36,7 +36,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 from fcm.contact.plane.radau import radau
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
@@ -58,13 +58,13 @@ class ManyPlanarMonodromy(VariationalSteps):
 
     Parameters
     ----------
-    modes : Modes
+    modes : PortModes
         With three ports for each contact.
     poll : callable, optional
         Called at every event, which it may interrupt.
     """
 
-    def __init__(self, modes: Modes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
+    def __init__(self, modes: PortModes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
         self.poll, self.options = poll, sequence.options
         options = self.options
         VariationalSteps.__init__(self, sequence, options.stages_of_many, options.tolerance_of_many)

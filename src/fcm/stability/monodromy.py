@@ -59,7 +59,7 @@ from cython.cimports.libc.math import ceil, fabs, sqrt
 
 from fcm.distinct_values import distinct_values
 from fcm.stability.disturbance import Propagator
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 from fcm.stability.options import STABILITY, PropagationOptions
 
 if cython.compiled:
@@ -321,7 +321,7 @@ class ManyMonodromy:
 
     Parameters
     ----------
-    modes : Modes
+    modes : PortModes
         With two ports for each contact.
     contact : (contact, 4)
         mu, k_u, k_v, n_0.
@@ -329,7 +329,7 @@ class ManyMonodromy:
 
     def __init__(
         self,
-        modes: Modes,
+        modes: PortModes,
         contact: npt.NDArray[np.float64],
         sequence: StateSequence,
         options: PropagationOptions = STABILITY.propagation,

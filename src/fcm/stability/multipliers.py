@@ -35,7 +35,7 @@ from fcm.stability.classification import (
 )
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.following_modes import Modes, combined
+from fcm.stability.following_modes import PortModes, combined
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.rebalanced import Rebalancing
@@ -132,7 +132,7 @@ class Multipliers:
         from fcm.stability.planar_sequence import PlanarSequence
 
         linear = self.system.linear
-        modes = Modes(linear.ports, linear.natural, linear.damping, self.far)
+        modes = PortModes(linear.ports, linear.natural, linear.damping, self.far)
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
         options = self.options.structure
         most = options.flexible_contacts if self.far.any() else options.many_contacts
@@ -447,7 +447,7 @@ def _few_contacts(
 ) -> list[VariationalProblem]:
     """Variational problems of few contacts: each combination of states is assembled anew."""
     linear = system.linear
-    modes = Modes(linear.ports, linear.natural, linear.damping, far)
+    modes = PortModes(linear.ports, linear.natural, linear.damping, far)
     soft = modes.flexibility if far.any() else None
     stiffness = Stiffness(*modes.near, soft, contact, options.propagation)
     carried = system.cache.setdefault((Propagator, stiffness.modes), Propagator(options.propagation))
@@ -467,7 +467,7 @@ def _many_contacts(
     following = combined(
         linear.ports[far], linear.natural[far], contact[:, 1:3].ravel(), options.structure.min_yield
     )
-    shown = Modes(
+    shown = PortModes(
         np.concatenate((linear.ports[near], following)),
         np.concatenate((linear.natural[near], np.ones(len(following)))),
         np.concatenate((linear.damping[near], np.zeros(len(following)))),

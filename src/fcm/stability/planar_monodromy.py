@@ -36,7 +36,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 from fcm.contact.plane.radau import radau
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI
@@ -250,11 +250,11 @@ class PlanarMonodromy(VariationalSteps):
 
     Parameters
     ----------
-    modes : Modes
+    modes : PortModes
         With three ports for each contact.
     """
 
-    def __init__(self, modes: Modes, sequence: PlanarSequence) -> None:
+    def __init__(self, modes: PortModes, sequence: PlanarSequence) -> None:
         options = sequence.options
         VariationalSteps.__init__(self, sequence, options.stages, options.tolerance)
         self.coefficient_floor, self.max_disturbances = options.coefficient_floor, options.max_disturbances
@@ -870,7 +870,7 @@ class RingPlanarMonodromy(PlanarMonodromy):
 
     def __init__(
         self,
-        modes: Modes,
+        modes: PortModes,
         sequence: PlanarSequence,
         part: float,
         renumber: npt.NDArray[np.float64],

@@ -21,7 +21,7 @@ from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.stability.classification import Classification
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.following_modes import Modes
+from fcm.stability.following_modes import PortModes
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -89,7 +89,7 @@ class RingMultipliers(Multipliers):
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics, spectrum)
         self.ring, self.planar = ring, system.scene.planar
-        near, modes = around.selected(~far), Modes(around.ports, around.natural, around.damping, far)
+        near, modes = around.selected(~far), PortModes(around.ports, around.natural, around.damping, far)
         source = np.roll(np.arange(n * self.contacts), sector_shifts(ring) * self.contacts)
         turned = 2.0 * np.pi / n, near.renumber, source
         if self.planar:

@@ -1,5 +1,5 @@
 from fcm.contact.periodic.cycle cimport LineCycle
-from fcm.contact.periodic.motion cimport Motion
+from fcm.contact.periodic.motion cimport LineMotion
 
 cdef int FREE
 
@@ -13,7 +13,7 @@ cdef class StateSequence:
     cdef void begin(self) noexcept
 
 cdef class BalancedSequence(StateSequence):
-    cdef readonly Motion motion
+    cdef readonly LineMotion motion
     cdef readonly LineCycle cycle
     cdef readonly int width, moving, held
     cdef public bint yielding

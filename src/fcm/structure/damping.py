@@ -56,11 +56,7 @@ class DampedModes(Frozen):
 
 
 def coupling_effect(
-    modes: DampedModes,
-    pushes: FloatArray,
-    seen: FloatArray,
-    springs: FloatArray,
-    ends: tuple[float, float],
+    modes: DampedModes, pushes: FloatArray, seen: FloatArray, springs: FloatArray, ends: tuple[float, float]
 ) -> float:
     """Greatest relative change of the linear response by damping between modes and of the first, rigid ones.
 

@@ -74,7 +74,7 @@ class Modes(Frozen):
         return self.stiffness.size
 
 
-class System(Frozen):
+class FactoredStructure(Frozen):
     """Stiffness and mass of a structure, and a solver of (K - s M) x = loads."""
 
     K: Matrix  # (row, row)
@@ -102,7 +102,7 @@ class System(Frozen):
         return 0 if left <= near else int(np.ceil(np.log(near) / np.log(left))) - 1
 
 
-def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
+def factored_structure(K: Matrix, M: Matrix, top: float = 0.0) -> FactoredStructure:
     """Factorises K - s M; raises StructureError if the matrices are not those of a structure.
 
     top is the highest angular frequency of interest, 0 where there is none.
@@ -134,7 +134,7 @@ def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
         faults.append(str(error))
     if faults:
         raise StructureError("; ".join(faults))
-    return System(K, M, shift, solve)
+    return FactoredStructure(K, M, shift, solve)
 
 
 def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
@@ -183,85 +183,89 @@ def _start(rows: int) -> FloatArray:
     return np.random.default_rng(0).standard_normal(rows)
 
 
-def shifted(system: System, shift: float) -> System:
-    """The system with another negative shift, factorised again.
+def shifted(structure: FactoredStructure, shift: float) -> FactoredStructure:
+    """The structure with another negative shift, factorised again.
 
     Nearer to zero it need not be definite: digits that were not written make rigid-body modes negative.
     """
     try:
-        return replace(system, shift=shift, solve=solver(system.K - shift * system.M, definite=False))
+        return replace(
+            structure, shift=shift, solve=solver(structure.K - shift * structure.M, definite=False)
+        )
     except NotPositiveError as error:
         raise StructureError(_said("stiffness", error.negative)) from None
 
 
-def modes_of(system: System, count: int) -> Modes:
+def modes_of(structure: FactoredStructure, count: int) -> Modes:
     """The lowest modes of a structure; fewer where fewer rows have a mass."""
-    rows = system.rows
+    rows = structure.rows
     if rows <= OPTIONS.dense_size or count > rows // 3:
-        shapes = _all(system)
+        shapes = _all(structure)
     else:
-        shapes = _complete(system, _lanczos(system, count), count)
-    found = of_shapes(system, shapes)
+        shapes = _complete(structure, _lanczos(structure, count), count)
+    found = of_shapes(structure, shapes)
     return Modes(found.stiffness[:count], found.shapes[:, :count])
 
 
-def of_shapes(system: System, shapes: FloatArray) -> Modes:
+def of_shapes(structure: FactoredStructure, shapes: FloatArray) -> Modes:
     """Modes from shapes in any order and of any modal mass: normalised and sorted."""
-    shapes = shapes / np.sqrt(energy_of(system.M, shapes))
-    stiffness = elastic_energy(system.K, shapes)
+    shapes = shapes / np.sqrt(energy_of(structure.M, shapes))
+    stiffness = elastic_energy(structure.K, shapes)
     order = np.argsort(stiffness)
     return Modes(stiffness[order], shapes[:, order])
 
 
-def _lanczos(system: System, count: int, known: FloatArray | None = None, near: float = 0.0) -> FloatArray:
+def _lanczos(
+    structure: FactoredStructure, count: int, known: FloatArray | None = None, near: float = 0.0
+) -> FloatArray:
     """Shapes of the lowest modes by Lanczos, orthogonal to `known` shapes of mass 1 if given."""
-    rows, kind = system.rows, system.K.dtype
+    rows, kind = structure.rows, structure.K.dtype
     start = _start(rows)
     if known is None:
-        inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=kind)
+        inverse = LinearOperator((rows, rows), matvec=structure.solve, dtype=kind)
     else:
-        heavy, left = system.M @ known, known.conj().T
+        heavy, left = structure.M @ known, known.conj().T
         start = start - known @ (heavy.conj().T @ start)
 
         def solve(loads: FloatArray) -> FloatArray:
             loads = np.ravel(loads)
-            answer = system.solve(loads - heavy @ (left @ loads))
+            answer = structure.solve(loads - heavy @ (left @ loads))
             pure: FloatArray = answer - known @ (heavy.conj().T @ answer)
             return pure
 
         inverse = LinearOperator((rows, rows), matvec=solve, dtype=kind)
     found: FloatArray = eigsh(
-        system.K, count, system.M, sigma=system.shift, OPinv=inverse, v0=start, tol=near
+        structure.K, count, structure.M, sigma=structure.shift, OPinv=inverse, v0=start, tol=near
     )[1]
     return found
 
 
-def _complete(system: System, shapes: FloatArray, count: int) -> FloatArray:
+def _complete(structure: FactoredStructure, shapes: FloatArray, count: int) -> FloatArray:
     """The shapes with those of lower modes added that Lanczos has missed, as of equal frequencies."""
     while True:
-        shapes = _apart(system, shapes)  # of mass 1, and orthogonal where frequencies are close
-        highest = np.sort(elastic_energy(system.K, shapes))[count - 1]
-        further = of_shapes(system, _lanczos(system, 1, shapes, OPTIONS.missed_tolerance))
+        shapes = _apart(structure, shapes)  # of mass 1, and orthogonal where frequencies are close
+        highest = np.sort(elastic_energy(structure.K, shapes))[count - 1]
+        further = of_shapes(structure, _lanczos(structure, 1, shapes, OPTIONS.missed_tolerance))
         # it is told higher than it is, never lower
         if further.stiffness[0] >= highest - OPTIONS.frequency_tolerance * abs(highest):
             return shapes
-        shapes = np.concatenate((shapes, _lanczos(system, 1, shapes)), axis=1)
+        shapes = np.concatenate((shapes, _lanczos(structure, 1, shapes)), axis=1)
 
 
-def _all(system: System) -> FloatArray:
+def _all(structure: FactoredStructure) -> FloatArray:
     """Shapes of all modes that have a mass, by a dense solver."""
-    mass = system.M.toarray()
-    shifted = system.K.toarray() - system.shift * mass
+    mass = structure.M.toarray()
+    shifted = structure.K.toarray() - structure.shift * mass
     value, shapes = scipy.linalg.eigh(mass, shifted)
     found: FloatArray = shapes[:, value > OPTIONS.massless_tolerance * value.max()]
     return found
 
 
-def _apart(system: System, shapes: FloatArray) -> FloatArray:
+def _apart(structure: FactoredStructure, shapes: FloatArray) -> FloatArray:
     """Shapes of the modes within the space spanned by some shapes (Rayleigh-Ritz)."""
     left = shapes.conj().T
     try:
-        turn = scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
+        turn = scipy.linalg.eigh(left @ (structure.K @ shapes), left @ (structure.M @ shapes))[1]
     except np.linalg.LinAlgError:
         raise StructureError(
             "the mass is singular along some of the lowest modes, as the stiffness of a floating body is. "
@@ -271,16 +275,16 @@ def _apart(system: System, shapes: FloatArray) -> FloatArray:
     return found
 
 
-def polished(system: System, shapes: FloatArray) -> FloatArray:
+def polished(structure: FactoredStructure, shapes: FloatArray) -> FloatArray:
     """Shapes of modes near zero frequency, of mass 1, after two further inverse iterations.
 
     That takes other modes out of them, each by its own stiffness beside the shift: also those that the mass
     couples to them and the stiffness does not.
     """
     for _ in range(2):
-        shapes = system.solve(system.M @ shapes)
-        shapes = shapes / np.sqrt(energy_of(system.M, shapes))
-        shapes = _apart(system, shapes)
+        shapes = structure.solve(structure.M @ shapes)
+        shapes = shapes / np.sqrt(energy_of(structure.M, shapes))
+        shapes = _apart(structure, shapes)
     return shapes
 
 

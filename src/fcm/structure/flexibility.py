@@ -36,7 +36,15 @@ import numpy as np
 import scipy.linalg
 
 from fcm.frozen import Frozen
-from fcm.structure.eigen import OPTIONS, FloatArray, Modes, System, energy_of, shifted, unit_columns
+from fcm.structure.eigen import (
+    OPTIONS,
+    FactoredStructure,
+    FloatArray,
+    Modes,
+    energy_of,
+    shifted,
+    unit_columns,
+)
 from fcm.structure.options import FLEXIBILITY, FlexibilityOptions
 
 
@@ -51,7 +59,7 @@ class Flexibility(Frozen):
 class Truncation(Frozen):
     """A structure with only its lowest modes kept: highest frequency of interest and first mode left out."""
 
-    system: System
+    structure: FactoredStructure
     kept: Modes
     omega: float  # [rad/s] the highest angular frequency of interest
     beyond: float  # [rad^2/s^2] square of that of the first mode left out: a lower limit of all of them
@@ -61,25 +69,26 @@ class Truncation(Frozen):
 def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
     """Modes that represent the response of the modes left out, under loads (row, load)."""
     truncation = _with_shift_for_static(truncation)
-    system, kept, options = truncation.system, truncation.kept, truncation.options
+    structure, kept, options = truncation.structure, truncation.kept, truncation.options
     omega, beyond = truncation.omega, truncation.beyond
-    basis = np.zeros((system.rows, 0))
-    outer = _without(system, kept, loads)
+    basis = np.zeros((structure.rows, 0))
+    outer = _without(structure, kept, loads)
     found = Flexibility(Modes(np.zeros(0), basis), np.inf, np.inf)
-    rest = _residual_receptance(system, kept, loads)
-    static = _static(system, kept, loads, rest, omega)
+    rest = _residual_receptance(structure, kept, loads)
+    static = _static(structure, kept, loads, rest, omega)
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
     far = options.massless_ratio**2 * (highest or 1.0)
     least = np.maximum(
-        options.min_energy * _static(system, kept, loads, rest, np.inf),
-        options.min_energy**2 * static,
+        options.min_energy * _static(structure, kept, loads, rest, np.inf), options.min_energy**2 * static
     )
     newest = _of_energy_1(
-        system, _orthogonal(system, kept, system.static(outer, beyond, options.static_tolerance)), least
+        structure,
+        _orthogonal(structure, kept, structure.static(outer, beyond, options.static_tolerance)),
+        least,
     )
     for blocks in range(1, options.max_blocks + 1):
         basis = np.concatenate((basis, newest), axis=1)
-        modes = _galerkin(system, basis, far, options.min_energy)
+        modes = _galerkin(structure, basis, far, options.min_energy)
         damping = omega * float(_damping_error(modes, outer, beyond, blocks > 1, static).max())
         bound = _receptance_error(truncation, modes, loads, static)
         if modes.stiffness.max(initial=0.0) > 0.9 * far:
@@ -88,9 +97,9 @@ def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
         if found.bound <= options.tolerance or modes.count < basis.shape[1]:
             break
         further = _orthogonal(
-            system, kept, system.static(system.M @ newest, beyond, options.static_tolerance)
+            structure, kept, structure.static(structure.M @ newest, beyond, options.static_tolerance)
         )
-        newest = _of_energy_1(system, further, (options.min_energy / highest) ** 2 if highest else 0.0)
+        newest = _of_energy_1(structure, further, (options.min_energy / highest) ** 2 if highest else 0.0)
     return found
 
 
@@ -99,10 +108,10 @@ def _with_shift_for_static(truncation: Truncation) -> Truncation:
 
     Of a small structure a shift costs nothing, and corrections the digits that are lost in K u.
     """
-    system, beyond, near = truncation.system, truncation.beyond, truncation.options.static_tolerance
-    number = system.corrections(beyond, near)
-    again = number > (0 if system.rows <= OPTIONS.dense_size else OPTIONS.max_corrections)
-    return replace(truncation, system=shifted(system, -near * beyond)) if again else truncation
+    structure, beyond, near = truncation.structure, truncation.beyond, truncation.options.static_tolerance
+    number = structure.corrections(beyond, near)
+    again = number > (0 if structure.rows <= OPTIONS.dense_size else OPTIONS.max_corrections)
+    return replace(truncation, structure=shifted(structure, -near * beyond)) if again else truncation
 
 
 def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, static: FloatArray) -> float:
@@ -110,14 +119,14 @@ def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, s
 
     The modes are those that stand for what is left out.
     """
-    system, omega, beyond = truncation.system, truncation.omega, truncation.beyond
+    structure, omega, beyond = truncation.structure, truncation.omega, truncation.beyond
     if omega**2 >= beyond:
         return np.inf
-    outer = _without(system, truncation.kept, loads)
+    outer = _without(structure, truncation.kept, loads)
     answer = modes.shapes * (1.0 / (modes.stiffness - omega**2)) @ (modes.shapes.conj().T @ outer)
-    residual = outer - system.K @ answer + omega**2 * (system.M @ answer)
-    error = _residual_receptance(system, truncation.kept, residual)
-    farther = (beyond - system.shift) / (beyond - omega**2) if np.isfinite(beyond) else 1.0
+    residual = outer - structure.K @ answer + omega**2 * (structure.M @ answer)
+    error = _residual_receptance(structure, truncation.kept, residual)
+    farther = (beyond - structure.shift) / (beyond - omega**2) if np.isfinite(beyond) else 1.0
     return float((np.abs(error) * farther / static).max())
 
 
@@ -134,25 +143,25 @@ def error_at_other_rows(
     if omega**2 >= beyond:
         return np.inf, np.inf
     truncation = _with_shift_for_static(truncation)
-    system, kept = truncation.system, truncation.kept
+    structure, kept = truncation.structure, truncation.kept
     own, share, together = 0.0, 0.0, truncation.options.batch_size
     for first in range(0, len(others), together):
-        some = unit_columns(system.rows, others[first : first + together])
-        rest = _residual_receptance(system, kept, some)
-        static = _static(system, kept, some, rest, omega)
+        some = unit_columns(structure.rows, others[first : first + together])
+        rest = _residual_receptance(structure, kept, some)
+        static = _static(structure, kept, some, rest, omega)
         own = max(own, _receptance_error(truncation, found.modes, some, static))
         share = max(share, float((rest / static).max(initial=0.0)))
-    rest = _residual_receptance(system, kept, loads)
-    share *= float((rest / _static(system, kept, loads, rest, omega)).max(initial=0.0))
+    rest = _residual_receptance(structure, kept, loads)
+    share *= float((rest / _static(structure, kept, loads, rest, omega)).max(initial=0.0))
     slow = omega / np.sqrt(beyond)
     return float(np.sqrt(own * found.bound)), float(2.0 * slow * np.sqrt(share) / (1.0 - slow**2) ** 2)
 
 
-def _residual_receptance(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
+def _residual_receptance(structure: FactoredStructure, kept: Modes, loads: FloatArray) -> FloatArray:
     """Part of each load's static receptance that the kept modes leave out."""
-    outer = _without(system, kept, loads)
+    outer = _without(structure, kept, loads)
     rest: FloatArray = np.einsum(
-        "ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))
+        "ij,ij->j", outer.conj(), _orthogonal(structure, kept, structure.solve(outer))
     ).real
     return rest
 
@@ -180,14 +189,16 @@ def _damping_error(
     return relative
 
 
-def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, omega: float) -> FloatArray:
+def _static(
+    structure: FactoredStructure, kept: Modes, loads: FloatArray, rest: FloatArray, omega: float
+) -> FloatArray:
     """Static displacement of each load along itself, from the modes' part and `rest`.
 
     That of rigid-body modes is taken at omega, if omega is not 0.
 
     What pushes rigid-body modes has no static answer; up to omega theirs is at least that.
     """
-    rigid = kept.stiffness <= -system.shift
+    rigid = kept.stiffness <= -structure.shift
     on_modes = np.abs(kept.shapes.conj().T @ loads) ** 2
     total: FloatArray = rest + (on_modes[~rigid] / kept.stiffness[~rigid, None]).sum(axis=0)
     if omega:
@@ -195,38 +206,38 @@ def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, om
     return np.where(total > 0.0, total, 1.0)
 
 
-def _without(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
+def _without(structure: FactoredStructure, kept: Modes, loads: FloatArray) -> FloatArray:
     """Loads minus the part that pushes the kept modes."""
-    outer: FloatArray = loads - system.M @ (kept.shapes @ (kept.shapes.conj().T @ loads))
+    outer: FloatArray = loads - structure.M @ (kept.shapes @ (kept.shapes.conj().T @ loads))
     return outer
 
 
-def _orthogonal(system: System, kept: Modes, displacements: FloatArray) -> FloatArray:
+def _orthogonal(structure: FactoredStructure, kept: Modes, displacements: FloatArray) -> FloatArray:
     """Displacements minus their part in the kept modes."""
-    part: FloatArray = displacements - kept.shapes @ (kept.shapes.conj().T @ (system.M @ displacements))
+    part: FloatArray = displacements - kept.shapes @ (kept.shapes.conj().T @ (structure.M @ displacements))
     return part
 
 
-def _of_energy_1(system: System, columns: FloatArray, least: FloatArray | float) -> FloatArray:
+def _of_energy_1(structure: FactoredStructure, columns: FloatArray, least: FloatArray | float) -> FloatArray:
     """Columns scaled to elastic energy 1; those with no more than `least` are rounding and left out."""
-    energy = energy_of(system.K, columns)
+    energy = energy_of(structure.K, columns)
     unit: FloatArray = columns[:, energy > least] / np.sqrt(energy[energy > least])
     return unit
 
 
-def _galerkin(system: System, basis: FloatArray, far: float, independent: float) -> Modes:
+def _galerkin(structure: FactoredStructure, basis: FloatArray, far: float, independent: float) -> Modes:
     """Modes within a space of displacements, without nearly dependent directions.
 
     far is the square of the highest angular frequency that one may have.
     """
     if not basis.shape[1]:
         return Modes(np.zeros(0), basis)
-    stiffness = basis.conj().T @ (system.K @ basis)
+    stiffness = basis.conj().T @ (structure.K @ basis)
     unit = 1.0 / np.sqrt(np.diagonal(stiffness).real)
     value, vector = scipy.linalg.eigh(stiffness * unit * unit[:, None])
     good = value > independent * value.max()
     basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # of stiffness 1
-    mass, turn = scipy.linalg.eigh(basis.conj().T @ (system.M @ basis))
+    mass, turn = scipy.linalg.eigh(basis.conj().T @ (structure.M @ basis))
     # in descending order of mass: in ascending order of frequency
     shapes = (basis @ turn / np.sqrt(np.maximum(mass, 1.0 / far)))[:, ::-1]
-    return Modes(energy_of(system.K, shapes), shapes)
+    return Modes(energy_of(structure.K, shapes), shapes)

@@ -11,16 +11,16 @@ from fcm.frozen import Frozen
 from fcm.structure.digits import digits_of
 from fcm.structure.eigen import (
     OPTIONS,
+    FactoredStructure,
     FloatArray,
     Matrix,
     Modes,
     StructureError,
-    System,
+    factored_structure,
     modes_of,
     of_shapes,
     polished,
     shifted,
-    system_of,
     unit_columns,
 )
 from fcm.structure.flexibility import Truncation, error_at_other_rows, flexibility
@@ -52,13 +52,7 @@ class Reduced(Frozen):
     unclear: float = 0.0  # see `rigid_body.unclear_below`
 
 
-def reduced(
-    K: Matrix,
-    M: Matrix,
-    loads: FloatArray,
-    top: float,
-    selection: ModeSelection,
-) -> Reduced:
+def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, selection: ModeSelection) -> Reduced:
     """Reduces a structure to modes for loads (row, load) up to the angular frequency top.
 
     For the selection's other rows the error of their displacement is estimated as well.
@@ -66,31 +60,31 @@ def reduced(
     At the other rows of the selection it is told how far what that leaves out is off.
     """
     count, rest, others = selection.count, selection.flexibility, selection.other_rows
-    system = system_of(K, M, top)
-    found = _cleared(system, _enough(lambda n: modes_of(system, n), system.rows, top, count))
+    structure = factored_structure(K, M, top)
+    found = _cleared(structure, _enough(lambda n: modes_of(structure, n), structure.rows, top, count))
     rigid = rigid_by_energy(K, M, found)
-    if rigid == found.count < system.rows:  # all of them are kept
-        return reduced(K, M, loads, top, replace(selection, count=min(2 * rigid + 1, system.rows)))
-    system, found = _elastic_apart(system, found, rigid)
+    if rigid == found.count < structure.rows:  # all of them are kept
+        return reduced(K, M, loads, top, replace(selection, count=min(2 * rigid + 1, structure.rows)))
+    structure, found = _elastic_apart(structure, found, rigid)
     if rigid < found.count and found.stiffness[rigid] < 0.0:
         raise StructureError("the stiffness has a negative eigenvalue, that of a structure has none")
-    wanted = min(found.count, max(rigid, count or _within(found, top, system.rows)))
+    wanted = min(found.count, max(rigid, count or _within(found, top, structure.rows)))
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
     off = float(of_frequencies(K, kept).max(initial=0.0))
     unclear = unclear_below(K, found, rigid)
     plain = Reduced(kept, wanted, rigid, np.inf, 0.0, rounding=off, digits=digits_of(K), unclear=unclear)
-    if found.count == wanted and (wanted == system.rows or not (rest and loads.shape[1])):
+    if found.count == wanted and (wanted == structure.rows or not (rest and loads.shape[1])):
         return plain
     beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
     plain = replace(plain, beyond=float(np.sqrt(beyond)))
     if not (rest and loads.shape[1]):
         return replace(plain, bound=np.nan)
-    truncation = Truncation(system, kept, top, beyond)
+    truncation = Truncation(structure, kept, top, beyond)
     more = flexibility(truncation, loads)
     both = _together(kept, more.modes)
     bound, other_rows = more.bound + of_receptances(K, M, both, loads, top), (0.0, 0.0)
-    if len(others) * system.rows > REDUCTION.max_products:
+    if len(others) * structure.rows > REDUCTION.max_products:
         other_rows = np.inf, np.inf
     elif others:
         own, damped = error_at_other_rows(truncation, more, loads, others)
@@ -98,34 +92,34 @@ def reduced(
     return replace(plain, modes=both, bound=bound, damping=more.damping, other_rows=other_rows)
 
 
-def _cleared(system: System, found: Modes) -> Modes:
+def _cleared(structure: FactoredStructure, found: Modes) -> Modes:
     """The modes, with possible rigid-body modes cleared of all other modes."""
-    count = may_be_rigid(system.K, system.M, found)
+    count = may_be_rigid(structure.K, structure.M, found)
     if not count:
         return found
-    first = of_shapes(system, polished(system, found.shapes[:, :count]))
+    first = of_shapes(structure, polished(structure, found.shapes[:, :count]))
     return _together(first, Modes(found.stiffness[count:], found.shapes[:, count:]))
 
 
-def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Modes]:
-    """The system and its modes, with elastic modes orthogonal to the rigid-body modes, which are first.
+def _elastic_apart(structure: FactoredStructure, found: Modes, rigid: int) -> tuple[FactoredStructure, Modes]:
+    """The structure and its modes, with elastic modes orthogonal to the rigid-body modes, which are first.
 
     Beside rigid-body modes, -1 / s, they lose the digits by which s is nearer to zero than their lambda. If
     these are many, all are solved for again about -lambda of the first.
     """
     if not 0 < rigid < found.count:
-        return system, found
+        return structure, found
     first, own = float(found.stiffness[rigid]), found.shapes[:, :rigid]
     if (
-        first > REDUCTION.max_shift_ratio * -system.shift
-        or system.rows <= OPTIONS.dense_size
-        or first < -system.shift
+        first > REDUCTION.max_shift_ratio * -structure.shift
+        or structure.rows <= OPTIONS.dense_size
+        or first < -structure.shift
     ):
-        system = shifted(system, -first)
-        found = modes_of(system, found.count)
+        structure = shifted(structure, -first)
+        found = modes_of(structure, found.count)
     rest = found.shapes[:, rigid:]
-    elastic = of_shapes(system, rest - own @ (own.conj().T @ (system.M @ rest)))
-    return system, _together(Modes(np.zeros(rigid), own), elastic)
+    elastic = of_shapes(structure, rest - own @ (own.conj().T @ (structure.M @ rest)))
+    return structure, _together(Modes(np.zeros(rigid), own), elastic)
 
 
 def _together(kept: Modes, more: Modes) -> Modes:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.table.atlas import FloatArray
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -44,7 +44,7 @@ for _k, _what in COEFFICIENTS.items():
     )
 
 
-def encode(separation: FloatArray, slip: FloatArray, part: Part | None = None) -> Arrays:
+def encode(separation: FloatArray, slip: FloatArray, part: TablePart | None = None) -> Arrays:
     """The arrays of the file, from the reduced coefficients of the two charts, shapes (3, nu, nx, nz).
 
     A chart of which the part has no node has no arrays of its own.
@@ -65,7 +65,7 @@ def encode(separation: FloatArray, slip: FloatArray, part: Part | None = None) -
     return arrays
 
 
-def decode(arrays: Arrays, part: Part) -> tuple[FloatArray, FloatArray]:
+def decode(arrays: Arrays, part: TablePart) -> tuple[FloatArray, FloatArray]:
     """The reduced coefficients of the two charts: the inverse of `encode`, but for rounding."""
     F = np.stack([arrays[f"F_{name}"] for name in COEFFICIENTS])
     levels = part.separation[1] - part.separation[0]
@@ -82,12 +82,12 @@ def decode(arrays: Arrays, part: Part) -> tuple[FloatArray, FloatArray]:
     return separation[:, ::-1], slope.astype(np.float64)
 
 
-def expected(part: Part) -> set[str]:
+def expected(part: TablePart) -> set[str]:
     """The variables that a file with these nodes has."""
     left_out = {"ratio": part.variation[0] > 0 or part.separation[1] == 0, "slope": part.slip[1] == 0}
     return {key for key in VARIABLES if not left_out.get(key.split("_")[0], False)}
 
 
-def _all_of(separation: FloatArray, slip: FloatArray) -> Part:
+def _all_of(separation: FloatArray, slip: FloatArray) -> TablePart:
     nodes = separation.shape[1], slip.shape[1], *slip.shape[2:]
-    return Part.all_of((nodes[0], nodes[1], nodes[2], nodes[3]))
+    return TablePart.all_of((nodes[0], nodes[1], nodes[2], nodes[3]))

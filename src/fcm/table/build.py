@@ -15,7 +15,7 @@ from fcm.table.error import error_of, sample
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS, Nodes, axes, problem, separation_nodes, slip_nodes
 from fcm.table.options import ERROR_OPTIONS
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 from fcm.table.tabulated import Resolution
 
 BUILT, MEASURED = 0.25, 0.95  # shares of the work done, for the progress
@@ -29,7 +29,7 @@ def build_table(
     points: int = ERROR_OPTIONS.points,
     progress: Progress | None = None,
     history: str = "fcm.table.build_table",
-    part: Part | None = None,
+    part: TablePart | None = None,
 ) -> Table:
     """Build a table from the closed form, measure its error, write it and return it.
 
@@ -46,7 +46,7 @@ def build_table(
         Called with the share of the work done, from 0 to 1, and what is being done.
     history : str
         What made the table, for the file.
-    part : Part, optional
+    part : TablePart, optional
         Only these nodes, of the same resolution; elsewhere the table then answers with the closed form.
 
     Raises
@@ -59,7 +59,7 @@ def build_table(
     if reason := problem(resolution):
         raise ValueError(f"resolution {resolution}: {reason}")
     done = (lambda share, what: None) if progress is None else progress
-    part = Part.all_of(resolution) if part is None else part
+    part = TablePart.all_of(resolution) if part is None else part
     stored = arrays.encode(*charts(part, lambda share: done(share * BUILT, "building")), part)
     table = Table(*arrays.decode(stored, part), part=part)  # with the rounding of the file
     done(BUILT, "measuring the error")
@@ -75,7 +75,7 @@ def build_table(
 
 
 def charts(
-    part: Part, progress: Callable[[float], None] = lambda share: None
+    part: TablePart, progress: Callable[[float], None] = lambda share: None
 ) -> tuple[FloatArray, FloatArray]:
     """Reduced coefficients G at the nodes of separation and of slip, shapes (3, nu, nx, nz)."""
     u_1, u_2, x, z = axes(part)

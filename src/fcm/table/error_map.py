@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fcm.contact.fourier import fourier_coefficients
-from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, boundaries, edges
+from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, ParameterPlane, boundaries, edges
 from fcm.frozen import Frozen
 from fcm.table.atlas import FloatArray
 from fcm.table.error import Interpolant
@@ -20,7 +20,7 @@ class ErrorMap(Frozen):
     """Absolute difference of one coefficient from its closed form, in the middle of each cell of a plane."""
 
     coefficient: str
-    plane: Plane
+    plane: ParameterPlane
     n0_bar: FloatArray  # (i + 1,) [-] edges of the cells
     b_bar: FloatArray  # (j + 1,) [-]
     error: FloatArray  # (j, i) [-]
@@ -29,7 +29,9 @@ class ErrorMap(Frozen):
     largest: float  # the error there [-]
 
 
-def error_map(coefficient: str, plane: Plane, table: Interpolant, steps: tuple[int, int] = CELLS) -> ErrorMap:
+def error_map(
+    coefficient: str, plane: ParameterPlane, table: Interpolant, steps: tuple[int, int] = CELLS
+) -> ErrorMap:
     """The error of a table in one of COEFFICIENTS; its greatest is sought between the cells' middles too."""
 
     def error_at(n0: FloatArray, b: FloatArray) -> FloatArray:
@@ -48,7 +50,7 @@ def error_map(coefficient: str, plane: Plane, table: Interpolant, steps: tuple[i
 
 def _zoomed(
     error_at: Callable[[FloatArray, FloatArray], FloatArray],
-    plane: Plane,
+    plane: ParameterPlane,
     at: tuple[float, float],
     step: tuple[float, float],
 ) -> tuple[tuple[float, float], float]:
@@ -64,7 +66,7 @@ def _zoomed(
     return at, largest
 
 
-def _points_near_boundaries(plane: Plane) -> tuple[FloatArray, FloatArray]:
+def _points_near_boundaries(plane: ParameterPlane) -> tuple[FloatArray, FloatArray]:
     """Points (j, i) that crowd towards b_bar = 1 and the lines between the regimes, where ridges are."""
     low, high = plane.b_range
     rows = np.concatenate([np.linspace(low, high, MAP_OPTIONS.rows), 1.0 + CORNER, 1.0 - CORNER])

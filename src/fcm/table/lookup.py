@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.table import spline
 from fcm.table.atlas import FloatArray
-from fcm.table.partial_table import Part, frame
+from fcm.table.partial_table import TablePart, frame
 from fcm.table.tabulated import Cubic, Resolution, Tabulated
 
 Coefficients = npt.NDArray[np.float32]
@@ -24,7 +24,7 @@ class Table:
         Nodes along u in separation, along u in slip, along x, along z.
     error : dict
         The absolute error [-] measured when the table was built, see `fcm.table.error`.
-    part : Part
+    part : TablePart
         The nodes that the table has; of one for a certain scene, not all.
     outside : int
         Points looked up so far that these nodes do not answer for: they are from the closed form.
@@ -45,11 +45,11 @@ class Table:
         separation: FloatArray,
         slip: FloatArray,
         error: dict[str, Any] | None = None,
-        part: Part | None = None,
+        part: TablePart | None = None,
     ) -> None:
         """Makes a table from reduced coefficients G of the two charts, shapes (3, n, nx, nz)."""
         _, nodes_1, nodes_x, nodes_z = separation.shape
-        self.part = Part.all_of((nodes_1, slip.shape[1], nodes_x, nodes_z)) if part is None else part
+        self.part = TablePart.all_of((nodes_1, slip.shape[1], nodes_x, nodes_z)) if part is None else part
         self.resolution: Resolution = self.part.resolution
         self.error = {} if error is None else error
         self.outside = 0
@@ -63,7 +63,7 @@ class Table:
         self._cubic, self._frame = Cubic(self.coefficients), frame(self.part)
 
     @classmethod
-    def of_splines(cls, coefficients: Coefficients, error: dict[str, Any], part: Part) -> Table:
+    def of_splines(cls, coefficients: Coefficients, error: dict[str, Any], part: TablePart) -> Table:
         """Makes a table from the spline coefficients and attributes of another."""
         table = cls.__new__(cls)
         table.__setstate__(

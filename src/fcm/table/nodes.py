@@ -9,7 +9,7 @@ import numpy as np
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
 from fcm.table.options import NODE_OPTIONS
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 from fcm.table.tabulated import Resolution
 
 PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}
@@ -63,7 +63,7 @@ def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = Fal
     return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, phi).width, b, phi)
 
 
-def axes(part: Part) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def axes(part: TablePart) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """The nodes of a part along u in separation, u in slip, x and z."""
     first, second, third, fourth = (
         unit(count)[slice(*nodes)] for count, nodes in zip(part.resolution, part[1:], strict=True)
@@ -71,7 +71,7 @@ def axes(part: Part) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     return first, second, third, fourth
 
 
-def all_nodes(part: Part) -> Nodes:
+def all_nodes(part: TablePart) -> Nodes:
     """The nodes of both charts one after the other, n0 rising from -b to the slip limit."""
     u_1, u_2, x, z = axes(part)
     parts = separation_nodes(u_1[::-1], x, z), slip_nodes(u_2, x, z)

@@ -18,7 +18,7 @@ from fcm.table.tabulated import NODES_BETWEEN, Frame, Resolution, locate
 Range = tuple[int, int]  # the first node, and one past the last; empty if they are the same
 
 
-class Part(NamedTuple):
+class TablePart(NamedTuple):
     """Nodes that a table has, of all those of its resolution."""
 
     resolution: Resolution
@@ -28,7 +28,7 @@ class Part(NamedTuple):
     phase: Range
 
     @classmethod
-    def all_of(cls, resolution: Resolution) -> Part:
+    def all_of(cls, resolution: Resolution) -> TablePart:
         """The part that has every node of a resolution."""
         nu_1, nu_2, nx, nz = resolution
         return cls(resolution, (0, nu_1), (0, nu_2), (0, nx), (0, nz))
@@ -36,7 +36,7 @@ class Part(NamedTuple):
     @property
     def whole(self) -> bool:
         """Whether the part has every node."""
-        return self == Part.all_of(self.resolution)
+        return self == TablePart.all_of(self.resolution)
 
     @property
     def nodes(self) -> int:
@@ -60,7 +60,7 @@ class Part(NamedTuple):
         return np.where(slips, b + atlas.t_slip(u_2) * width, opened), b, phi
 
 
-def frame(part: Part) -> Frame | None:
+def frame(part: TablePart) -> Frame | None:
     """Ranges of the nodes of a part, in each chart along each axis; None if it has them all."""
     if part.whole:
         return None
@@ -90,7 +90,7 @@ def _uniform(random: np.random.Generator, count: int, nodes: Range, of: int) -> 
     return random.uniform(low, max(low, high), count) / (of - 1)
 
 
-class Reach:
+class ChartRanges:
     """Ranges of the charts of a resolution in which a table is evaluated."""
 
     def __init__(self, resolution: Resolution) -> None:
@@ -108,13 +108,13 @@ class Reach:
             self._low[chart] = np.minimum(self._low[chart], q.min(axis=1, initial=np.inf))
             self._high[chart] = np.maximum(self._high[chart], q.max(axis=1, initial=-np.inf))
 
-    def part(self) -> Part | None:
+    def part(self) -> TablePart | None:
         """The nodes that it takes to answer the same again; None if none are needed."""
         if not np.isfinite(self._low).any():
             return None
         nu_1, nu_2, nx, nz = self.resolution
         low, high = self._low.min(axis=0), self._high.max(axis=0)
-        return Part(
+        return TablePart(
             self.resolution,
             _around(self._low[0, 0], self._high[0, 0], nu_1),
             _around(self._low[1, 0], self._high[1, 0], nu_2),

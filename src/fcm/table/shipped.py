@@ -17,7 +17,7 @@ import numpy as np
 from fcm.files import replacing
 from fcm.table import file_checksum
 from fcm.table.lookup import Coefficients, Table
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 
 DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
 SPLINES = ".splines"  # ending of the name
@@ -51,7 +51,7 @@ def read(path: Path) -> Table | None:
             return None
     except OSError:
         return None
-    part = Part.all_of(tuple(about["resolution"]))
+    part = TablePart.all_of(tuple(about["resolution"]))
     return Table.of_splines(found.reshape(about["shape"]), about["measured_error"], part)
 
 

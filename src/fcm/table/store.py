@@ -17,7 +17,7 @@ from fcm.files import NOT_THERE, no_file, real, replacing
 from fcm.table import TableError, file_checksum
 from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 
 LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
 PART_LAYOUT = 2  # of a file with a part of the nodes, which fcm before it would have taken for all
@@ -38,7 +38,7 @@ REMEDY = "make it anew with fcm tabulate"
 
 
 def write(
-    path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: str, part: Part | None = None
+    path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: str, part: TablePart | None = None
 ) -> None:
     """Write a table under a temporary name in the same folder, then rename it.
 
@@ -56,10 +56,12 @@ def write(
         file_checksum.attach(partial)
 
 
-def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str, part: Part | None) -> dict[str, Any]:
+def _attributes(
+    arrays: Arrays, error: Mapping[str, Any], history: str, part: TablePart | None
+) -> dict[str, Any]:
     if part is None:
         resolution = (arrays["ratio_b"].shape[0], *arrays["slope_b"].shape)
-        part = Part.all_of((resolution[0], resolution[1], resolution[2], resolution[3]))
+        part = TablePart.all_of((resolution[0], resolution[1], resolution[2], resolution[3]))
     attributes = {
         "Conventions": "CF-1.8",
         "title": TITLE,
@@ -112,7 +114,7 @@ def _written(numbers: Iterable[int]) -> str:
     return f"[{', '.join(f'np.int32({int(number)})' for number in numbers)}]"
 
 
-def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], Part]:
+def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], TablePart]:
     """The reduced coefficients of the two charts, the recorded error, and the nodes that the file has.
 
     Raises
@@ -142,13 +144,13 @@ def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], Part
     return *decode(arrays, part), json.loads(attributes["measured_error"]), part
 
 
-def _part(attributes: Mapping[str, Any]) -> Part:
+def _part(attributes: Mapping[str, Any]) -> TablePart:
     resolution = tuple(map(int, attributes["resolution"]))
-    whole = Part.all_of((resolution[0], resolution[1], resolution[2], resolution[3]))
+    whole = TablePart.all_of((resolution[0], resolution[1], resolution[2], resolution[3]))
     if "part" not in attributes:
         return whole
     ends = tuple(map(int, attributes["part"]))
-    return Part(whole.resolution, *((ends[k], ends[k + 1]) for k in (0, 2, 4, 6)))
+    return TablePart(whole.resolution, *((ends[k], ends[k + 1]) for k in (0, 2, 4, 6)))
 
 
 def _unsealed(path: Path) -> str:

@@ -22,7 +22,7 @@ from fcm.table.error import sample
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS
 from fcm.table.options import STUDY_OPTIONS, StudyOptions
-from fcm.table.partial_table import Part
+from fcm.table.partial_table import TablePart
 from fcm.table.tabulated import NODES_BETWEEN, Cubic, Resolution, locate
 
 Coefficients = Callable[[FloatArray, FloatArray, FloatArray], Any]
@@ -93,7 +93,7 @@ def _candidates(options: StudyOptions) -> Iterator[tuple[str, str, int, Coeffici
         values = _box_values(shape, options.box)
         yield "rectilinear", "linear", values[0].size, _box_linear(values, options.box)
         yield "rectilinear", "cubic", values[0].size, _box_cubic(values, options.box)
-        parts = charts(Part.all_of(resolution))
+        parts = charts(TablePart.all_of(resolution))
         yield "regimes", "linear", nodes, _regimes_linear(resolution, *parts)
         yield "regimes", "cubic", nodes, Table(*parts)
     yield "closed form", "", 0, fourier_coefficients

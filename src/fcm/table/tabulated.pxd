@@ -1,6 +1,6 @@
 from fcm.contact.closed_form cimport ClosedForm, CoefficientLaw
 
-cdef class Place:
+cdef class AtlasPoint:
     # of the table
     cdef double span_1, span_2, span_x, span_z
     cdef int first_slip
@@ -33,11 +33,11 @@ cdef (double, double, double, double) slopes(double f) noexcept nogil
 
 cdef class Frame:
     cdef const double[:, ::1] low, high, here
-    cdef bint within(self, Place place) noexcept nogil
+    cdef bint within(self, AtlasPoint place) noexcept nogil
 
 cdef class Tabulated(CoefficientLaw):
     cdef Cubic cubic
-    cdef Place place
+    cdef AtlasPoint place
     cdef Frame frame
     cdef ClosedForm exact
     cdef readonly long long outside

@@ -1,7 +1,7 @@
 """Kernel: the coefficients of a table as a law, with the exact derivatives of their interpolant.
 
 A point is located on the atlas, whose coordinates are those of `atlas`, which has their inverses and says
-what they are for (`Place`). There three tensor-product cubic B-splines are evaluated with their derivatives,
+what they are for (`AtlasPoint`). Three tensor-product cubic B-splines are evaluated with their derivatives,
 see `spline`: for q = i + f a spline is the sum of c_k B(q - k) over k from i - 1 to i + 2, with the weights
 
     B = (1-f)^3/6, (4 - 6f^2 + 3f^3)/6, (1 + 3f + 3f^2 - 3f^3)/6, f^3/6
@@ -43,7 +43,7 @@ TINY = cython.declare(cython.double, 1e-300)  # a divisor is at least that: none
 
 @cython.final
 @cython.cclass
-class Place:
+class AtlasPoint:
     """F = base + scale G(u, x, z) at a point, base = (mean, closed, 0), and F_b to be multiplied by sign.
 
     u, x and z are in nodes of the table, u through separation, then slip. ``u_n``, ``u_b``, ``u_phi`` and so
@@ -192,8 +192,8 @@ class Place:
         self.mean_phi = at_low * ell_2_phi - at_high * ell_1_phi
 
 
-class Places(NamedTuple):
-    """Places of many points: F = base + scale G(q), F_b (not F_s, F_c) times sign."""
+class AtlasPoints(NamedTuple):
+    """Points of an atlas: F = base + scale G(q), F_b (not F_s, F_c) times sign."""
 
     q: npt.NDArray[np.float64]  # (3, point), in nodes
     scale: npt.NDArray[np.float64]  # (point,)
@@ -201,26 +201,26 @@ class Places(NamedTuple):
     sign: npt.NDArray[np.float64]  # (point,)
 
 
-def locate(points: cython.double[:, ::1], resolution: Resolution) -> Places:
-    """Places of points, rows (3, point) of n0_bar, b_bar, phi, all finite, b not negative."""
+def locate(points: cython.double[:, ::1], resolution: Resolution) -> AtlasPoints:
+    """Points as those of the atlas, rows (3, point) of n0_bar, b_bar, phi, all finite, b not negative."""
     i: cython.Py_ssize_t
     count: cython.Py_ssize_t = points.shape[1]
     rows = np.zeros((8, count))
     out: cython.double[:, ::1] = rows
-    place: Place = Place(resolution)
+    place: AtlasPoint = AtlasPoint(resolution)
     for i in range(count):
         place.find(points[0, i], points[1, i], points[2, i], False)
         out[0, i], out[1, i], out[2, i] = place.u, place.x, place.z
         out[3, i], out[4, i], out[5, i], out[7, i] = place.scale, place.mean, place.closed, place.sign
-    return Places(rows[:3], rows[3], rows[4:7], rows[7])
+    return AtlasPoints(rows[:3], rows[3], rows[4:7], rows[7])
 
 
 def slip_geometry(b_bar: cython.double[::1], phi: cython.double[::1]) -> np.ndarray:
-    """low, high and width of `Place.geometry`, shape (3, point)."""
+    """low, high and width of `AtlasPoint.geometry`, shape (3, point)."""
     i: cython.Py_ssize_t
     rows = np.empty((3, b_bar.shape[0]))
     out: cython.double[:, ::1] = rows
-    place: Place = Place((2, 2, 2, 2))
+    place: AtlasPoint = AtlasPoint((2, 2, 2, 2))
     for i in range(b_bar.shape[0]):
         place.set_phase(phi[i])
         place.geometry(b_bar[i])
@@ -228,18 +228,14 @@ def slip_geometry(b_bar: cython.double[::1], phi: cython.double[::1]) -> np.ndar
     return rows
 
 
-def weights(
-    f: float,
-) -> tuple[float, float, float, float]:
+def weights(f: float) -> tuple[float, float, float, float]:
     """Weights of the four coefficients of a cubic B-spline at a fraction f of an interval."""
     g: float = 1.0 - f
     third: float = (1.0 + 3.0 * f * (1.0 + f * (1.0 - f))) / 6.0
     return g * g * g / 6.0, (4.0 + 3.0 * f * f * (f - 2.0)) / 6.0, third, f * f * f / 6.0
 
 
-def slopes(
-    f: float,
-) -> tuple[float, float, float, float]:
+def slopes(f: float) -> tuple[float, float, float, float]:
     """Derivatives of the four B-spline weights by f."""
     g: float = 1.0 - f
     return -0.5 * g * g, f * (1.5 * f - 2.0), 0.5 + f * (1.0 - 1.5 * f), 0.5 * f * f
@@ -258,13 +254,7 @@ class Cubic:
         self.coefficients = coefficients.reshape(-1).data
 
     def evaluate(
-        self,
-        u: float,
-        x: float,
-        z: float,
-        gradient: bool,
-        out: cython.double[::1],
-        at: cython.Py_ssize_t,
+        self, u: float, x: float, z: float, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t
     ) -> None:
         """Values of the three at (u, x, z), in nodes, to out[at:], then their derivatives by u, x and z."""
         i: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, u)
@@ -344,7 +334,7 @@ class Frame:
     def __init__(self, low: np.ndarray, high: np.ndarray, here: np.ndarray) -> None:
         self.low, self.high, self.here = low, high, here
 
-    def within(self, place: Place) -> cython.bint:
+    def within(self, place: AtlasPoint) -> cython.bint:
         """Turns a place into one in the nodes of the part; whether it answers for it.
 
         Where F needs no table, outside of both charts, any coordinates will do.
@@ -372,7 +362,7 @@ class Tabulated(CoefficientLaw):
     """
 
     def __init__(self, cubic: Cubic, resolution: tuple[int, int, int, int], frame: Frame | None) -> None:
-        self.cubic, self.place, self.frame, self.outside = cubic, Place(resolution), frame, 0
+        self.cubic, self.place, self.frame, self.outside = cubic, AtlasPoint(resolution), frame, 0
         self.exact = ClosedForm()
 
     def evaluate(

@@ -18,7 +18,7 @@ from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.flow import BLOCK, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
 
 if TYPE_CHECKING:
-    from fcm.time_domain.system import System
+    from fcm.time_domain.equations_of_motion import EquationsOfMotion
 
 SLOWEST = 1e-300  # [1/s] a rate below is none
 BLOCKS = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range((ORDER + 1) // 4)])
@@ -45,7 +45,7 @@ class Flow(NamedTuple):
     # omega^2 times these
 
 
-def made(system: System, states: Codes) -> Flow:
+def made(system: EquationsOfMotion, states: Codes) -> Flow:
     """The flow of a combination of contact states, with steps that resolve the forces as well."""
     matrix = _matrix(system, states)
     step, halved = _step(system, matrix)
@@ -66,7 +66,7 @@ def made(system: System, states: Codes) -> Flow:
     )  # fmt: skip
 
 
-def _matrix(system: System, states: Codes) -> FloatArray:
+def _matrix(system: EquationsOfMotion, states: Codes) -> FloatArray:
     """Matrix (linear, linear) of the equations for (q, q', f, n, 1)."""
     modal, m = system.scene.modal, system.modes
     a = np.zeros((system.linear, system.linear))
@@ -90,7 +90,7 @@ def _matrix(system: System, states: Codes) -> FloatArray:
     return a
 
 
-def _step(system: System, a: FloatArray) -> tuple[float, bool]:
+def _step(system: EquationsOfMotion, a: FloatArray) -> tuple[float, bool]:
     """Step length [s], one over a bound of the rates of the motion; and whether it was halved for the forces.
 
     It is halved only as often as bounding the frequency of the forces takes, so that the step is the same
@@ -125,7 +125,7 @@ def _exponential(a: FloatArray) -> FloatArray:
     return total
 
 
-def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:
+def _pushes(system: EquationsOfMotion, change: FloatArray, step: float) -> FloatArray:
     """Products h (A h)**k B of the matrix with the forces of each harmonic, see `Flow.pushes`."""
     pushes, flows = np.zeros((ORDER, 4 * system.flows.waves, change.shape[0])), system.flows
     for b in (0, 1):
@@ -136,7 +136,7 @@ def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:
     return pushes
 
 
-def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:
+def _exits(system: EquationsOfMotion, states: Codes) -> tuple[FloatArray, list[int], list[int]]:
     """Rows of the exits (by f, n and the rates of u and v), the contact and the next state of each."""
     rows: list[FloatArray] = []
     owner: list[int] = []

@@ -9,14 +9,14 @@ import numpy as np
 from fcm.contact.periodic.cycle import join_states
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
+from fcm.time_domain.equations_of_motion import LETTERS, EquationsOfMotion
 from fcm.time_domain.segments import Segments, sample
-from fcm.time_domain.system import LETTERS, System
 
 
 class Cycle(Frozen):
     """The motion over one period of the force, or over the part of one that ends a phase."""
 
-    system: System
+    system: EquationsOfMotion
     start: float  # [s] from the start of the motion
     duration: float  # [s]
     angle: float  # of the forces at its start [rad]

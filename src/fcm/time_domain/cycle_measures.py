@@ -9,9 +9,9 @@ import numpy as np
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.measures import Scan
 from fcm.time_domain.segments import Segments
-from fcm.time_domain.system import System
 
 
 class Measure(Frozen):
@@ -47,7 +47,7 @@ class Displaced(NamedTuple):
     places: FloatArray  # (2 dof, 2) segment, and position in steps: of all the least, then of the greatest
 
 
-def displaced(system: System, segments: Segments) -> Displaced:
+def displaced(system: EquationsOfMotion, segments: Segments) -> Displaced:
     """The least and the greatest displacement of each degree of freedom."""
     scan = system.displaced
     system.run(scan, segments)
@@ -57,9 +57,7 @@ def displaced(system: System, segments: Segments) -> Displaced:
 class Scanned(NamedTuple):
     """Least and greatest value of every reported quantity of a motion, found in one pass."""
 
-    least: (
-        FloatArray  # (row,) of the displacements, then of the rest, see `fcm.time_domain.system.System.parts`
-    )
+    least: FloatArray  # (row,) of the displacements, then of the rest, see `EquationsOfMotion.parts`
     greatest: FloatArray  # (row,)
     displaced: Displaced
 
@@ -68,7 +66,7 @@ class Scanned(NamedTuple):
         return self.least[rows], self.greatest[rows]
 
 
-def scanned(system: System, segments: Segments) -> Scanned:
+def scanned(system: EquationsOfMotion, segments: Segments) -> Scanned:
     """Least and greatest value of every reported quantity over segments."""
     scan, dofs = system.reported, system.parts.displaced
     system.run(scan, segments)
@@ -88,7 +86,7 @@ class Extreme(NamedTuple):
 Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of several rows
 
 
-def extremes_by(scan: Scan, system: System, segments: Segments) -> Extremes:
+def extremes_by(scan: Scan, system: EquationsOfMotion, segments: Segments) -> Extremes:
     """Least and greatest values of the rows of a scan over segments.
 
     The rows act on the state vector without the forces' angle.

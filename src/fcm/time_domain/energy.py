@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray
+from fcm.time_domain.constant_matrices import sines_and_cosines
 from fcm.time_domain.cycle import Cycle
-from fcm.time_domain.equations import sines_and_cosines
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.measures import Powers
 from fcm.time_domain.state import entry
-from fcm.time_domain.system import System
 from fcm.time_domain.trajectory import Motion
 
 
@@ -62,7 +62,7 @@ def powers_of(cycle: Cycle) -> Powers:
     return powers
 
 
-def _stored(system: System, y: FloatArray) -> float:
+def _stored(system: EquationsOfMotion, y: FloatArray) -> float:
     """Kinetic and elastic energy with the potential of the preload, without what slips have dissipated."""
     modal = system.scene.modal
     q, p = y[system.q], y[system.p]

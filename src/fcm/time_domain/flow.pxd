@@ -36,7 +36,7 @@ cdef class FlowSeries(FlowArrays):
 cdef class ForcedFlows(FlowSeries):
     cdef double[::1] whole
     cdef int refresh(self, Py_ssize_t slot) except -1 nogil
-    cdef int reach(self, Py_ssize_t slot, Py_ssize_t last) except -1 nogil
+    cdef int fill_columns(self, Py_ssize_t slot, Py_ssize_t last) except -1 nogil
     cdef void _one_step(self, Py_ssize_t slot) noexcept nogil
     cdef void _sum_terms(self, Py_ssize_t slot, Py_ssize_t h) noexcept nogil
     cdef void _add_term(self, Py_ssize_t slot, Py_ssize_t h, int j, double power, double slope) noexcept nogil

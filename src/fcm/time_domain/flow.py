@@ -32,7 +32,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, sin
 
-from fcm.time_domain.equations import Matrices
+from fcm.time_domain.constant_matrices import Matrices
 from fcm.time_domain.options import TIME, FlowOptions
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
@@ -442,7 +442,7 @@ def push(
 class ForcedFlows(FlowSeries):
     """`refresh` computes the force columns of a flow for `omega` [rad/s] and one step; see `FlowArrays`.
 
-    Those for more are made where they are needed, by `reach`.
+    Those for more are made where they are needed, by `fill_columns`.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
@@ -461,7 +461,7 @@ class ForcedFlows(FlowSeries):
         self._one_step(slot)
         self._sized(slot)
         self.reached[slot] = 0
-        self.reach(slot, 0)
+        self.fill_columns(slot, 0)
         self.made_for[slot] = self.omega
         return 0
 
@@ -563,7 +563,7 @@ class ForcedFlows(FlowSeries):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1, check=False)
-    def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
+    def fill_columns(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
         """Computes the missing columns of the forces over 1, 2, 4 ... 2**last steps."""
         t: cython.double
         h: cython.Py_ssize_t
@@ -613,11 +613,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def free(
-        self,
-        slot: cython.Py_ssize_t,
-        j: cython.Py_ssize_t,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
+        self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t
     ) -> cython.void:
         """Adds to `whole` the result of 2**j free steps (without forces) from row k of y."""
         n: cython.Py_ssize_t = self.linear
@@ -950,7 +946,7 @@ class Flows(ExitFunctions):
         cosine: cython.double
         c: cython.double
         s: cython.double
-        self.reach(slot, j)
+        self.fill_columns(slot, j)
         for i in range(n):
             self.whole[i] = 0.0
         for h in range(self.waves):

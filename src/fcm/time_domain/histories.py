@@ -15,7 +15,7 @@ from fcm.model.scene import Scene
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.schedule_plan import Plan
-from fcm.time_domain.schedule_record import CompletedPhase, Record, record, unfinished
+from fcm.time_domain.schedule_record import CompletedPhase, ScheduleRecord, record, unfinished
 from fcm.time_domain.simulation import Progress
 
 
@@ -24,7 +24,7 @@ class Histories(Frozen):
 
     scene: Scene
     plan: Plan
-    records: list[Record]  # one for each curve
+    records: list[ScheduleRecord]  # one for each curve
     seconds: float
 
     @property
@@ -36,7 +36,7 @@ class Histories(Frozen):
 class SavedRecords(Protocol):
     """Protocol of the saved results of a run, by the number of the curve (`fcm.run.Results`)."""
 
-    finished: dict[int, list[Any]]  # one `Record`
+    finished: dict[int, list[Any]]  # one `ScheduleRecord`
     states: dict[int, list[Any]]  # `CompletedPhase`, of the first phases
 
     def add(self, number: int, results: list[Any], /) -> None:
@@ -80,7 +80,7 @@ def histories(
     if not scene.schedule:
         raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
     begin, curves, plan = time.perf_counter(), scene.each_curve(), _plan(scene, options)
-    records: list[Record] = []
+    records: list[ScheduleRecord] = []
     for number, curve in enumerate(curves):
         made = _record(number, curve, plan, _share(progress, number, len(curves)), kept, options)
         records.append(made)
@@ -92,7 +92,7 @@ def histories(
     return Histories(scene, plan, list(map(_without_rounding, records)), time.perf_counter() - begin)
 
 
-def _without_rounding(record: Record) -> Record:
+def _without_rounding(record: ScheduleRecord) -> ScheduleRecord:
     """The record with amplitudes of 0 for degrees of freedom that move by rounding alone."""
     if not record.phases:
         return record
@@ -109,12 +109,12 @@ def _record(
     progress: Progress | None,
     kept: SavedRecords | None,
     options: TimeOptions = TIME,
-) -> Record:
+) -> ScheduleRecord:
     """The record of a curve, continued from what is saved of it."""
     if kept is None:
         return record(curve, plan, progress, options=options)
     if number in kept.finished:
-        whole: Record = kept.finished[number][0]
+        whole: ScheduleRecord = kept.finished[number][0]
         return whole
     passed: Sequence[CompletedPhase] = kept.states.get(number, ())
     made = record(curve, plan, progress, passed, lambda one: kept.save(number, one), options)

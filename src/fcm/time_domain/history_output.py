@@ -12,11 +12,11 @@ import numpy.typing as npt
 
 from fcm.files import replacing
 from fcm.time_domain.energy import Energy
+from fcm.time_domain.equations_of_motion import LETTERS
 from fcm.time_domain.histories import Histories
 from fcm.time_domain.options import TIME, TimeOptions
-from fcm.time_domain.schedule_record import NOT_REACHED, PhaseResult, Record
+from fcm.time_domain.schedule_record import NOT_REACHED, PhaseResult, ScheduleRecord
 from fcm.time_domain.state import State
-from fcm.time_domain.system import LETTERS
 from fcm.units import CF_UNIT, in_unit
 
 Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]  # dimensions, values, attributes
@@ -59,7 +59,7 @@ def _of_records(found: Histories) -> dict[str, Variable]:
         "flag_meanings": MEANINGS,
     }
 
-    def each(dims: str, pick: Callable[[Record], Any], text: str, **attributes: Any) -> Variable:
+    def each(dims: str, pick: Callable[[ScheduleRecord], Any], text: str, **attributes: Any) -> Variable:
         return _variable(f"curve {dims}", _stacked([pick(r) for r in found.records]), text, **attributes)
 
     change = "a change of state of a contact"
@@ -121,7 +121,7 @@ def summary(found: Histories) -> list[dict[str, Any]]:
     return [_of_record(found, record) for record in found.records]
 
 
-def _of_record(found: Histories, record: Record) -> dict[str, Any]:
+def _of_record(found: Histories, record: ScheduleRecord) -> dict[str, Any]:
     return {
         "parameters": record.parameters,
         "complete": record.complete,
@@ -191,7 +191,7 @@ def write_csv(found: Histories, path: str | Path) -> None:
             writer.writerows([number, *record.parameters.values(), *row] for row in _rows(found, record))
 
 
-def _rows(found: Histories, record: Record) -> Iterator[list[Any]]:
+def _rows(found: Histories, record: ScheduleRecord) -> Iterator[list[Any]]:
     plan = found.plan
     phase = np.append(np.repeat(plan.phase, plan.sampled), plan.phase[-1]) + 1
     for k in np.flatnonzero(np.isfinite(record.displacement[:, 0])):

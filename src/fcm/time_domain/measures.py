@@ -76,12 +76,7 @@ class Powers(Walk):
     """
 
     def __init__(
-        self,
-        flows: Flows,
-        wave: FloatArray,
-        static: FloatArray,
-        damper: FloatArray,
-        everywhere: bool = True,
+        self, flows: Flows, wave: FloatArray, static: FloatArray, damper: FloatArray, everywhere: bool = True
     ) -> None:
         Walk.__init__(self, flows)
         self._everywhere = everywhere
@@ -251,7 +246,7 @@ class Integrals(Walk):
             for i in range(self.flows.size):
                 self.ahead[0, i] = self._there[0, i]
             with cython.gil:
-                self.reach(slot)
+                self.fill_ahead(slot)
             for k in range(self.span):
                 self._gather(self.ahead, k)
             for i in range(self.flows.size):
@@ -374,11 +369,7 @@ class Rows:
     @cython.nogil
     @cython.exceptval(check=False)
     def all(
-        self,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
-        out: cython.double[:, ::1],
-        b: cython.Py_ssize_t,
+        self, y: cython.double[:, ::1], k: cython.Py_ssize_t, out: cython.double[:, ::1], b: cython.Py_ssize_t
     ) -> cython.void:
         """Products of all rows with row k of y, written to row b of out."""
         p: cython.Py_ssize_t
@@ -455,7 +446,7 @@ class Scan(Walk):
         count: cython.Py_ssize_t = 0
         if self.span > 0 and left >= self.span:
             with cython.gil:
-                self.reach(slot)
+                self.fill_ahead(slot)
                 self.values(slot)
             return self.span
         self._rows_at(slot, 0)

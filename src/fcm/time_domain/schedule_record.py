@@ -15,12 +15,12 @@ from fcm.model.scene import FloatArray, Phase, Scene
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import measure
 from fcm.time_domain.energy import Energy, energy
+from fcm.time_domain.equations_of_motion import LETTERS, EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.schedule_plan import Plan
 from fcm.time_domain.simulation import Progress, cycles_from
 from fcm.time_domain.state import State
-from fcm.time_domain.system import LETTERS, System
 from fcm.time_domain.trajectory import Motion, dof_rows
 
 NOT_REACHED = -1  # state of a contact at an instant that was not simulated
@@ -49,7 +49,7 @@ class PhaseResult(Frozen):
 
 
 @dataclass
-class Record:
+class ScheduleRecord:
     """The simulated schedule of one curve; NaN and -1 stand for what was not reached."""
 
     parameters: dict[str, float]
@@ -105,7 +105,7 @@ def record(
     passed: Sequence[CompletedPhase] = (),
     save: Callable[[CompletedPhase], None] | None = None,
     options: TimeOptions = TIME,
-) -> Record:
+) -> ScheduleRecord:
     """Simulates the schedule of a scene, and keeps what is reported of it.
 
     An interruption, contacts that chatter without end, or static loads that nothing holds, leave it
@@ -128,7 +128,7 @@ def record(
             recorder.take(one)
         for number, phase in list(enumerate(scene.schedule))[len(passed) :]:
             for cycle, end in cycles_from(
-                System(scene, phase.frequency, options.flows), phase.cycles, recorder.end, options
+                EquationsOfMotion(scene, phase.frequency, options.flows), phase.cycles, recorder.end, options
             ):
                 recorder.add(number, cycle, end)
                 if progress is not None:
@@ -144,7 +144,7 @@ def record(
     return made
 
 
-def unfinished(scene: Scene, plan: Plan) -> Record:
+def unfinished(scene: Scene, plan: Plan) -> ScheduleRecord:
     """The record of a curve that was not begun."""
     return _Recorder(scene, plan).record(NOT_BEGUN, True)
 
@@ -261,13 +261,13 @@ class _Recorder:
         segment = np.searchsorted(np.asarray(cycle.segments.start)[1:], times, side="right")
         self.state[chosen] = np.asarray(cycle.segments.states)[segment]
 
-    def record(self, reason: str, interrupted: bool) -> Record:
+    def record(self, reason: str, interrupted: bool) -> ScheduleRecord:
         amplitude, mean, greatest, least = self.measures
         found = self.transitions
         if self.done < self.plan.phase.size:  # it may have been interrupted within a cycle
             self.displacement[self.plan.first[self.done] :] = np.nan
             self.state[self.plan.first[self.done] :] = NOT_REACHED
-        return Record(
+        return ScheduleRecord(
             self.scene.parameters, amplitude, mean, greatest, least, self.displacement, self.state,
             np.array(found.times), np.array(found.contacts, dtype=np.int16),
             np.array(found.states, dtype=np.int8),

@@ -85,11 +85,7 @@ class Segments:
                 out[i] = max(out[i], fabs(self.y[k, i]))
         return greatest
 
-    def scale(
-        self,
-        per_unit: cython.double[::1],
-        flows: FlowArrays,
-    ) -> FloatArray:
+    def scale(self, per_unit: cython.double[::1], flows: FlowArrays) -> FloatArray:
         """Sizes of the displacements, velocities and friction forces: (2 modes + contacts,).
 
         A mode's is the greatest displacement by the one that its shape gives, a contact's the greatest of its
@@ -216,9 +212,9 @@ class Walk:
                 self.at += 1
         return 0
 
-    def reach(self, slot: cython.Py_ssize_t) -> None:
+    def fill_ahead(self, slot: cython.Py_ssize_t) -> None:
         """Fills the rows of `ahead` after the first, doubling the number of steps each time."""
-        self.flows.reach(slot, DOUBLINGS)
+        self.flows.fill_columns(slot, DOUBLINGS)
         n, y = self.flows.linear, np.asarray(self.ahead)
         powers, waves = np.asarray(self.flows.power)[slot], self.flows.waves
         forced = (

@@ -11,13 +11,13 @@ from fcm.model.scene import FloatArray, InTime, Phase, Scene, in_time
 from fcm.quoting import quoted
 from fcm.time_domain.contact_states import Codes
 from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.equations_of_motion import LETTERS, EquationsOfMotion
 from fcm.time_domain.errors import CycleError, SimulationError
 from fcm.time_domain.integrator import March
 from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.state import State, entered, entry, leave, set_angle
 from fcm.time_domain.stop_reason import Stopped
-from fcm.time_domain.system import LETTERS, System
 from fcm.time_domain.trajectory import Motion
 from fcm.units import spoken
 
@@ -103,7 +103,7 @@ def simulate_phases(
         if not (np.isfinite(phase.cycles) and phase.cycles > 0.0):
             raise SimulationError(f"a phase has {phase.cycles:g} cycles; it needs more than none")
         for cycle, end in cycles_from(
-            System(scene, phase.frequency, options.flows), phase.cycles, state, options
+            EquationsOfMotion(scene, phase.frequency, options.flows), phase.cycles, state, options
         ):
             start = done[-1].start + done[-1].duration if done else 0.0
             done.append(replace(cycle, start=start))
@@ -114,7 +114,7 @@ def simulate_phases(
 
 
 def cycles_from(
-    system: System, cycles: float, state: State, options: TimeOptions = TIME
+    system: EquationsOfMotion, cycles: float, state: State, options: TimeOptions = TIME
 ) -> Iterator[tuple[Cycle, State]]:
     """Yields the cycles from a state on, each with the state at its end; the last may be incomplete."""
     y, states = entry(system, state)
@@ -128,7 +128,7 @@ def cycles_from(
 
 
 def march(
-    system: System, y: FloatArray, states: Codes, duration: float, options: TimeOptions = TIME
+    system: EquationsOfMotion, y: FloatArray, states: Codes, duration: float, options: TimeOptions = TIME
 ) -> tuple[Segments, FloatArray, Codes]:
     """Segments of the motion over a duration [s], with the state vector and states at its end."""
     march = system.march()
@@ -138,7 +138,7 @@ def march(
 
 
 def march_from(
-    system: System, x: FloatArray, duration: float, options: TimeOptions = TIME
+    system: EquationsOfMotion, x: FloatArray, duration: float, options: TimeOptions = TIME
 ) -> tuple[Segments, FloatArray]:
     """Segments from x = (q, q', f) at the forces' angle 0 on, with the state vector at their end."""
     march = entered(system, x)
@@ -147,11 +147,11 @@ def march_from(
     return segments, np.array(march.y)[0]
 
 
-def _at(system: System) -> str:
+def _at(system: EquationsOfMotion) -> str:
     return spoken(system.omega, system.scene.frequency_unit)
 
 
-def _marched(system: System, march: March, options: TimeOptions = TIME) -> Segments:
+def _marched(system: EquationsOfMotion, march: March, options: TimeOptions = TIME) -> Segments:
     """Runs a march to its end, makes missing flows, and returns its segments.
 
     Raises CycleError for chatter, undecidable states or too long a cycle.

@@ -9,9 +9,9 @@ from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.errors import counted
 from fcm.time_domain.contact_states import Codes
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.integrator import March
-from fcm.time_domain.system import System
 
 
 class State(Frozen):
@@ -66,7 +66,7 @@ class State(Frozen):
         return State(given.displacement, given.velocity, friction, given.angle)
 
 
-def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
+def entry(system: EquationsOfMotion, state: State) -> tuple[FloatArray, Codes]:
     """The state vector of a state, and contact states for the march to begin with."""
     x = np.zeros(system.unknowns)
     try:
@@ -80,7 +80,7 @@ def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
     return np.array(march.y)[0], np.array(march.states)[0]
 
 
-def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
+def entered(system: EquationsOfMotion, x: FloatArray, angle: float = 0.0) -> March:
     """The march of a system, set to go on from x = (q, q', f) at an angle of the forces."""
     march = system.march()
     if not march.enters(x, angle, system.level):
@@ -88,12 +88,12 @@ def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
     return march
 
 
-def leave(system: System, y: FloatArray, angle: float) -> State:
+def leave(system: EquationsOfMotion, y: FloatArray, angle: float) -> State:
     """The `State` of a state vector, at an angle of the forces."""
     return State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), angle)
 
 
-def set_angle(system: System, y: FloatArray, angle: float) -> None:
+def set_angle(system: EquationsOfMotion, y: FloatArray, angle: float) -> None:
     """Sets the phases of the forces in a state vector by their angle [rad]."""
     angles = angle * np.array(system.harmonics)
     y[system.linear :: 2], y[system.linear + 1 :: 2] = np.sin(angles), np.cos(angles)

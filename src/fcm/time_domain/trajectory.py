@@ -12,9 +12,9 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Measure, measure
+from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
-from fcm.time_domain.system import System
 
 
 class Transition(NamedTuple):
@@ -67,7 +67,7 @@ class Motion(Frozen):
     def _at(self, time: npt.ArrayLike, velocities: bool) -> FloatArray:
         return self._rows_at(time, lambda system: dof_rows(system, velocities))
 
-    def _rows_at(self, time: npt.ArrayLike, rows: Callable[[System], FloatArray]) -> FloatArray:
+    def _rows_at(self, time: npt.ArrayLike, rows: Callable[[EquationsOfMotion], FloatArray]) -> FloatArray:
         times = np.atleast_1d(np.asarray(time, dtype=np.float64))
         if times.size and not (times.min() >= 0.0 and times.max() <= self.duration * (1.0 + 1e-15)):
             raise SimulationError(f"the motion lasts from 0 to {self.duration:g}")
@@ -117,14 +117,14 @@ class Motion(Frozen):
         return found
 
 
-def dof_rows(system: System, velocities: bool = False) -> FloatArray:
+def dof_rows(system: EquationsOfMotion, velocities: bool = False) -> FloatArray:
     """Rows that give the displacements of the degrees of freedom from the state vector, (dof, d)."""
     rows = np.zeros((len(system.scene.modal.dofs), system.size))
     rows[:, system.p if velocities else system.q] = system.scene.modal.shapes.T
     return rows
 
 
-def friction_rows(system: System) -> FloatArray:
+def friction_rows(system: EquationsOfMotion) -> FloatArray:
     """Rows that give the friction forces from the state vector, (contact, d)."""
     rows: FloatArray = np.eye(system.size)[system.f]
     return rows

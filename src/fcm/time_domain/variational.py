@@ -101,7 +101,7 @@ class VariationalFlow:
         by_sine: cython.double
         by_cosine: cython.double
         time: cython.double = self.flows.step[slot] * (1 << j)
-        self.flows.reach(slot, j)
+        self.flows.fill_columns(slot, j)
         self._times(self.flows.power[slot, j], u + 1)
         for h in range(self.flows.waves):
             b = n + 2 * h

@@ -24,7 +24,7 @@ class Corner:
         self.of, self.at, self.options = tracked, at, tracked.options.corner
         self.problem = ExtendedSystem(tracked.varied, at, tracked.span, tracked.options)
 
-    def reach(self, z: FloatArray, offset: float = 0.0) -> tuple[FloatArray, FloatArray] | None:
+    def nearest(self, z: FloatArray, offset: float = 0.0) -> tuple[FloatArray, FloatArray] | None:
         """The nearest point where the function is the offset, and the curve's direction there, scaled."""
         self.problem.offset = offset
         scale = np.asarray(self.problem.scale)
@@ -47,7 +47,7 @@ class Corner:
 
         By the secant along the direction of the corner's curve, from the point of it that is nearest to z.
         """
-        found = self.reach(z, offset)
+        found = self.nearest(z, offset)
         if found is None:
             return None
         scale, (start, direction) = np.asarray(self.problem.scale), found

@@ -182,7 +182,7 @@ class CornerCrossing:
     def _along(self, z: FloatArray, came: FloatArray, before: float) -> bool:
         """Go on along the corner that was landed on, to the side on which it holds."""
         assert self.corner is not None
-        found = self.corner.reach(z)
+        found = self.corner.nearest(z)
         if found is None:
             return False
         scale, t = np.array(self.newton.scale), found[1]

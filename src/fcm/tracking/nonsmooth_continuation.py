@@ -25,12 +25,12 @@ def follow_special_point(
     setup: TrackingSetup, condition: Condition, start: TrackedPoint, forward: bool
 ) -> tuple[list[TrackedPoint], Ending]:
     """The curve of special points from one of them, with s rising or falling at first."""
-    return Pieces(setup, condition).run(start, forward)
+    return SmoothPieces(setup, condition).run(start, forward)
 
 
 def land(setup: TrackingSetup, condition: Condition, z: FloatArray) -> TrackedPoint | None:
     """The point near z = (x, omega, s) at the same s; at a corner if there is one that holds."""
-    return Pieces(setup, condition).land(z)
+    return SmoothPieces(setup, condition).land(z)
 
 
 class _End(Frozen):
@@ -41,7 +41,7 @@ class _End(Frozen):
     then: Callable[[], bool | Ending]
 
 
-class Pieces(CornerCrossing):
+class SmoothPieces(CornerCrossing):
     """Follows the smooth pieces of one curve of special points, one after the other."""
 
     def land(self, z: FloatArray) -> TrackedPoint | None:

@@ -1,10 +1,10 @@
-from fcm.contact.periodic.motion cimport ZeroCrossings, Events
+from fcm.contact.periodic.motion cimport ZeroCrossings, CycleEvents
 
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
 
 cpdef int join_states(int[::1] state, int[::1] piece, int count) noexcept nogil
 
-cdef class Slider(Events):
+cdef class Slider(CycleEvents):
     cdef readonly ZeroCrossings crossings
     cdef readonly int pieces
     cdef readonly int[::1] state, event, cause

@@ -36,8 +36,8 @@ if cython.compiled:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Events,
-        Motion,
+        CycleEvents,
+        LineMotion,
         ZeroCrossings,
     )
 else:
@@ -58,8 +58,8 @@ else:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Events,
-        Motion,
+        CycleEvents,
+        LineMotion,
         ZeroCrossings,
     )
 
@@ -93,7 +93,7 @@ def join_states(state: cython.int[::1], piece: cython.int[::1], count: cython.in
 
 
 @cython.cclass
-class Slider(Events):
+class Slider(CycleEvents):
     """The pieces of a cycle in order, up to `pieces`, and the slider at the beginning of the present span.
 
     Attributes
@@ -113,10 +113,10 @@ class Slider(Events):
         the angle at which it begins, and what brought the slider to rest.
     """
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: LineMotion) -> None:
         crossings = ZeroCrossings(motion)
         size = 2 * crossings.capacity + 4
-        Events.__init__(self, motion, size)
+        CycleEvents.__init__(self, motion, size)
         self.crossings = crossings
         self.state, self.event = np.zeros(size, dtype=np.intc), np.zeros(size, dtype=np.intc)
         self.cause = np.zeros(size, dtype=np.intc)
@@ -124,14 +124,7 @@ class Slider(Events):
         self.pieces = self.slipping = self.span = self.span_cause = 0
         self.span_begin = self.w = 0.0
 
-    def add(
-        self,
-        state: cython.int,
-        event: cython.int,
-        theta: float,
-        rest: float,
-        cause: cython.int,
-    ) -> None:
+    def add(self, state: cython.int, event: cython.int, theta: float, rest: float, cause: cython.int) -> None:
         """Appends a piece, unless the last one has the same state."""
         i: cython.int = self.pieces
         if i > 0 and self.state[i - 1] == state:
@@ -224,12 +217,12 @@ class LineCycle(Slider):
     Attributes
     ----------
     behaviour, kind, start
-        Of the motion taken last: as of `Motion.load` and `solve`, and the start as `solve` has it.
+        Of the motion taken last: as of `LineMotion.load` and `solve`, and the start as `solve` has it.
     greatest_lower, least_upper, overlap
         Of a contact that never opens, the greatest top, the least bottom, and the first less the second.
     """
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: LineMotion) -> None:
         Slider.__init__(self, motion)
         self.order = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.overlap = self.greatest_lower = self.least_upper = 0.0

@@ -1,10 +1,10 @@
 from fcm.contact.periodic.cycle cimport LineCycle
-from fcm.contact.periodic.motion cimport Motion
+from fcm.contact.periodic.motion cimport LineMotion
 
 cdef int STICKS, SIGNED_SLIPS, CONTACT, LONG
 
 cdef class Integrals:
-    cdef readonly Motion motion
+    cdef readonly LineMotion motion
     cdef readonly LineCycle cycle
     cdef readonly int most, highest
     cdef double[:, ::1] cos_sum, sin_sum, power_cos, power_sin
@@ -17,7 +17,7 @@ cdef class Integrals:
     cdef void product(self, int h, int which, int row) noexcept nogil
 
 cdef class Derivatives:
-    cdef readonly Motion motion
+    cdef readonly LineMotion motion
     cdef readonly LineCycle cycle
     cdef readonly Integrals integrals
     cdef readonly int outputs, unknowns
@@ -37,7 +37,7 @@ cdef class Derivatives:
     cdef void rescale(self, int row, double by_motion, double by_load) noexcept nogil
 
 cdef class PeriodicContact:
-    cdef readonly Motion motion
+    cdef readonly LineMotion motion
     cdef readonly LineCycle cycle
     cdef readonly Integrals integrals
     cdef readonly Derivatives derivatives

@@ -21,11 +21,19 @@ from fcm.contact.periodic.gauss import gauss
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
-    from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, Motion
+    from cython.cimports.fcm.contact.periodic.motion import (
+        FORCE,
+        LOAD,
+        MIXED,
+        REACH,
+        TWO_PI,
+        UNKNOWN,
+        LineMotion,
+    )
 else:
     from fcm.contact.closed_form import NAN, PI
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
-    from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, Motion
+    from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, LineMotion
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
@@ -400,7 +408,7 @@ class PeriodicContact:
     """
 
     def __init__(self, harmonics: list[int], outputs: list[int]) -> None:
-        self.motion = Motion(harmonics)
+        self.motion = LineMotion(harmonics)
         self.cycle = LineCycle(self.motion)
         self.integrals = Integrals(self.cycle, max(outputs, default=0))
         self.derivatives = Derivatives(self.integrals, outputs)

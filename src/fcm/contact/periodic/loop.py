@@ -76,14 +76,7 @@ class PeriodicLoop(Frozen, LoadedPieces):
 
 
 def periodic_loop(
-    u: npt.ArrayLike,
-    v: npt.ArrayLike,
-    mu: float,
-    k_u: float,
-    k_v: float,
-    n_0: float,
-    *,
-    start: float = 0.0,
+    u: npt.ArrayLike, v: npt.ArrayLike, mu: float, k_u: float, k_v: float, n_0: float, *, start: float = 0.0
 ) -> PeriodicLoop:
     """The steady hysteresis loop of one contact under any periodic motion, its events located exactly.
 

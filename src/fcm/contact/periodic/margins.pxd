@@ -1,11 +1,11 @@
 from fcm.contact.periodic.cycle cimport LineCycle
-from fcm.contact.periodic.motion cimport ZeroCrossings, Motion
+from fcm.contact.periodic.motion cimport ZeroCrossings, LineMotion
 
 cdef int CLOSES, OPENS, SLIPS, MOST, LEAST, MINIMUM, MAXIMUM, GREATEST_LOAD
 cdef double PAST
 
 cdef class RegimeMargins:
-    cdef readonly Motion normal
+    cdef readonly LineMotion normal
     cdef readonly ZeroCrossings crossings
     cdef readonly int most, count
     cdef readonly double[::1] value, angle
@@ -22,7 +22,7 @@ cdef class Margins(RegimeMargins):
 cdef double greatest_load(ZeroCrossings crossings) noexcept nogil
 
 cdef class Measures:
-    cdef readonly Motion motion
+    cdef readonly LineMotion motion
     cdef readonly LineCycle cycle
     cdef readonly ZeroCrossings crossings
     cdef readonly double least_load, greatest_load, overlap, greatest_friction, dissipation, slip_path

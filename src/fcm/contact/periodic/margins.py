@@ -48,7 +48,7 @@ if cython.compiled:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Motion,
+        LineMotion,
         ZeroCrossings,
     )
 else:
@@ -70,7 +70,7 @@ else:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Motion,
+        LineMotion,
         ZeroCrossings,
     )
 
@@ -94,7 +94,7 @@ class RegimeMargins:
     Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
 
-    def __init__(self, normal: Motion, of_slips: int) -> None:
+    def __init__(self, normal: LineMotion, of_slips: int) -> None:
         self.normal, self.crossings = normal, ZeroCrossings(normal)
         self.most, self.count = FIXED + self.crossings.capacity + of_slips, 0
         self.value, self.angle = np.zeros(self.most), np.zeros(self.most)

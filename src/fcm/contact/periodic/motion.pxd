@@ -10,7 +10,7 @@ cdef class Nodes:
     cdef bint fundamental
     cdef void take_nodes(self, int moving) noexcept nogil
 
-cdef class Motion(Nodes):
+cdef class LineMotion(Nodes):
     cdef readonly int count, moving
     cdef readonly double scale, load_scale, ratio, preload
     cdef readonly int[::1] number
@@ -29,7 +29,7 @@ cdef class Motion(Nodes):
 cdef int CLOSES, OPENS, TOP, BOTTOM, MEETS
 
 cdef class ZeroCrossings:
-    cdef readonly Motion motion
+    cdef readonly LineMotion motion
     cdef readonly int count, capacity
     cdef readonly double[::1] angle
     cdef readonly int[::1] kind
@@ -53,8 +53,8 @@ cdef class ZeroCrossings:
 cdef double _cubic(double g_0, double d_0, double g_1, double d_1) noexcept nogil
 cdef double _last_root(double c_0, double c_1, double c_2) noexcept nogil
 
-cdef class Events:
-    cdef readonly Motion motion
+cdef class CycleEvents:
+    cdef readonly LineMotion motion
     cdef readonly int events
     cdef readonly int[::1] event_kind
     cdef readonly double[::1] event_cos, event_sin, event_angle, lower, upper, moved

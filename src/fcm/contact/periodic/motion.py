@@ -10,7 +10,7 @@ The mean of u is left out: it matters only to a slider that never moves.
 Where a row of that changes its sign none is missed. Between two nodes its values and slopes at both, and a
 bound of its fourth derivative, prove that it has no zero, or that it is monotone (`fcm.cubic`). Where they do
 not, the interval is halved, until what could be hidden is no more than the rounding of the row itself
-(`ZeroCrossings`). Each event has the limits of the slider there, and their rates (`Events`).
+(`ZeroCrossings`). Each event has the limits of the slider there, and their rates (`CycleEvents`).
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ FAINT = cython.declare(
 
 
 @cython.cclass
-class Motion(Nodes):
+class LineMotion(Nodes):
     """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
 
     moving: the harmonics after so many are nothing, as where few are looked at among more.
@@ -113,13 +113,7 @@ class Motion(Nodes):
         self.at = np.zeros((REACH, self.many))
 
     def load(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
+        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> cython.int:
         """Takes a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
         self.taken = self.sampled = False
@@ -294,7 +288,7 @@ class Motion(Nodes):
 class ZeroCrossings:
     """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search."""
 
-    def __init__(self, motion: Motion, options: PeriodicOptions = PERIODIC) -> None:
+    def __init__(self, motion: LineMotion, options: PeriodicOptions = PERIODIC) -> None:
         self.motion = motion
         self.max_halvings, self.min_interval = options.max_halvings, options.min_interval
         self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
@@ -465,7 +459,7 @@ class ZeroCrossings:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _of_one(found: ZeroCrossings, motion: Motion, begin: float) -> cython.void:
+def _of_one(found: ZeroCrossings, motion: LineMotion, begin: float) -> cython.void:
     """Appends the crossings of a rate a cos(theta) - b sin(theta) within one turn; see `search`."""
     i: cython.int
     a: float = motion.re[found.row, 0]
@@ -518,7 +512,7 @@ MEETS = cython.declare(cython.int, 4)  # where a limit meets the slider: an even
 
 
 @cython.cclass
-class Events:
+class CycleEvents:
     """Angles of a cycle in no order, up to `events`, with the limits of the motion there.
 
     Attributes
@@ -534,7 +528,7 @@ class Events:
         Of an instant that OPENS, which way the slider has to go to be there. Divided by the scale.
     """
 
-    def __init__(self, motion: Motion, size: int) -> None:
+    def __init__(self, motion: LineMotion, size: int) -> None:
         self.motion = motion
         self.events = 0
         self.event_kind, self.event_angle = np.zeros(size, dtype=np.intc), np.zeros(size)

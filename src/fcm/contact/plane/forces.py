@@ -51,11 +51,7 @@ class PlanarContact:
     """
 
     def __init__(
-        self,
-        harmonics: list[int],
-        outputs: list[int],
-        most_panels: int = 0,
-        options: PlanarOptions = OPTIONS,
+        self, harmonics: list[int], outputs: list[int], most_panels: int = 0, options: PlanarOptions = OPTIONS
     ) -> None:
         self.motion = PlaneMotion(harmonics, STAGES, options)
         self.cycle = PlanarCycle(self.motion, outputs, most_panels)

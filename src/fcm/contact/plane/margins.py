@@ -107,13 +107,7 @@ class PlanarMargins(RegimeMargins):
         return grown
 
     def hold(
-        self,
-        x: cython.double[::1],
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start: cython.bint,
+        self, x: cython.double[::1], mu: float, k_u: float, k_v: float, n_0: float, start: cython.bint
     ) -> None:
         """Lets `resting` examine a motion."""
         self.motion.load(x, 0, mu, k_u, k_v, n_0)

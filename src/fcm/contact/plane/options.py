@@ -141,10 +141,6 @@ class LoopOptions(Frozen):
 LOOP = LoopOptions()
 OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 1e-8 mostly, 1e-6 at worst
 FINE = replace(
-    OPTIONS,
-    tolerance=1e-9,
-    panel_length=4.0,
-    last_change=1e-6,
-    impulse_tolerance=1e-11,
+    OPTIONS, tolerance=1e-9, panel_length=4.0, last_change=1e-6, impulse_tolerance=1e-11
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels

@@ -1,4 +1,4 @@
-from fcm.contact.periodic.motion cimport Motion
+from fcm.contact.periodic.motion cimport LineMotion
 
 cdef extern from *:
     """
@@ -75,7 +75,7 @@ cdef int X, Y, REACH, LOAD, SCAN, ROWS
 cdef class PlaneMotion:
     cdef readonly object options
     cdef double smooth, faint
-    cdef readonly Motion normal
+    cdef readonly LineMotion normal
     cdef readonly int count, highest, moving, stages
     cdef readonly double scale, load_scale, ratio, preload, mean_x, mean_y, size, reach
     cdef readonly int[::1] number

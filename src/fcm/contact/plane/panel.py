@@ -36,7 +36,7 @@ from fcm.contact.plane.options import PlanarOptions
 from fcm.contact.plane.radau import radau
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
     from cython.cimports.fcm.contact.plane.panel import (
         apply_eight,
         face_eight,
@@ -45,7 +45,7 @@ if cython.compiled:
         turn_of_eight,
     )
 else:
-    from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
+    from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
     from fcm.contact.plane.radau import STAGES
 
 
@@ -87,7 +87,7 @@ class PlaneMotion:
         self.options = given = options
         self.smooth, self.faint = given.smooth_radius, given.min_motion
         numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
-        self.normal = Motion(harmonics)
+        self.normal = LineMotion(harmonics)
         self.highest, self.stages = max(harmonics, default=0), stages
         self.number, self.order = numbers, numbers.astype(np.float64)
         self.re = np.zeros((ROWS, max(self.count, 1)))
@@ -106,13 +106,7 @@ class PlaneMotion:
         self.moving = 0
 
     def load(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
+        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> cython.int:
         """Takes a contact and returns OPEN, CLOSED or MIXED; UNKNOWN where a number is not finite."""
         k: cython.int
@@ -323,14 +317,7 @@ class Panel:
                 self.columns[STAGES * j + i] = self.slopes[i + 1, j + 1]
 
     def solve(
-        self,
-        theta: float,
-        length: float,
-        left: float,
-        e_x: float,
-        e_y: float,
-        rate: float,
-        bend: float,
+        self, theta: float, length: float, left: float, e_x: float, e_y: float, rate: float, bend: float
     ) -> bool:
         """Solves a panel from a direction on, with predicted alpha' and alpha''; False if it is too long."""
         i: cython.int

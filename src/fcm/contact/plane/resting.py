@@ -303,12 +303,7 @@ class Resting:
             next_size = self.stack[depth, 3]
             error: float = self.fourth * length * length
             count: cython.int = self.most_maxima(
-                length,
-                value,
-                slope,
-                next_value,
-                next_slope,
-                least + self.rounding * max(size, next_size),
+                length, value, slope, next_value, next_slope, least + self.rounding * max(size, next_size)
             )
             if count > 1 and depth < self.max_halvings and VALUE_ERROR * error * length * length > self.noise:
                 depth += 1
@@ -542,15 +537,7 @@ class Resting:
             )
 
     def consider(
-        self,
-        near: bool,
-        s_x: float,
-        s_y: float,
-        x: float,
-        y: float,
-        t: float,
-        i: cython.int,
-        j: cython.int,
+        self, near: bool, s_x: float, s_y: float, x: float, y: float, t: float, i: cython.int, j: cython.int
     ) -> None:
         """Keeps a place if it misses none of the known discs and is the best so far."""
         value: float = hypot(x - s_x, y - s_y) if near else t

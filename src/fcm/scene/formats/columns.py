@@ -15,6 +15,7 @@ from fcm.scene.errors import quoted
 from fcm.scene.files import UnreadableError
 from fcm.scene.number_text import fault_of_number, number_in
 
+COMMENT = b"**"
 MARK = b"\xef\xbb\xbf"  # of UTF-8, which some editors write at the beginning
 
 
@@ -26,52 +27,52 @@ class Columns(NamedTuple):
     line: npt.NDArray[np.int64]
 
 
-def read_columns(path: Path, whole: int, between: str | None = None, comment: str = "**") -> Columns:
+def read_columns(path: Path, whole: int, between: str | None = None) -> Columns:
     """Lines of some integers and a real number each; blank lines and comments are passed over.
 
     ValueError names the line that is otherwise, and what a line must be.
     """
     content = path.read_bytes().removeprefix(MARK)
-    if not _holds_something(content, comment.encode()):
+    if not _holds_something(content):
         raise UnreadableError("it is empty")
     kind = np.dtype([("whole", np.int64, (whole,)), ("real", np.float64)])
     try:
-        found = _loaded(content, kind, between, comment)
+        found = _loaded(content, kind, between)
     except (ValueError, UnicodeDecodeError):
-        found = _line_by_line(content, kind, between, comment)
+        found = _line_by_line(content, kind, between)
     count = content.count(b"\n") + (not content.endswith(b"\n"))
     every = found.size == count  # which is quickly said of millions of lines
-    lines = np.arange(1, count + 1) if every else _numbers_of_lines(content, comment.encode())
+    lines = np.arange(1, count + 1) if every else _numbers_of_lines(content)
     good = np.isfinite(found["real"])
     if not good.all():
         raise UnreadableError(f"line {lines[int(good.argmin())]}: is no finite number")
     return Columns(found["whole"], found["real"], lines)
 
 
-def _holds_something(content: bytes, comment: bytes) -> bool:
+def _holds_something(content: bytes) -> bool:
     """Whether a line holds more than a comment."""
-    return any(one.partition(comment)[0].strip() for one in io.BytesIO(content))
+    return any(one.partition(COMMENT)[0].strip() for one in io.BytesIO(content))
 
 
-def _loaded(content: bytes, kind: np.dtype[Any], between: str | None, comment: str) -> npt.NDArray[Any]:
+def _loaded(content: bytes, kind: np.dtype[Any], between: str | None) -> npt.NDArray[Any]:
     """The lines as numpy reads them: a comment of two letters would cost it more than the numbers."""
-    mark: str | None = comment
-    if comment.encode() not in content:
+    mark: str | None = COMMENT.decode()
+    if COMMENT not in content:
         mark = None
     elif b"#" not in content:
-        content, mark = content.replace(comment.encode(), b"#"), "#"
+        content, mark = content.replace(COMMENT, b"#"), "#"
     return np.loadtxt(io.BytesIO(content), kind, delimiter=between, comments=mark, ndmin=1)
 
 
-def _numbers_of_lines(content: bytes, comment: bytes) -> npt.NDArray[np.int64]:
+def _numbers_of_lines(content: bytes) -> npt.NDArray[np.int64]:
     """The numbers, from 1, of the lines that hold something."""
     lines = content.split(b"\n")
     return np.array(
-        [i for i, one in enumerate(lines, 1) if one.partition(comment)[0].strip()], dtype=np.int64
+        [i for i, one in enumerate(lines, 1) if one.partition(COMMENT)[0].strip()], dtype=np.int64
     )
 
 
-def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None, comment: str) -> npt.NDArray[Any]:
+def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None) -> npt.NDArray[Any]:
     """Reads the lines one by one, with numbers as Fortran writes them; raises for the first wrong line."""
     try:
         text = content.decode("utf-8")
@@ -79,7 +80,7 @@ def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None, comm
         raise UnreadableError("it is no text in UTF-8; save it as that") from None
     found = []
     for number, line in enumerate(text.split("\n"), 1):
-        words = line.partition(comment)[0].strip()
+        words = line.partition(COMMENT.decode())[0].strip()
         if words:
             found.append(_row([one.strip() for one in words.split(between)], kind, number, between))
     return np.array(found, dtype=kind)

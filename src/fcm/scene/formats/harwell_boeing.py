@@ -46,7 +46,7 @@ def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
         raise UnreadableError(f"line 3: it has {rows} rows and {columns} columns; a square matrix is needed")
     if 8 * max(rows, entries) > largest:
         raise MemoryError
-    formats = [_format(lines[3][i : i + 16], 4) for i in (0, 16)] + [_format(lines[3][32:52], 4)]
+    formats = [_format(lines[3][i:end]) for i, end in ((0, 16), (16, 32), (32, 52))]
     begin = HEAD + (cards[4] > 0)
     parts = []
     for card, form, size in zip(cards[1:4], formats, (columns + 1, entries, entries), strict=True):
@@ -77,12 +77,11 @@ def _count(line: str, field: int, number: int) -> int:
     return int(word)
 
 
-def _format(word: str, number: int) -> Fields:
+def _format(word: str) -> Fields:
+    """The format that a word of the fourth line says."""
     found = FORMAT.fullmatch(word.strip())
     if not found:
-        raise UnreadableError(
-            f'line {number}: "{word.strip()}" is no Fortran format such as (10I8) or (4E20.13)'
-        )
+        raise UnreadableError(f'line 4: "{word.strip()}" is no Fortran format such as (10I8) or (4E20.13)')
     return Fields(int(found[1] or 1), int(found[3]))
 
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.model.scene import FloatArray, Held, Scene, has_friction
+from fcm.model.scene import FloatArray, HeldContact, Scene, has_friction
 
 if TYPE_CHECKING:
-    from fcm.time_domain.system import System
+    from fcm.time_domain.equations_of_motion import EquationsOfMotion
 
 
 class Matrices(NamedTuple):
@@ -38,7 +38,7 @@ class Matrices(NamedTuple):
     harmonics: tuple[int, ...]
 
 
-def matrices_of(system: System) -> Matrices:
+def matrices_of(system: EquationsOfMotion) -> Matrices:
     """The `Matrices` of a system, equal at every frequency."""
     modal, c = system.scene.modal, system.contacts
     law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
@@ -85,7 +85,7 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
     return shapes, shapes * np.array(stiffness)[:, None] / modal.mass, steady
 
 
-def held_limits(system: System) -> FloatArray:
+def held_limits(system: EquationsOfMotion) -> FloatArray:
     """Rows for the slip limit, or gap, of each held contact, and for its margin on either side.
 
     Rows of the state vector without the forces' angle, (3 held, linear).
@@ -94,7 +94,7 @@ def held_limits(system: System) -> FloatArray:
     return np.array(rows).reshape(3 * len(rows), system.linear)
 
 
-def _limits_of(system: System, one: Held) -> list[FloatArray]:
+def _limits_of(system: EquationsOfMotion, one: HeldContact) -> list[FloatArray]:
     """The three limit rows of one held contact."""
     load, force = held_forces(system, one)
     if one.open:
@@ -105,14 +105,14 @@ def _limits_of(system: System, one: Held) -> list[FloatArray]:
     return [limit, limit - force, limit + force]
 
 
-def held_rows(system: System) -> FloatArray:
+def held_rows(system: EquationsOfMotion) -> FloatArray:
     """Rows for the normal forces of all held contacts, then for their friction forces: (2 held, d - 2)."""
     pairs = [held_forces(system, one) for one in system.scene.held]
     loads, forces = ([pair[i] for pair in pairs] for i in (0, 1))
     return np.array(loads + forces).reshape(2 * len(pairs), system.linear)
 
 
-def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
+def held_forces(system: EquationsOfMotion, one: HeldContact) -> tuple[FloatArray, FloatArray]:
     """Rows of the state vector for the normal and friction force of a contact that is held closed."""
     contact, shapes = one.contact, system.scene.modal.shapes
     load, force = np.zeros((2, system.linear))

@@ -1,4 +1,4 @@
-"""A sweep: all batches computed somewhere, kept as they are finished, and interrupted without loss."""
+"""Batches, all computed somewhere, kept as they are finished, and interrupted without loss."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from fcm.run.checkpoint import Results
+from fcm.run.checkpoint_file import Results
 from fcm.run.options import RUN
-from fcm.run.places import Factory, NotComputed, Place, PlaceClosed, SerialPlace, Threads, WorkerDied
+from fcm.run.places import Factory, NotComputed, Place, PlaceClosed, SerialPlace, WorkerDied
 from fcm.run.progress import Bar
-from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
+from fcm.run.tasks import Attempt, Batch, Compute, Lost, Progress, Report
 from fcm.threads import one_here
 
 DIED = "its process ended unexpectedly, perhaps for want of memory; try fewer --jobs"
@@ -34,14 +34,13 @@ class Outcome:
         return list(self.results.get(number, self.parts.get(number, ())))
 
 
-def place_for(jobs: int, *, threads: bool = False) -> Factory:
+def place_for(jobs: int) -> Factory:
     """Factory of the place for a number of cores of this machine."""
     if jobs == 1:
         return lambda compute, _count: SerialPlace(compute)
     from fcm.run.processes import Processes
 
-    kind = Threads if threads else Processes
-    return lambda compute, count: kind(compute, min(jobs, count))
+    return lambda compute, count: Processes(compute, min(jobs, count))
 
 
 def place_of(executor: Executor) -> Factory:
@@ -51,7 +50,7 @@ def place_of(executor: Executor) -> Factory:
     return lambda compute, _count: ExecutorPlace(compute, executor)
 
 
-def sweep(
+def compute_batches(
     compute: Compute,
     batches: Sequence[Batch],
     at: Factory | None = None,
@@ -82,10 +81,10 @@ def sweep(
         If the place takes nothing any more before anything is finished; later, as an interruption.
     """
     with one_here():
-        return _Sweep(compute, batches, at or place_for(1), kept or Results(), progress).run()
+        return _BatchRun(compute, batches, at or place_for(1), kept or Results(), progress).run()
 
 
-class _Sweep:
+class _BatchRun:
     def __init__(
         self,
         compute: Compute,

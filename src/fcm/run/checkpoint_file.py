@@ -42,7 +42,7 @@ class Results:
         """Keeps the state of an unfinished batch; here none is kept."""
 
 
-class Checkpoint:
+class CheckpointFile:
     """The file of one output, and its lock.
 
     Parameters
@@ -158,7 +158,7 @@ class Checkpoint:
         os.close(self._file)
         self._file = -1
 
-    def __enter__(self) -> Checkpoint:
+    def __enter__(self) -> CheckpointFile:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -191,7 +191,7 @@ class Checkpoint:
 
 
 class _Kept(Results):
-    def __init__(self, checkpoint: Checkpoint, mark: bytes) -> None:
+    def __init__(self, checkpoint: CheckpointFile, mark: bytes) -> None:
         super().__init__()
         self.checkpoint, self.mark = checkpoint, mark
 

@@ -66,7 +66,7 @@ STATES = (
 )  # and what is saved of steps
 
 
-class TrackedWork(Frozen):
+class TrackingTask(Frozen):
     """The task of tracking curves in each scene."""
 
     number: Number

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 NO_ENDS = (np.nan, np.nan)
 
 
-class CondensedCurve(Frozen):
+class CurveExtract(Frozen):
     """Numbers of a curve for which all its points are needed."""
 
     points: int
@@ -45,7 +45,7 @@ class CondensedCurve(Frozen):
     isolated_branches: tuple[tuple[float, float], ...]  # [rad/s] lowest and highest frequency of each
     highest_on_isolated: npt.NDArray[np.bool_]  # (dof,) whether the highest peak is on one of them
 
-    def at(self, shown: npt.NDArray[np.bool_]) -> CondensedCurve:
+    def at(self, shown: npt.NDArray[np.bool_]) -> CurveExtract:
         """The summary restricted to some of the degrees of freedom."""
         lower = self.lower_peaks[shown[self.lower_peaks[:, 0].astype(np.intp)]]
         lower[:, 0] = (np.cumsum(shown) - 1)[lower[:, 0].astype(np.intp)]
@@ -58,11 +58,11 @@ class CondensedCurve(Frozen):
         )
 
 
-def condense(curve: Curve) -> CondensedCurve:
-    """The condensed numbers of a curve that has all its points."""
+def extract_of(curve: Curve) -> CurveExtract:
+    """The extract of a curve that has all its points."""
     known = curve.frequency[np.isfinite(curve.frequency)]
     isolated, on_isolated = _isolated_branches(curve)
-    return CondensedCurve(
+    return CurveExtract(
         points=known.size,
         ends=_ends(curve, known),
         stable=_stable(curve),
@@ -80,19 +80,19 @@ def condense(curve: Curve) -> CondensedCurve:
     )
 
 
-def with_condensed(curve: Curve) -> Curve:
-    """A curve that is to be told of several times, with what is condensed of it."""
-    return curve if curve.condensed is not None else replace(curve, condensed=condense(curve))
+def with_extracts(curve: Curve) -> Curve:
+    """A curve that is to be told of several times, with its extract."""
+    return curve if curve.extract is not None else replace(curve, extract=extract_of(curve))
 
 
 def without_points(curve: Curve, most: int = 0) -> Curve:
-    """A curve with what is condensed of it, and so many of its points: where displacements are greatest."""
+    """A curve with its extract, and so many of its points: where displacements are greatest."""
     at = np.flatnonzero(np.isfinite(curve.frequency))
     if at.size:
         at = distinct_values(at[curve.amplitude[at].argmax(axis=0)])[:most]
     values = {field.name: getattr(curve, field.name) for field in fields(curve)}
     kept: dict[str, Any] = {name: x[at] for name, x in values.items() if isinstance(x, np.ndarray)}
-    return replace(curve, **kept, across=None, condensed=condense(curve))
+    return replace(curve, **kept, across=None, extract=extract_of(curve))
 
 
 def worst(errors: FloatArray) -> float | None:

@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.structure.loads import driven_harmonics, loads_of
+from fcm.time_domain.constant_matrices import held_as_springs, held_limits, held_rows, matrices_of
 from fcm.time_domain.contact_states import Codes, made
-from fcm.time_domain.equations import held_as_springs, held_limits, held_rows, matrices_of
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.flow import Flows
 from fcm.time_domain.integrator import March
@@ -37,7 +37,7 @@ class ReportedRows(NamedTuple):
     held: slice  # see `held_rows`
 
 
-class System:
+class EquationsOfMotion:
     """A scene at an excitation frequency omega [rad/s]; the flows serve every frequency.
 
     Parameters
@@ -91,14 +91,14 @@ class System:
         self.displaced, self.limits, self.reported, self.parts = self._scans()
         _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
 
-    def at(self, omega: float) -> System:
+    def at(self, omega: float) -> EquationsOfMotion:
         """The same scene at another frequency, with the same flows."""
-        other = System.__new__(System)
+        other = EquationsOfMotion.__new__(EquationsOfMotion)
         other.__dict__.update(self.__dict__)
         other.omega = _checked(omega)
         return other
 
-    def at_level(self, level: float, by_level: bool = False) -> System:
+    def at_level(self, level: float, by_level: bool = False) -> EquationsOfMotion:
         """The same scene at another force level, with the same flows; the level may be the parameter."""
         other = self.at(self.omega)
         other.level, other.by_level = level, by_level
