@@ -45,9 +45,9 @@ class PlanarLaw(KernelLaw):
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
-        self.take_forces(self.kernel.forces)
         # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
         smooth: cython.bint = self.kernel.cycle.behaviour == CLOSED and not self.mu * self.k_u > 0.0
+        self.take_forces(self.kernel.forces, smooth or self.kernel.kind == STUCK, x, first)
         self.nonlinear = self.kernel.kind == MIXED and not smooth
         return 0
 
