@@ -106,3 +106,13 @@ def test_a_search_without_evaluations_left_is_not_settled():
     assert isinstance(short, SearchResult) and not short.settled and long.settled
     options = replace(FIT, starts=1, finalist_evaluations=1, start_evaluations=1)
     assert not solved(parameters, [data], (1,), options).settled
+
+
+def test_a_point_that_does_not_move_is_fitted_with_a_floor():
+    data = drawn(1, 0.0, 0.02)
+    still = replace(data, amplitude=np.where(OMEGA > 1.45, 0.0, data.amplitude))
+    parameters = parameters_of(scene(0.3, 1.1), KEYS, [None, None])
+    fit = solved(parameters, [still], (1,), replace(FIT, starts=1))
+    rms = np.sqrt(((amplitude(*fit.values) - still.amplitude) ** 2).mean())
+    assert (fit.data[0].estimated[still.amplitude == 0.0] > 0.5 * rms).all()
+    assert fit.values == pytest.approx(TRUTH, rel=0.1)

@@ -284,6 +284,7 @@ def test_what_fcm_wrote_is_read(tmp_path, of):
         (FIT, "frequency,amplitude\n1.0,0.0\n", "all amplitudes are 0"),
         (FIT.replace("a.csv", "a.xls"), POINTS, "measured points are read from"),
         ('[fit]\nvary = ["contact.shroud.mu"]\n', POINTS, "missing; give [[fit.data]]"),
+        (FIT + FIT[FIT.index("[[") :], POINTS, "fit.data[1]: is there twice"),
         (FIT + '[sweep]\n"contact.shroud.n_0" = [1.0]\n', POINTS, "is of no use with [sweep]"),
         (FIT.replace("vary", "starts = 0\nvary"), POINTS, "must be a whole number from 1 to 100, is 0"),
         (FIT.replace("vary", 'starts = "a"\nvary'), POINTS, 'must be a number, is the string "a"'),

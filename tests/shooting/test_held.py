@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import fcm
 from fcm.continuation import Events, FollowOptions
 from fcm.model.scene import HeldContact, Load
 from fcm.reduction import constant_state_contacts
@@ -15,7 +16,7 @@ from fcm.response.exact_curve import ExactCurveTask
 from fcm.response.options import leaving_out
 from fcm.response.resumable_branches import ResumablePaths, SavedPath, TimeOver
 from fcm.run import Report
-from fcm.scene import Contact, Force, Modal, Scene
+from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
 from fcm.shooting.harmonic_balance_state import balanced_states
 from fcm.shooting.initial_orbits import first_point, near_balance
 from fcm.shooting.problem import OrbitProblem
@@ -213,3 +214,38 @@ def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
     resumable = ResumablePaths(scene.frequency_range, Report(lambda *_: None, saved))
     path = resumable(problem, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True)
     assert path.z.shape[1] == z.size
+
+
+def test_residual_friction_is_limited_under_forces_of_several_harmonics():
+    """Beside the balance of enough harmonics."""
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["u", "v", "w"],
+                "frequency": [1.0, 2.3, 10.0],
+                "damping": [0.01, 0.015, 0.01],
+                "shapes": [[0.707, 0.707, 0.3], [1.0, -0.5, 0.2], [0.2, 0.4, -1.1]],
+            },
+            "contact": [
+                {"name": "c", "tangential": "u", "normal": {"v": 1.0, "w": 0.2}}
+                | {"mu": 0.4, "k_u": 1.0, "k_v": 0.8, "n_0": 2.0},
+                {
+                    "name": "d",
+                    "tangential": "w",
+                    "normal": "v",
+                    "mu": 0.3,
+                    "k_u": 0.6,
+                    "k_v": 0.5,
+                    "n_0": 1.0,
+                },
+            ],
+            "force": [
+                {"dof": "u", "amplitude": 1.0},
+                {"dof": "v", "amplitude": 0.3, "harmonic": 2, "phase": 0.7},
+            ],
+            "response": {"frequency": [1.2, 1.24]},
+        }
+    )
+    exact, balanced = fcm.respond(scene, "exact"), fcm.respond(scene, harmonics=9)
+    assert exact.complete.item() == 1
+    assert exact.peak_amplitude.values == pytest.approx(balanced.peak_amplitude.values, rel=2e-3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from fcm.cli import schedule
 from fcm.cli.columns import BEYOND, short
 from fcm.cli.curves import incomplete, shown_dofs
 
@@ -24,6 +25,8 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     'result: complete; every peak shown is stable; errors of peaks are at most 2.0e-04'
     >>> verdict({"curves": [curve | {"folds_unsure_at": [1.0]}]}, 1).split(";")[0]
     'result: complete, but branches may be missing'
+    >>> verdict({"curves": [curve], "histories": [{"complete": False}]}, 0).split(";")[0]
+    'result: the schedule stopped early'
     >>> other = curve | {"complete": False, "peak": {"u": peak | {"stable": None, "error": None}}}
     >>> verdict({"curves": [curve, other]}, 2)  # doctest: +NORMALIZE_WHITESPACE
     'result: 1 of 2 curves stopped early; of 2 peaks shown, 1 of unknown stability;
@@ -33,7 +36,8 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     if not curves or any("mode" in curve or "level_folds" in curve for curve in curves):
         return ""
     unsure = any(curve.get(key) for curve in curves for key in _UNSURE)
-    parts = [(incomplete(summary) or "complete") + ", but branches may be missing" * unsure]
+    ends = incomplete(summary), schedule.incomplete(summary.get("histories", []))
+    parts = [(" and ".join(filter(None, ends)) or "complete") + ", but branches may be missing" * unsure]
     if peaks := _shown(summary):
         parts += [_of_stability(peaks), _of_errors(summary, peaks)]
     elif any(curve["points"] for curve in curves):

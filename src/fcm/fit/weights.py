@@ -80,7 +80,8 @@ def _errors(
     """How unlikely the distances are, and the errors sigma (point,) that fit their squares best.
 
     components : (point,) of each, that are independent; share: whether a share alone is looked at. A floor
-    alone, a share alone, or both; a further number must earn its place (Schwarz's criterion).
+    alone, a share alone, or both; a further number must earn its place (Schwarz's criterion). Points of
+    amplitude 0 have no share, so that there is a floor.
     """
     top = float(amplitude.max())
     typical = max(float(np.sqrt(square.mean())), least * top)
@@ -91,10 +92,10 @@ def _errors(
         return unlikely + numbers * np.log(components.sum()), np.sqrt(size)
 
     # of one number the likeliest is known: the mean of the squares over the shape
-    shapes = (np.ones(amplitude.size), (amplitude / top) ** 2)
+    shapes = [np.ones(amplitude.size), (amplitude / top) ** 2][: 2 if amplitude.all() else 1]
     found = [told(shape * np.average(square / shape, weights=components), 1) for shape in shapes]
     if share:
-        return found[1]
+        return found[-1]
 
     def both(x: FloatArray) -> FloatArray:
         floor, share = np.exp(np.clip(2.0 * x, -80.0, 80.0)) * typical**2

@@ -31,7 +31,9 @@ cdef class Law:
 
 cdef class KernelLaw(Law):
     cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1
-    cdef void take_forces(self, double[::1] forces, int kind, int behaviour) noexcept
+    cdef void take_forces(
+        self, double[::1] forces, int kind, int behaviour, double[::1] x, Py_ssize_t first
+    ) noexcept
     cdef int take_margins(self, int count, int[::1] kind, double[::1] value, double[::1] angle) except -1
 
 cdef class LineLaw(KernelLaw):

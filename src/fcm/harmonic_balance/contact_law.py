@@ -27,13 +27,13 @@ from fcm.model.scene import Contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK
     from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.closed_form import PI
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK
     from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
     from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from fcm.continuation.problem import NONE
@@ -153,16 +153,31 @@ class KernelLaw(Law):
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def take_forces(self, forces: cython.double[::1], kind: cython.int, behaviour: cython.int) -> cython.void:
-        """Take the forces of the kernel, less the preload that the structure at rest balances; and of which
-        kind its cycle and its load are."""
+    def take_forces(
+        self,
+        forces: cython.double[::1],
+        kind: cython.int,
+        behaviour: cython.int,
+        x: cython.double[::1],
+        first: cython.Py_ssize_t,
+    ) -> cython.void:
+        """Take the forces of the kernel, less the preload that the structure at rest balances; kind is that
+        of its cycle, behaviour that of its load.
+
+        Where they are linear, as of a contact that sticks all through, the difference of load and preload
+        would have their rounding. That may be more than all that a small motion makes of the mean force.
+        """
         i: cython.Py_ssize_t
+        normal: cython.int = self.directions - 1
         for i in range(self.force.shape[0]):
             self.force[i] = forces[i]
-        self.force[self.directions - 1] -= max(self.n_0, 0.0)
         # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
         smooth: cython.bint = behaviour == CLOSED and not self.mu * self.k_u > 0.0
         self.nonlinear = kind == MIXED and not smooth
+        if kind == STUCK:
+            self.force[normal] = self.k_v * x[first + normal] + min(self.n_0, 0.0)
+        else:
+            self.force[normal] -= max(self.n_0, 0.0)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -199,7 +214,7 @@ class LineLaw(KernelLaw):
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
-        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour)
+        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour, x, first)
         return 0
 
     @cython.ccall

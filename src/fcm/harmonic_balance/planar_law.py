@@ -39,7 +39,7 @@ class PlanarLaw(KernelLaw):
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
-        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour)
+        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour, x, first)
         return 0
 
     @cython.ccall

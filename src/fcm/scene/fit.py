@@ -69,6 +69,9 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
     units = top.data.get("units")
     own = [str(units.get(key, "")) if isinstance(units, Mapping) else "" for key in ("length", "force")]
     scene = Surroundings(reported, (own[0], own[1]), files.noted)
+    for i, one in enumerate(sections):
+        if one.data in [other.data for other in sections[:i]]:
+            one.wrong("", "is there twice: the same data would count as measured again, with smaller errors")
     data = [_data(one, files, draft, scene, UNIT[unit]) for one in sections]
     if section.mistakes.count > before:
         return None

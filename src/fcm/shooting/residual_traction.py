@@ -160,5 +160,5 @@ def _room_derivative(
 ) -> tuple[FloatArray, float]:
     """The derivatives of the least of mu n - sign f by x and by the frequency."""
     columns = derivative_at(system, segments, place.segment, place.position).columns
-    rates = columns[:-1, :-2] @ system.limit_rows[2 * j + (sign < 0.0)]
+    rates = columns[:-1, : system.linear] @ system.limit_rows[2 * j + (sign < 0.0)]
     return rates[:-1], float(rates[-1])
