@@ -9,9 +9,13 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.cli.curves import as_table
+from fcm.harmonic_balance.system import System
 from fcm.plot.campbell import Ring, draw_campbell, folded
 from fcm.response.request import ResponseError
 from fcm.scene import SceneError, scene_from_dict
+from fcm.stability.options import StabilityOptions, StructureOptions
+from fcm.stability.ring_multipliers import stability_unknown
 
 from ..program import called
 from . import rings
@@ -83,9 +87,19 @@ def test_harmonics_without_modes_are_refused_and_their_absence_is_said():
     with pytest.raises(ResponseError, match="give its modes, or the harmonics"):
         fcm.respond(scene, accuracy=0.01)
     response = fcm.respond(scene, harmonics=1)
-    left_out = json.loads(response.attrs["summary"])["left_out"]
-    assert any("stability: there are no modes of nodal diameter 2, 3" in text for text in left_out)
+    summary = json.loads(response.attrs["summary"])
+    assert any("stability: there are no modes of nodal diameter 2, 3" in text for text in summary["left_out"])
     assert np.isnan(response.stable.values).any()
+    said = as_table(summary, "rad/s")
+    assert '"left out" says why' in said and "more harmonics may" not in said
+    assert "more harmonics may" in as_table(summary | {"left_out": []}, "rad/s")
+
+
+def test_too_many_disturbances_are_said_with_what_helps():
+    system = System(scene_from_dict(rings.sector(6, 1)), (1,))
+    options = StabilityOptions(structure=StructureOptions(max_disturbances=3))
+    why = stability_unknown(system, 100.0, options)
+    assert "too many; up to 3 are looked at. structure.modes may take fewer modes" in why
 
 
 def test_engine_orders_are_swept():

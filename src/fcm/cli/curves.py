@@ -20,6 +20,7 @@ from fcm.cli.columns import (
     not_complete,
     number,
     ranges,
+    remedy_of_unknown_stability,
     share_of,
     short,
     stopped_early,
@@ -84,7 +85,9 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         "lower peaks": _every_peak(curves, names, dofs, unit, length),
         "greatest stable motions": stable_table(curves, names, moving, unit),
         "jumps": jump_table(curves, names, moving, unit, resolution_of(summary)),
-        "stretches of unknown stability": unknown_stability_table(curves, names, moving, unit),
+        "stretches of unknown stability": unknown_stability_table(
+            curves, names, moving, unit, remedy_of_unknown_stability(summary)
+        ),
     }
     peaks, *others = of_each.values()
     drawn = summary.get("scatter", ())
@@ -369,7 +372,8 @@ def _curves(
     if UNKNOWN in marks:
         of_judged = [curve["peak"].get(dof) or {} for curve in judged for dof in dofs]
         looked = UNKNOWN in map(_mark_of, [*of_judged, *_lower_peaks(judged, dofs)])
-        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN if looked else STABILITY_NOT_YET_KNOWN}")
+        remedy = remedy_of_unknown_stability(summary)
+        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN + remedy if looked else STABILITY_NOT_YET_KNOWN}")
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))

@@ -9,6 +9,7 @@ import click
 
 from fcm.cli.columns import (
     DOES_NOT_STAY,
+    HARMONICS_HELP,
     STABILITY_UNKNOWN,
     UNKNOWN,
     UNSTABLE,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
     UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
-    UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}",
+    UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}{HARMONICS_HELP}",
 }
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
