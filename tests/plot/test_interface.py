@@ -233,7 +233,7 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     assert "(amplitude = 0.01); 2 contacts (sticks: 2): none takes energy" in done.err and "$" not in done.err
     lines = done.err.splitlines()
     heads, listed = (
-        [k for k, line in enumerate(lines) if what in line] for what in ("curve 2 (", "energy [")
+        [k for k, line in enumerate(lines) if what in line] for what in ("curve 2 (", "slip path")
     )
     assert listed == [heads[0] + 1] and lines[heads[0]].endswith("those that take most energy:")
     few = [word for k in (0, 1, 2) for word in ("--curve", k)]

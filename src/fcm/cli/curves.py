@@ -224,6 +224,7 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
             "each line is in its own order: a peak and a frequency of one column are not of one draw"
         )
         lines += _of_intervals(found, dofs)
+        lines += _of_large_errors(found, dofs)
     if any(one["untold"] for one in jumps.values()):
         lines.append("unknown: stability is not known, and a sweep may jump")
     return "\n".join(lines)
@@ -275,6 +276,17 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
         needed = max(short_of.values())
         lines.append(f"{few} too few for both bounds of {named} %: {needed} are needed")
     return lines
+
+
+def _of_large_errors(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
+    """That peaks of some draws err so much that the percentiles are not to be relied on."""
+    worst = max(found["peak"][dof]["greatest_error"] or 0.0 for dof in dofs)
+    if worst <= SENTENCES.doubtful_error:
+        return []
+    return [
+        f"percentiles are not to be relied on: peaks err by up to {share_of(worst)}, and such a peak may be "
+        "of no motion. Draw again with more harmonics, or --accuracy, before another number is chosen"
+    ]
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
