@@ -67,6 +67,7 @@ def listing(scene: Scene) -> dict[str, Any]:
         "scene": scene.name,
         "title": scene.title,
         "frequency_unit": scene.frequency_unit,
+        "units": dict(zip(("length", "force"), scene.units, strict=True)),
         "modes": modes,
         "resonances": friction_damping(scene),
         "of_pairs": _of_pairs(scene),
