@@ -282,11 +282,11 @@ def _in_doubt(scene: Scene) -> bool:
 
 
 def _notes_of_modes(scene: Scene) -> list[str]:
-    if not scene.of_matrices or scene.ring is not None or not scene.contacts:
+    if not scene.of_matrices or not scene.contacts:
         return []
-    from fcm.scene.listing import notes_of_modes
+    from fcm.scene.listing import notes_of_diameters, notes_of_modes
 
-    return notes_of_modes(scene)
+    return notes_of_modes(scene) if scene.ring is None else notes_of_diameters(scene)
 
 
 def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:
