@@ -222,7 +222,13 @@ def _nearly(one: Mapping[str, Any]) -> str:
         for end in ("low", "high")
     )
     key = plain(next(iter(one["values"])))
-    return f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
+    said = f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
+    for number_of, times in near.get("higher", ()):
+        side = "below" if number_of < one["values"][next(iter(one["values"]))] else "above"
+        said += (
+            f"\n{side}, at {key} = {number_of:.5g}, a peak ends that is {times:.3g} times as high: keep away"
+        )
+    return said
 
 
 def _tried(one: Mapping[str, Any]) -> str:
