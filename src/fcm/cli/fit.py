@@ -10,7 +10,6 @@ import click
 from fcm.cli.columns import aligned, ranges
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
-from fcm.units import unit_of_number
 
 if TYPE_CHECKING:
     from fcm.cli.respond_options import Asked
@@ -50,6 +49,7 @@ def fitted(
 def as_table(result: Mapping[str, Any]) -> str:
     """Tables of the fitted numbers, then of the data."""
     from fcm.plot.labels import with_mode
+    from fcm.units import unit_of_number
 
     found, units = result["fitted"], result.get("units", {})
     given = units.get("length", ""), units.get("force", ""), result.get("frequency_unit", "")
