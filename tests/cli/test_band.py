@@ -1,8 +1,14 @@
 """``fcm plot response --band``, and what a run says of random draws."""
 
+import copy
+import json
+from dataclasses import replace
+
+import netCDF4
 import numpy as np
 import pytest
 
+from fcm.cli.curves import as_table
 from fcm.plot.band import draw_bands
 from fcm.plot.read import read_response
 from fcm.results.bands import bands_of
@@ -68,3 +74,33 @@ def test_a_band_of_few_draws_is_their_range(result):
     for one, other in zip(few, whole, strict=True):
         assert np.array_equal(one.low, other.low, equal_nan=True)
         assert np.array_equal(one.high, other.high, equal_nan=True)
+
+
+def test_draws_whose_peaks_err_much_are_said_in_the_picture(result):
+    drawn = read_response(result)
+    bands = bands_of(drawn.curves, drawn.drawn, 0, (25.0, 75.0))
+    at_top = [np.zeros(len(curve.frequency)) for curve in drawn.curves]
+    for k in (1, 3):
+        at_top[k][np.nanargmax(drawn.curves[k].amplitude[:, 0])] = 0.9
+    err = [replace(c, truncation_error=one) for c, one in zip(drawn.curves, at_top, strict=True)]
+    titles = [
+        draw_bands(replace(drawn, curves=tuple(curves)), 0, bands, (25.0, 75.0), None)
+        .axes[0]
+        .get_title("right")
+        for curves in (
+            err,
+            [replace(one, truncation_error=0.0 * e) for one, e in zip(err, at_top, strict=True)],
+        )
+    ]
+    assert ["peaks of 2 of 4 draws may err by more than 20 %" in one for one in titles] == [True, False]
+
+
+def test_percentiles_of_peaks_that_err_much_are_not_relied_on(result):
+    with netCDF4.Dataset(result) as data:
+        summary = json.loads(data.summary)
+    said = "percentiles are not to be relied on: peaks err by up to 35 %"
+    for error, kept in ((0.35, True), (0.05, False), (None, False)):
+        other = copy.deepcopy(summary)
+        for peak in other["scatter"][0]["peak"].values():
+            peak["greatest_error"] = error
+        assert (said in as_table(other, "rad/s")) == kept

@@ -9,7 +9,7 @@ import pytest
 
 import fcm
 from fcm.branches.options import FoldOptions
-from fcm.cli.caveats import maybe_not_unique, nothing_stable, peaks_not_followed, short_of_accuracy
+from fcm.cli.caveats import linear, maybe_not_unique, nothing_stable, peaks_not_followed, short_of_accuracy
 from fcm.model.scene import InTime
 from fcm.response.exact import trace_exact
 from fcm.response.options import ResponseOptions
@@ -152,8 +152,20 @@ def test_stretches_too_narrow_to_be_seen_are_counted():
 def test_curves_on_which_no_contact_slips_are_said_to_be_linear(fcm, scene, loads, which):
     scene.write_text(scene.read_text() + f'[sweep]\n"contact.0.n_0" = {loads}\n')
     run = fcm("respond", scene)
-    said = f"no contact slips or opens {which}: the response is linear. With less preload or more force"
+    said = f"no contact slips or opens {which}: the response is linear. Friction reaches "
     assert run.code == 0 and (said in run.err if which else "no contact slips" not in run.err)
+    assert ("With less preload or more force it is not" in run.err) == bool(which)
+
+
+def test_how_near_to_slip_stuck_contacts_are_is_said_with_the_units():
+    loads = {
+        name: {"greatest_friction_force": {"greatest": f}, "greatest_normal_force": {"greatest": n}}
+        for name, f, n in (("a", 3.0, 4e6), ("b", 2.0, 1e3), ("c", None, None), ("d", 0.0, 0.0))
+    }
+    curve = {"parameters": {}, "all_stick": True, "contacts": loads}
+    said = linear({"curves": [curve], "units": {"force": "N"}})
+    assert "Friction reaches 2 N beside a normal force of 1000 N (b). With less preload" in said
+    assert "With greater modal amplitudes, by --level, it" in linear({"curves": [curve | {"mode": {}}]})
 
 
 @pytest.mark.parametrize(

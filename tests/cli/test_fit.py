@@ -98,6 +98,8 @@ def test_numbers_of_which_a_product_alone_matters_are_indistinguishable(measured
     found = json.loads(done.out)["fitted"]
     ((one, other, power),) = found["not_told_apart"]
     assert [found["numbers"][key]["interval"] for key in (one, other)] == [[None, None]] * 2
+    heads = as_table({"fitted": found, "units": {"length": "mm", "force": "N"}})
+    assert "contact.shroud.n_0 [N]\n" in heads and "contact.shroud.mu\n" in heads
     assert sum(line.count("not determined") for line in as_table({"fitted": found}).splitlines()[1:3]) == 2
     assert {one, other} == {"contact.shroud.mu", "contact.shroud.n_0"} and power == pytest.approx(
         1.0, rel=1e-6

@@ -461,6 +461,21 @@ def test_of_many_contacts_those_of_the_greatest_ratio_are_listed(listed):
     assert table.rstrip().endswith("and 3 more contacts: --json has all")
 
 
+@pytest.mark.parametrize(
+    ("units", "springs", "preload"),
+    [
+        ('length = "mm"\nforce = "N"', " [N/mm],", "n_0 [N]"),
+        ('force = "N"', ",", "n_0 [N]"),
+        ("", ",", "n_0"),
+    ],
+)
+def test_stiffnesses_and_preloads_have_the_units_of_the_scene(listed, units, springs, preload):
+    out = listed(f"{SCENE}\n[units]\n{units}\n").out
+    assert f"the stiffness of each contact{springs} beside" in out
+    (heads,) = [line for line in out.splitlines() if line.startswith("resonance ")]
+    assert heads.endswith(f"  {preload}")
+
+
 ONE_MASS = """
 [structure]
 dofs = ["u", "v"]

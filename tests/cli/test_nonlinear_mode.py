@@ -63,14 +63,16 @@ def test_a_level_whose_resonance_is_not_among_the_amplitudes_is_told(fcm):
     levels = [x for level in (1e-3, 1, 20) for x in ("--force-level", level)]
     done = fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels)
     assert done.code == 0
-    assert done.out.splitlines()[3:5] == [
+    wider = "a wider --level FROM:TO, which is of modal amplitudes, has these resonances"
+    assert done.out.splitlines()[3:6] == [
         "force level 0.001: its resonance lies below the modal amplitude 5",
         "force level 20: its resonance lies beyond the modal amplitude 30",
+        wider,
     ]
     assert done.out.splitlines()[1].count("(level ") == 1 and "(level 1)" in done.out
     several = ("respond", "yang1998", *MODE[2:4], "--level", "5:30", "--harmonics", 1, "--force-level", 20)
     told = "force level 20: its resonance lies beyond the modal amplitude 30, in 10 of 10 curves"
-    assert fcm(*several).out.splitlines()[12:] == [told]
+    assert fcm(*several).out.splitlines()[12:] == [told, wider]
     mode = json.loads(fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels, "--json").out)["curves"][0]
     assert [one["level"] for one in mode["mode"]["not_met"]] == [0.001, 20.0]
     assert [one["level"] for one in mode["mode"]["resonances"]] == [1.0]

@@ -58,6 +58,15 @@ def test_no_angle_is_written_on_the_paths(figure):
             assert not (box.x0 < at[0] < box.x1 and box.y0 < at[1] < box.y1), text.get_text()
 
 
+def test_displacements_of_both_directions_have_one_power_of_ten():
+    """Alone the direction up to 0.011 mm would have none, and that of 0.004 mm a thousandth."""
+    loop = fcm.planar_loop([0.0, 0.011], [0.0, -0.004j], [0.0, 0.0], mu=0.5, k_u=2.0, k_v=0.0, n_0=0.002)
+    drawn = draw_planar_loop(DrawnPlanarLoop(loop, "pad", ("ax", "ay"), ("mm", "N")))
+    plane, along_x, along_y, _ = drawn.axes
+    labels = [plane.get_xlabel(), plane.get_ylabel(), along_x.get_xlabel(), along_y.get_xlabel()]
+    assert all("10^{-3}$ mm" in label for label in labels), labels
+
+
 def test_the_slider_is_not_drawn_while_the_contact_is_open(figure):
     (line,) = lines(figure.axes[0], SLIDER)
     path = path_of(LOOP)

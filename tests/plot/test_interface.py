@@ -231,6 +231,11 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     swept = [re.search(rf"curve {k} \(.*= ([0-9.]+)\); 2", done.err) for k in (0, 2)]
     assert done.code == 0 and [one and one[1] for one in swept] == ["0.01", "20"]
     assert "(amplitude = 0.01); 2 contacts (sticks: 2): none takes energy" in done.err and "$" not in done.err
+    lines = done.err.splitlines()
+    heads, listed = (
+        [k for k, line in enumerate(lines) if what in line] for what in ("curve 2 (", "slip path")
+    )
+    assert listed == [heads[0] + 1] and lines[heads[0]].endswith("those that take most energy:")
     few = [word for k in (0, 1, 2) for word in ("--curve", k)]
     many = [word for at in ("1.2", "1.3", "1.4") for word in ("--at", at)]
     assert "9 points by --at and --curve are too many" in fcm("plot", "contacts", output, *few, *many).err

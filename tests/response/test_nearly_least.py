@@ -64,6 +64,26 @@ def test_where_the_peaks_are_not_greater_up_to_an_end_that_is_said():
     assert near.high == pytest.approx(2.01)
 
 
+def test_the_next_higher_peaks_that_end_on_either_side_are_told():
+    """Of two below the nearer one; none where another peak of that height goes on, or at the bounds."""
+    number = np.linspace(1.0, 4.0, 61)
+    valley = tracked(number, 1.0 + abs(number - 2.0))
+    far, near = (
+        tracked(np.linspace(1.0, 1.2, 5), np.full(5, 9.0)),
+        tracked(np.linspace(1.0, 1.5, 5), np.full(5, 7.0)),
+    )
+    above = tracked(np.linspace(4.0, 3.0, 5), np.linspace(6.0, 5.0, 5))
+    found = nearly_least(OPTIMAL, [valley, far, near, above], ["u"], 0.01)
+    assert found.higher == ((pytest.approx(1.5), 7.0), (pytest.approx(3.0), 5.0))
+    goes_on = tracked(np.linspace(1.5, 1.7, 5), np.linspace(7.0, 1.2, 5))
+    assert nearly_least(OPTIMAL, [valley, far, near, goes_on], ["u"], 0.01).higher == (
+        (pytest.approx(1.2), 9.0),
+    )
+    assert nearly_least(OPTIMAL, [valley], ["u"], 0.01).higher == ()
+    turning = tracked(np.array([1.0, 4.0, 3.0]), np.array([1.0, 4.0, 6.0]))
+    assert nearly_least(OPTIMAL, [turning], ["u"], 0.01).higher == ((3.0, 6.0),)
+
+
 @pytest.mark.parametrize("kind", ["end", "trials", "flat", "unfinished"])
 def test_of_peaks_that_are_no_curves_around_it_nothing_is_told(kind):
     number = np.linspace(1.0, 3.0, 21)

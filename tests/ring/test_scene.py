@@ -7,11 +7,16 @@ import json
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 import fcm
+from fcm.cli.curves import as_table
+from fcm.harmonic_balance.system import System
 from fcm.plot.campbell import DrawnRing, draw_campbell, folded
 from fcm.response.request import ResponseError
 from fcm.scene import SceneError, scene_from_dict
+from fcm.stability.options import StabilityOptions, StructureOptions
+from fcm.stability.ring_multipliers import stability_unknown
 
 from ..program import called
 from . import rings
@@ -83,9 +88,34 @@ def test_harmonics_without_modes_are_refused_and_their_absence_is_said():
     with pytest.raises(ResponseError, match="give its modes, or the harmonics"):
         fcm.respond(scene, accuracy=0.01)
     response = fcm.respond(scene, harmonics=1)
-    left_out = json.loads(response.attrs["summary"])["left_out"]
-    assert any("stability: there are no modes of nodal diameter 2, 3" in text for text in left_out)
+    summary = json.loads(response.attrs["summary"])
+    assert any("stability: there are no modes of nodal diameter 2, 3" in text for text in summary["left_out"])
     assert np.isnan(response.stable.values).any()
+    said = as_table(summary, "rad/s")
+    assert '"left out" says why' in said and "more harmonics may" not in said
+    assert "more harmonics may" in as_table(summary | {"left_out": []}, "rad/s")
+
+
+def test_too_many_disturbances_are_said_with_what_helps():
+    system = System(scene_from_dict(rings.sector(6, 1)), (1,))
+    options = StabilityOptions(structure=StructureOptions(max_disturbances=3))
+    why = stability_unknown(system, 100.0, options)
+    assert "too many; up to 3 are looked at. structure.modes may take fewer modes" in why
+
+
+def test_resonances_of_the_diameters_that_forces_meet_are_said():
+    """Harmonic 1 of order 2 meets the diameter 2, harmonic 3 of 7 sectors the diameter 1."""
+    data = rings.sector(7, 2)
+    data["force"][1]["harmonic"] = 3
+    found = [one for one in scene_from_dict(data).notes if "which harmonic" in one]
+    ring = rings.matrices(data)
+    turn = [np.exp(2j * np.pi * number * np.arange(7) / 7) for number in (1, 2)]
+    for text, number, harmonic, phases in zip(found, (1, 2), (3, 1), turn, strict=True):
+        basis = np.kron(phases[:, None], np.eye(3)) / np.sqrt(7.0)
+        mass, stiffness = (basis.conj().T @ one @ basis for one in ring)
+        opened = np.sqrt(scipy.linalg.eigh(stiffness, mass, eigvals_only=True)) / (2.0 * np.pi)
+        assert f"nodal diameter {number}, which harmonic {harmonic} of engine order 2 meets" in text
+        assert f"all contacts open: {', '.join(f'{one:.5g}' for one in opened)} Hz; with all stuck" in text
 
 
 def test_engine_orders_are_swept():

@@ -209,6 +209,22 @@ def test_a_forgotten_unit_of_the_range_is_asked_about_though_a_resonance_is_near
     assert not asked or ("no resonance is within the range" in said and 'frequency_unit = "Hz"' in said)
 
 
+@pytest.mark.parametrize(
+    ("direction", "high", "asked"),
+    [("u", 150.0, False), ("v", 150.0, True), ({"u": 1.0, "v": 1.0}, 150.0, False), ("v", 600.0, False)],
+)
+def test_forces_that_push_no_mode_near_the_range_are_asked_about(direction, high, asked):
+    """One mode moves along u at 100 rad/s, another along v at 1000: the second is beyond twice 150."""
+    modal = {"dofs": ["u", "v"], "frequency": [100.0, 1000.0], "damping": 0.01, "shapes": [[1, 0], [0, 1]]}
+    contact = {"name": "a", "tangential": "u", "normal": "v", "mu": 0.3, "k_u": 1e4, "k_v": 1e4, "n_0": 1.0}
+    rest = {"force": [{"dof": direction, "amplitude": 1.0}], "response": {"frequency": [50.0, high]}}
+    said = [
+        one for one in scene_from_dict({"modal": modal, "contact": [contact], **rest}).notes if "push" in one
+    ]
+    assert bool(said) == asked
+    assert not asked or "none of the modes up to 300 rad/s" in said[0]
+
+
 @pytest.mark.parametrize(("harmonics", "asked"), [((1,), True), ((4,), False), ((1, 4), False), ((9,), True)])
 def test_a_force_of_a_higher_harmonic_meets_resonances_above_the_range(harmonics, asked):
     """One mode at 200 rad/s, and a range about 50: its fourth harmonic meets it."""

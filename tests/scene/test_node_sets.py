@@ -61,7 +61,7 @@ def test_each_node_has_the_nearest_as_its_partner_along_the_fitted_normal(tmp_pa
         assert one == pytest.approx({f"{mine}z": 1.0, f"{its}z": -1.0})
         assert other == pytest.approx({f"{mine}x": 0.8, f"{mine}y": -0.6, f"{its}x": -0.8, f"{its}y": 0.6})
     text = "\n".join(scene.notes)
-    assert 'contact "shroud": 12 pairs, 0.05 to 0.05 apart' in text
+    assert 'contact "shroud": 12 pairs, 0.05 apart' in text
     assert "normal +0.6 x +0.8 y, 36.9 degrees from y" in text
 
 
@@ -208,7 +208,7 @@ def test_a_file_of_pairs_and_a_mesh_are_as_two_sets(tmp_path):
     for one, other in zip(of_sets.contacts, scene.contacts, strict=True):
         assert weights(scene, other.normal) == pytest.approx(weights(of_sets, one.normal))
         assert weights(scene, other.tangential) == pytest.approx(weights(of_sets, one.tangential))
-    assert scene.notes[0] == 'contact "shroud": 12 pairs, 0.05 to 0.05 apart'
+    assert scene.notes[0] == 'contact "shroud": 12 pairs, 0.05 apart'
     assert scene.interfaces[0].second == pytest.approx(of_sets.interfaces[0].second)
 
 

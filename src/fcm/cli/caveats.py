@@ -65,7 +65,26 @@ def linear(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:
     if found == {"all_open"} and named and {*constant} >= named.keys():
         return f"{what.format(which)}: the response is linear. {_CONSTANT}"
     asked = ". Are gap and n_0 in the units of the structure?" if found == {"all_open"} else ""
-    return f"{what.format(which)}: the response is linear. With {helps} it is not{asked}"
+    if all("mode" in curve for curve in curves):
+        helps = "greater modal amplitudes, by --level,"
+    used = _greatest_use(summary) if found == {"all_stick"} else ""
+    return f"{what.format(which)}: the response is linear. {used}With {helps} it is not{asked}"
+
+
+def _greatest_use(summary: Mapping[str, Any]) -> str:
+    """Sentence on the contact that sticks with the greatest friction beside its normal force; or ""."""
+    found = [
+        (loads["greatest_friction_force"]["greatest"], loads["greatest_normal_force"]["greatest"], name)
+        for curve in summary["curves"]
+        for name, loads in (curve.get("contacts") or {}).items()
+    ]
+    forces = [(f, n, name) for f, n, name in found if f is not None and n is not None and f > 0.0 and n > 0.0]
+    if not forces:
+        return ""
+    friction, normal, name = max(forces, key=lambda one: one[0] / one[1])
+    unit = summary.get("units", {}).get("force", "")
+    sizes = (f"{one:.4g} {unit}".rstrip() for one in (friction, normal))
+    return "Friction reaches {} beside a normal force of {} ({}). ".format(*sizes, name)
 
 
 def never_closed(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:

@@ -12,8 +12,15 @@ from fcm.frozen import Frozen
 UNSTABLE = "!"  # beside a peak where the motion is not stable
 DOES_NOT_STAY = "unstable: with these harmonics the motion is not stable there, and leaves this peak"
 UNKNOWN = "?"  # beside that of which it is unknown whether it is stable
-STABILITY_UNKNOWN = "stability is unknown there: more harmonics may show it"
+STABILITY_UNKNOWN = "stability is unknown there: "
+HARMONICS_HELP = "more harmonics may show it"
 STABILITY_NOT_YET_KNOWN = "stability is unknown there: the run was interrupted before"
+
+
+def remedy_of_unknown_stability(summary: Mapping[str, Any]) -> str:
+    """What may show a stability that is unknown: more harmonics, or why none was looked for."""
+    not_looked_for = any(one.startswith("stability: ") for one in summary.get("left_out", ()))
+    return 'none is looked for, "left out" says why' if not_looked_for else HARMONICS_HELP
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int) -> str:

@@ -20,6 +20,7 @@ from fcm.cli.columns import (
     not_complete,
     number,
     ranges,
+    remedy_of_unknown_stability,
     share_of,
     short,
     stopped_early,
@@ -84,7 +85,9 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         "lower peaks": _every_peak(curves, names, dofs, unit, length),
         "greatest stable motions": stable_table(curves, names, moving, unit),
         "jumps": jump_table(curves, names, moving, unit, resolution_of(summary)),
-        "stretches of unknown stability": unknown_stability_table(curves, names, moving, unit),
+        "stretches of unknown stability": unknown_stability_table(
+            curves, names, moving, unit, remedy_of_unknown_stability(summary)
+        ),
     }
     peaks, *others = of_each.values()
     drawn = summary.get("scatter", ())
@@ -221,6 +224,7 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
             "each line is in its own order: a peak and a frequency of one column are not of one draw"
         )
         lines += _of_intervals(found, dofs)
+        lines += _of_large_errors(found, dofs)
     if any(one["untold"] for one in jumps.values()):
         lines.append("unknown: stability is not known, and a sweep may jump")
     return "\n".join(lines)
@@ -272,6 +276,17 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
         needed = max(short_of.values())
         lines.append(f"{few} too few for both bounds of {named} %: {needed} are needed")
     return lines
+
+
+def _of_large_errors(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
+    """That peaks of some draws err so much that the percentiles are not to be relied on."""
+    worst = max(found["peak"][dof]["greatest_error"] or 0.0 for dof in dofs)
+    if worst <= SENTENCES.doubtful_error:
+        return []
+    return [
+        f"percentiles are not to be relied on: peaks err by up to {share_of(worst)}, and such a peak may be "
+        "of no motion. Draw again with more harmonics, or --accuracy, before another number is chosen"
+    ]
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
@@ -369,7 +384,8 @@ def _curves(
     if UNKNOWN in marks:
         of_judged = [curve["peak"].get(dof) or {} for curve in judged for dof in dofs]
         looked = UNKNOWN in map(_mark_of, [*of_judged, *_lower_peaks(judged, dofs)])
-        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN if looked else STABILITY_NOT_YET_KNOWN}")
+        remedy = remedy_of_unknown_stability(summary)
+        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN + remedy if looked else STABILITY_NOT_YET_KNOWN}")
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))

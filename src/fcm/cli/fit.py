@@ -49,15 +49,19 @@ def fitted(
 def as_table(result: Mapping[str, Any]) -> str:
     """Tables of the fitted numbers, then of the data."""
     from fcm.plot.labels import with_mode
+    from fcm.units import unit_of_number
 
-    found = result["fitted"]
+    found, units = result["fitted"], result.get("units", {})
+    given = units.get("length", ""), units.get("force", ""), result.get("frequency_unit", "")
     percent = f"{100.0 * found['confidence']:g} % interval"
     rows = [["value", "standard error", percent, "began at", "fitted"]]
     for key, one in found["numbers"].items():
         told = one["standard_error"] is not None
         within = _interval(*one["interval"])
         error = f"{one['standard_error']:.2g}" if told else "-"
-        rows.append([f"{one['value']:.6g}", error, within, f"{one['start']:.6g}", plain(with_mode(key))])
+        unit = unit_of_number(key, *given)
+        name = f"{with_mode(key)} [{unit}]" if unit else with_mode(key)
+        rows.append([f"{one['value']:.6g}", error, within, f"{one['start']:.6g}", plain(name)])
     data = [["points", "misfit", "of damping", "level", "data"]]
     for one in found["data"]:
         low, high = one["level"]

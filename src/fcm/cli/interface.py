@@ -85,19 +85,18 @@ def contacts(
         head.append(f"at {', '.join(read.axes)}" + (f" [{read.units[1]}]" if read.units[1] else ""))
     each = [(curve, wanted) for curve in curves for wanted in at or amplitude or (None,)]
     for point, (curve, wanted) in zip(points, each, strict=True):
+        there = point.frequency if at else point.modal_amplitude
+        unit = read.unit if at else ""
+        if wanted is not None and there is not None and (said := not_at(wanted, [there], unit)):
+            messages.info(said)
         takers = greatest_takers(read, point, SENTENCES.rows)
-        if takers:
-            messages.info(aligned([head, *takers], left=0))
         swept = ", ".join(f"{key} = {value:.6g}" for key, value in point.swept.items())
         of = f", curve {curve}{f' ({swept})' if swept else ''}" if len(read.frequency) > 1 else ""
-        nothing = "" if takers else ": none takes energy"
+        energy = ", those that take most energy:" if takers else ": none takes energy"
         states = f"{counted(len(read.contacts), 'contact')} ({counted_states(point)})"
-        messages.info(f"at {place_of(read, point)}{of}; {states}{nothing}")
-        there = point.frequency if at else point.modal_amplitude
-        if wanted is None or there is None:
-            continue
-        if said := not_at(wanted, [there], read.unit if at else ""):
-            messages.info(said)
+        messages.info(f"at {place_of(read, point)}{of}; {states}{energy}")
+        if takers:
+            messages.info(aligned([head, *takers], left=0))
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 

@@ -141,11 +141,13 @@ def _stays(one: Mapping[str, Any] | None) -> list[str]:
 
 
 def unknown_stability_table(
-    curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str
+    curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str, remedy: str
 ) -> str:
     """A line for each way of a sweep on which it is unknown whether the motion is stable; empty if none.
 
     Narrow windows are counted.
+
+    remedy : what may show the stability
     """
     every = [one for curve in curves for one in curve.get("stability_untold", ())]
     narrow = sum(map(_is_narrow, every))
@@ -168,7 +170,7 @@ def unknown_stability_table(
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
         return said if narrow else ""
     table = DofTable([*names, f"from {unit}", "to"], dofs, ["{} there"], ["sweep"], cells)
-    said = "between these frequencies stability is unknown, and a sweep may jump; more harmonics may show it:"
+    said = f"between these frequencies stability is unknown, and a sweep may jump; {remedy}:"
     others = sum(map(len, wide)) - len(cells)
     more = f"\nand between {others} more, which are nearer: --json has all" if others else ""
     more += f"\nand in {narrow} more {windows}" if narrow else ""

@@ -20,7 +20,7 @@ class RemarkOptions(Frozen):
     # width relative to the frequency, below which a window of unknown stability has no line of its own
     narrow_window: float = 1e-3
     tried: int = 2  # values listed on either side of an optimum that was found by trials
-    # relative error of a peak beside an optimum, from which on it is printed
+    # relative error of a peak beside an optimum, or of random draws, from which on it is said
     doubtful_error: float = 0.1
     # part by which the response at an optimum is lower than the least peak, from which on it lacks that peak
     lacking: float = 1e-3

@@ -28,7 +28,8 @@ _FLOATS = "'"  # beside a stiffness where rigid-body modes move
 _OF_FLOATING = f"{_FLOATS} of elastic modes alone: rigid-body modes move along it; - where no other does"
 _SPRINGS = (("k_u", "tangential"), ("k_v", "normal"))
 _STIFFNESS = (
-    "the stiffness of each contact, beside that of the structure along and across its faces without contacts:"
+    "the stiffness of each contact{}, beside that of the structure along and across its faces "
+    "without contacts:"
 )
 
 
@@ -120,7 +121,9 @@ def _stiffness(found: dict[str, Any]) -> str:
         lines += [[name, *cells]] if (name, ratios, pairs) in kept else []
     floats = f"\n{_OF_FLOATING}" if any(_FLOATS in cell for line in lines[1:] for cell in line[1:]) else ""
     more = f"\nand {len(rows) - len(kept)} more contacts: --json has all" if len(rows) > len(kept) else ""
-    return f"{_STIFFNESS}\n{aligned(lines, left=0)}{floats}{more}"
+    length, force = (found["units"][of] for of in ("length", "force"))
+    said = _STIFFNESS.format(f" [{force}/{length}]" if length and force else "")
+    return f"{said}\n{aligned(lines, left=0)}{floats}{more}"
 
 
 def _resonances(found: dict[str, Any]) -> str:
@@ -130,7 +133,8 @@ def _resonances(found: dict[str, Any]) -> str:
         return ""
     unit = found["frequency_unit"]
     forced = any(name.startswith("force.") for name in found["modes"][0]["participation"])
-    heads = ["friction adds", "most in", "", "n_0"]
+    force = found["units"]["force"]
+    heads = ["friction adds", "most in", "", f"n_0 [{force}]" if force else "n_0"]
     rows = [["resonance", f"stuck at {unit}", f"open at {unit}", "MAC", *heads]]
     for number_of, one in enumerate(every, 1):
         name, share = max(one["by_contact"].items(), key=lambda item: item[1])

@@ -73,6 +73,8 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     unmet = Counter(f"force level {one['level']:g}: {one['why']}" for found in every for one in found)
     of = f" of {len(curves)} curves" if len(curves) > 1 else ""
     told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
+    if any(" the modal amplitude " in what for what in unmet):
+        told.append("a wider --level FROM:TO, which is of modal amplitudes, has these resonances")
     if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
         told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
     modes = [curve["mode"] for curve in curves if curve.get("mode")]

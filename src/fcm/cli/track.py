@@ -9,6 +9,7 @@ import click
 
 from fcm.cli.columns import (
     DOES_NOT_STAY,
+    HARMONICS_HELP,
     STABILITY_UNKNOWN,
     UNKNOWN,
     UNSTABLE,
@@ -30,7 +31,10 @@ if TYPE_CHECKING:
     from fcm.run import Execution
 
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
-_SAID = {UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}", UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}"}
+_SAID = {
+    UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
+    UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}{HARMONICS_HELP}",
+}
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
     "at": "every frequency of the range is looked at",
@@ -215,7 +219,13 @@ def _nearly(one: Mapping[str, Any]) -> str:
         for end in ("low", "high")
     )
     key = plain(next(iter(one["values"])))
-    return f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
+    said = f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
+    for number_of, times in near.get("higher", ()):
+        side = "below" if number_of < one["values"][next(iter(one["values"]))] else "above"
+        said += (
+            f"\n{side}, at {key} = {number_of:.5g}, a peak ends that is {times:.3g} times as high: keep away"
+        )
+    return said
 
 
 def _tried(one: Mapping[str, Any]) -> str:

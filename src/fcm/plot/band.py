@@ -11,6 +11,7 @@ from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
 from fcm.plot.read import LEVEL, DrawnResponse, wide
+from fcm.plot.response import doubtful
 from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.plot.unfinished import say_unfinished
 
@@ -56,7 +57,7 @@ def draw_bands(
         if wide(response.curves):
             axes.set_xscale("log")
         _finish(axes, bands, log)
-        axes.set_title(_said(bands, span), loc="right", fontsize=8)
+        axes.set_title(_said(bands, span) + _doubt(response, column), loc="right", fontsize=8)
         say_unfinished(axes, response.unfinished)
         name_at_side(figure, axes.get_lines(), [band.parameters for band in bands], response.units)
     return figure
@@ -78,6 +79,20 @@ def _said(bands: Sequence[Band], span: tuple[float, float]) -> str:
     needed = max(map(draws_needed, span))
     few = f": too few to bound these, {needed:g} are needed" if count < needed < np.inf else ""
     return f"median, and {span[0]:g} to {span[1]:g} % of {count} draws{few}"
+
+
+def _doubt(response: DrawnResponse, column: int) -> str:
+    """Line on the curves whose errors at their greatest amplitudes are large, or unknown; or ''."""
+    tops = [
+        doubtful(curve)[np.nanargmax(curve.amplitude[:, column])]
+        for curve in response.curves
+        if np.isfinite(curve.amplitude[:, column]).any()
+    ]
+    if not any(tops):
+        return ""
+    largest = f"{100 * LAYOUT.doubtful_error:g} %"
+    many = f"peaks of {sum(tops)} of {len(tops)} draws may"
+    return f"\n{many} err by more than {largest}, or by an unknown amount: take more harmonics"
 
 
 def _finish(axes: Axes, bands: Sequence[Band], log: bool | None) -> None:

@@ -103,14 +103,17 @@ def with_power(text: str, power: int) -> str:
     return f"{head} ({factor} {unit}" if opened and text.endswith(")") else f"{text} ({factor})"
 
 
-def power_to_label(axis: Axis) -> None:
-    """The power of ten of an axis that was drawn goes to its label: beside the axis it would be on that."""
-    formatter = axis.get_major_formatter()
-    if found := _POWER.search(formatter.get_offset().replace("−", "-")):
-        power = int(found[1])
-        formatter.set_powerlimits((power, power))  # type: ignore[attr-defined]  # of a ScalarFormatter
+def power_to_label(*group: Axis) -> None:
+    """The power of ten of axes that were drawn goes to their labels: beside an axis it would be on that.
+
+    Several axes have one power, the least of theirs, where any has one.
+    """
+    offsets = (axis.get_major_formatter().get_offset().replace("−", "-") for axis in group)
+    powers = [int(found[1]) for found in map(_POWER.search, offsets) if found]
+    for axis in group if powers else ():
+        axis.get_major_formatter().set_powerlimits((min(powers),) * 2)  # type: ignore[attr-defined]
         axis.get_offset_text().set_visible(False)
-        axis.set_label_text(with_power(axis.get_label_text(), power))
+        axis.set_label_text(with_power(axis.get_label_text(), min(powers)))
 
 
 def staying(stable: float) -> str:

@@ -17,7 +17,7 @@ from fcm.plot.options import READ
 from fcm.plot.style import LAYOUT
 from fcm.plot.summary import summary_of
 from fcm.rotational_dofs import unit_of
-from fcm.units import EXCITED, PER_TIME, QUANTITIES, UNIT
+from fcm.units import EXCITED, PER_TIME, QUANTITIES, UNIT, unit_of_number
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -61,15 +61,27 @@ class FittedNumber(Frozen):
     contact.lap.mu = 0.3012 ± 0.0042
     >>> print(FittedNumber("contact.lap.k_u", 2.0e9, float("nan")))
     contact.lap.k_u = 2e+09, standard error unknown
+    >>> print(FittedNumber("contact.lap.k_u", 400002.3, 76.2, "N/m"))
+    contact.lap.k_u = 400002 ± 76 N/m
     """
 
     key: str
     value: float
     error: float
+    unit: str = ""
 
     def __str__(self) -> str:
-        scatter = f" ± {self.error:.2g}" if np.isfinite(self.error) else ", standard error unknown"
-        return f"{self.key} = {self.value:.4g}{scatter}"
+        unit = f" {self.unit}" if self.unit else ""
+        if not np.isfinite(self.error):
+            return f"{self.key} = {self.value:.4g}{unit}, standard error unknown"
+        return f"{self.key} = {self.value:.{self._digits()}g} ± {self.error:.2g}{unit}"
+
+    def _digits(self) -> int:
+        """As many as reach the second digit of the error, at least four and at most eight."""
+        if not (self.value and self.error > 0.0):
+            return 4
+        size, error = (int(np.floor(np.log10(abs(one)))) for one in (self.value, self.error))
+        return min(max(size - error + 2, 4), 8)
 
 
 def backbones_of(variables: Any) -> tuple[MeasuredBackbone, ...]:
@@ -223,12 +235,15 @@ def fitted_of(data: Any) -> tuple[FittedNumber, ...]:
     if not any(name in data.variables for name in ("data_frequency", "data_displacement")):
         return ()
     try:
-        numbers = summary_of(data).get("fitted", {}).get("numbers", {})
+        summary = summary_of(data)
+        numbers, units = summary.get("fitted", {}).get("numbers", {}), summary.get("units", {})
+        given = units.get("length", ""), units.get("force", ""), summary.get("frequency_unit", "")
         return tuple(
             FittedNumber(
                 str(key),
                 float(one["value"]),
                 np.nan if one["standard_error"] is None else float(one["standard_error"]),
+                unit_of_number(str(key), *given),
             )
             for key, one in numbers.items()
         )

@@ -108,7 +108,8 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=7)
         figure.suptitle(drawn.title, fontsize=8)
         figure.draw_without_rendering()
-        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+        power_to_label(plane.xaxis, plane.yaxis, *(axes.xaxis for axes in loops))
+        for axis in (limits.xaxis, limits.yaxis, *(axes.yaxis for axes in loops)):
             power_to_label(axis)
         figure.draw_without_rendering()  # so that the plane has its final size
         instants = _instants(path, drawn.instants)

@@ -329,5 +329,5 @@ def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
     (symbol,) = symbols([drawn.key])
     at, least = f"{symbol} = {x:.5g} {drawn.unit}".rstrip(), f"{y:.5g} {drawn.length}".rstrip()
     bound = ", a bound: beyond it there may be less" if drawn.at_bound else ""
-    said = f"least peak {least}{drawn.stays} at {at}{bound}"
+    said = f"least peak {least} at {at}{drawn.stays}{bound}"
     upper.set_title(said, loc="right", fontsize=8, color=_MARK)

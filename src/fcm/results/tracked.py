@@ -98,6 +98,7 @@ class NearlyLeast(Frozen):
     """Values of a number with which the greatest peak is at most a share above the least.
 
     low_known, high_known : whether it is more beyond; else the peaks were not followed further.
+    higher : on either side the next value at which a higher peak ends, and how many times the least it is
     """
 
     share: float
@@ -105,6 +106,7 @@ class NearlyLeast(Frozen):
     high: float
     low_known: bool
     high_known: bool
+    higher: tuple[tuple[float, float], ...] = ()
 
 
 class Optimal(Frozen):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fcm.model.question import Question
 from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.scene.contact_springs import stuck_stiffness
 from fcm.scene.errors import several
+from fcm.scene.force_reach import pushed
 from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.units import UNIT
 
@@ -63,7 +63,7 @@ def _soft(scene: Scene, ratio: float) -> str:
     modal = scene.modal
     floating = modal.frequency == 0.0
     contacts = stuck_stiffness(scene) - np.diag(modal.frequency**2)
-    kept = ~floating & (_pushed(scene, np.eye(floating.size)) | ~floating.any())
+    kept = ~floating & (pushed(scene, np.eye(floating.size)) | ~floating.any())
     opened = np.sort(modal.frequency[kept & (np.arange(floating.size) < floating.size - modal.added)])
     structure, held = np.diag(modal.frequency[kept] ** 2), contacts[np.ix_(kept, kept)]
     near = np.ones(opened.size, np.bool_)
@@ -73,7 +73,7 @@ def _soft(scene: Scene, ratio: float) -> str:
         near = opened <= MESSAGES.range_near * highest
         squares, turn = np.linalg.eigh(contacts[np.ix_(floating, floating)])
         if (
-            _pushed(scene, turn.T @ np.eye(floating.size)[floating])
+            pushed(scene, turn.T @ np.eye(floating.size)[floating])
             & (squares > low**2)
             & (squares < highest**2)
         ).any():
@@ -95,17 +95,6 @@ def _soft(scene: Scene, ratio: float) -> str:
         f"{opened[most] / UNIT[unit]:.5g} {unit} is {percent} higher, so that friction changes little. Are "
         f"k_u and k_v in its units?{_per_shorter(*scene.units)}"
     )
-
-
-def _pushed(scene: Scene, turn: FloatArray) -> NDArray[np.bool_]:
-    """Mask of combinations (one, mode) of modes of mass 1 that forces push, beyond rounding."""
-    mass_one = scene.modal.shapes / np.sqrt(scene.modal.mass)[:, None]
-    directions = np.array([one.direction for one in scene.forces]).reshape(-1, mass_one.shape[1]).T
-    size = np.abs(mass_one).max(axis=0) @ np.abs(directions)
-    found: NDArray[np.bool_] = (np.abs(turn @ mass_one @ directions) > TOLERANCES.displacement * size).any(
-        axis=1
-    )
-    return found
 
 
 def _per_shorter(length: str, force: str) -> str:

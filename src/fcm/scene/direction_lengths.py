@@ -15,7 +15,7 @@ from fcm.scene.names import Names, motion_of
 from fcm.scene.options import TOLERANCES
 
 Weights = Mapping[str, float]
-_AXIS = re.compile(r"(.*[\d_:. ])([xyz])", re.IGNORECASE)  # a node, and a translation of it
+_AXIS = re.compile(r"(.*[\d_:. ]u?)([xyz])", re.IGNORECASE)  # a node, and a translation of it
 
 
 class GivenDirections(NamedTuple):
@@ -94,6 +94,8 @@ def _length(weights: Weights, dofs: Names, node: str = "") -> float:
     (0.0, 0.0)
     >>> _length({"1x": 0.5}, dofs), _length({"2x": 0.5}, dofs), _length({"2x": 2.0}, dofs)
     (0.5, 0.0, 2.0)
+    >>> _length({"n1_ux": 0.3, "n1_uy": 0.4}, Names(("n1_ux", "n1_uy", "n1_uz")))
+    0.5
     """
     at: dict[str, dict[str, float]] = {}  # of each node, by its axes
     for name, weight in weights.items():

@@ -95,10 +95,10 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
 def along_axis(name: str, axis: str) -> bool:
     """Whether a degree of freedom is called as an axis, or as a node and that.
 
-    >>> [along_axis(name, "x") for name in ("x", "12x", "tip_x", "12rx", "tip_rx", "max")]
-    [True, True, True, False, False, False]
+    >>> [along_axis(name, "x") for name in ("x", "12x", "tip_x", "n1_ux", "12rx", "tip_rx", "max")]
+    [True, True, True, True, False, False, False]
     """
-    return re.fullmatch(rf"(.*[\d_:. ])?{axis}", motion_of(name) or name, re.IGNORECASE) is not None
+    return re.fullmatch(rf"(.*[\d_:. ])?u?{axis}", motion_of(name) or name, re.IGNORECASE) is not None
 
 
 def base_force(draft: dict[str, Any], dofs: tuple[str, ...]) -> Force:

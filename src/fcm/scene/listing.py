@@ -67,6 +67,7 @@ def listing(scene: Scene) -> dict[str, Any]:
         "scene": scene.name,
         "title": scene.title,
         "frequency_unit": scene.frequency_unit,
+        "units": dict(zip(("length", "force"), scene.units, strict=True)),
         "modes": modes,
         "resonances": friction_damping(scene),
         "of_pairs": _of_pairs(scene),
@@ -240,6 +241,21 @@ def notes_of_modes(scene: Scene) -> list[str]:
     if scene.of_matrices and (slip := _first_far_below(scene)):
         said.append(Question(slip))
     return said
+
+
+def notes_of_diameters(scene: Scene) -> list[str]:
+    """First resonances of a ring, all contacts open and all stuck, of each diameter that forces meet."""
+    ring, unit, most = scene.ring, scene.frequency_unit, MESSAGES.stuck_modes
+    assert ring is not None
+    met = {ring.meets(one.harmonic): one.harmonic for one in reversed(scene.forces)}
+    return [
+        f"structure: nodal diameter {one.number}, which harmonic {met[one.number]} of engine order "
+        f"{ring.engine_order} meets: first resonances with all contacts open: "
+        f"{_listed(one.opened[:most] / UNIT[unit])} {unit}; with all stuck: "
+        f"{_listed(one.stuck[:most] / UNIT[unit])} {unit}. The main peak of a mode lies between the two"
+        for one in nodal_diameters(scene)
+        if one.number in met
+    ]
 
 
 def _first_far_below(scene: Scene) -> str:

@@ -25,6 +25,7 @@ from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
 from fcm.scene.files import Files
+from fcm.scene.force_reach import question_of_forces
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     check_matrices,
@@ -258,6 +259,7 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None) -> Sce
             *notes_of_slopes(scene),
             *notes_of_planes(scene),
             *notes_of_stiffness(scene),
+            *question_of_forces(scene),
             *questions_of_gaps(scene),
             *question_of_constant_loads(scene),
         ),
@@ -280,11 +282,11 @@ def _in_doubt(scene: Scene) -> bool:
 
 
 def _notes_of_modes(scene: Scene) -> list[str]:
-    if not scene.of_matrices or scene.ring is not None or not scene.contacts:
+    if not scene.of_matrices or not scene.contacts:
         return []
-    from fcm.scene.listing import notes_of_modes
+    from fcm.scene.listing import notes_of_diameters, notes_of_modes
 
-    return notes_of_modes(scene)
+    return notes_of_modes(scene) if scene.ring is None else notes_of_diameters(scene)
 
 
 def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:

@@ -76,13 +76,25 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
         plane,
     )
     low, high = float(pairing.apart.min()), float(pairing.apart.max())
-    text = f"contact {quoted(interface.name)}: {counted(len(a), 'pair')}, {low:.3g} to {high:.3g} apart"
+    text = f"contact {quoted(interface.name)}: {counted(len(a), 'pair')}, {_distance(low, high)}"
     for name, alone in ((one, pairing.alone), (other, pairing.other_alone)):
         if alone:
             text += f"; {counted(len(alone), 'node')} of {name} without a partner ({_some(alone)})"
     said = [text, *_said_of_plane(section, interface, plane)]
     said += _said_of_side(section, mesh, pairing.pairs, (one, other))
     return PairTable([tuple(map(str, pair)) for pair in pairing.pairs], interface=interface, said=tuple(said))
+
+
+def _distance(low: float, high: float) -> str:
+    """Clause on the least and the greatest distance of partners.
+
+    >>> _distance(0.0, 0.0), _distance(0.05, 0.05), _distance(0.0, 0.2)
+    ('of coincident nodes', '0.05 apart', '0 to 0.2 apart')
+    """
+    if high == 0.0:
+        return "of coincident nodes"
+    ends = [f"{one:.3g}" for one in (low, high)]
+    return f"{' to '.join(dict.fromkeys(ends))} apart"
 
 
 def with_places(section: Section, found: Section, table: PairTable, files: Files) -> PairTable:
@@ -118,7 +130,7 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
     far = couples[int(apart.argmax())]
     if high > tolerance:
         found.wrong("tolerance", f"nodes {far[0]} and {far[1]} are {high:.4g} apart, more than {tolerance:g}")
-    text = f"contact {quoted(name)}: {counted(len(couples), 'pair')}, {low:.3g} to {high:.3g} apart"
+    text = f"contact {quoted(name)}: {counted(len(couples), 'pair')}, {_distance(low, high)}"
     others = [
         (pair, near) for pair, near in zip(couples, nearest_partners(mesh, couples), strict=True) if near
     ]

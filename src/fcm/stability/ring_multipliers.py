@@ -47,7 +47,10 @@ def stability_unknown(system: System, highest: float, options: StabilityOptions 
     count = 2 * int(near.sum()) + ring.period * len(system.scene.contacts)
     if count > options.structure.max_disturbances:
         most = options.structure.max_disturbances
-        return f"{count} disturbances of {ring.period} sectors are too many; up to {most} are looked at"
+        return (
+            f"{count} disturbances of {ring.period} sectors are too many; up to {most} are looked at. "
+            "structure.modes may take fewer modes of a sector"
+        )
     return ""
 
 
