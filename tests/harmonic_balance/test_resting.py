@@ -85,12 +85,12 @@ def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
     (curve,) = trace(scene).curves
     at = [1.87, 1.9, 1.95]
     (exact,) = trace_exact(scene, at).curves
-    swept = slice(0, 3)  # from one frequency to the next; from rest there are others, of several periods
-    assert (exact.stable[swept] == 1.0).all() and (exact.orbits.repeats[swept] == 1).all()
     held = curve.regime[:, 0] == "E"  # beside a branch on which the slider slips
     assert held.any() and (curve.stable[held] == 1.0).all()
-    found = np.interp(at, curve.frequency[held], curve.amplitude[held, 5])
-    assert found == pytest.approx(exact.amplitude[swept, 5], rel=1e-3)
+    for omega in at:  # beside motions of several periods
+        found = np.interp(omega, curve.frequency[held], curve.amplitude[held, 5])
+        same = (exact.frequency == omega) & (np.abs(exact.amplitude[:, 5] / found - 1.0) < 1e-3)
+        assert same.any() and (exact.stable[same] == 1.0).all() and (exact.orbits.repeats[same] == 1).all()
 
 
 @pytest.mark.parametrize("mu", [1e-9, 1e-6])

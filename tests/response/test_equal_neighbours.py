@@ -24,7 +24,7 @@ def stiffness(apart):
     return K
 
 
-def pair(apart, plane, harmonics):
+def pair(apart, plane, harmonics, mu):
     relative = [{f"{name}_a": 1.0, f"{name}_b": -1.0} for name in "xyz"]
     return scene_from_dict(
         {
@@ -39,7 +39,7 @@ def pair(apart, plane, harmonics):
                     "name": "shroud",
                     "tangential": relative[:2] if plane else relative[0],
                     "normal": relative[2],
-                    "mu": 0.3,
+                    "mu": mu,
                     "k_u": K_U,
                     "k_v": K_V,
                     "n_0": 60.0,
@@ -53,13 +53,16 @@ def pair(apart, plane, harmonics):
 
 @pytest.mark.parametrize("plane, harmonics", [(True, 1), (False, [1, 3]), (True, [1, 3])])
 @pytest.mark.parametrize("apart", [0.0, 1e-10, 1e-6])
-def test_a_contact_that_hardly_moves_ends_no_curve(apart, plane, harmonics):
-    """It sticks, so that the response is linear. The rounding of the preload is no motion of its."""
-    response = fcm.respond(pair(apart, plane, harmonics))
+@pytest.mark.parametrize("mu", [0.0, 0.3])
+def test_a_contact_that_hardly_moves_ends_no_curve(apart, plane, harmonics, mu):
+    """It sticks, or slides freely, so that the response is linear. The rounding of the preload is no motion
+    of its."""
+    response = fcm.respond(pair(apart, plane, harmonics, mu))
     assert response.complete.item() == 1 and response.sizes["point"] < 500
     K = stiffness(apart)
     held = K.copy()
-    springs = (K_U, K_U, K_V) if plane else (K_U, 0.0, K_V)
+    k_u = K_U if mu else 0.0
+    springs = (k_u, k_u, K_V) if plane else (k_u, 0.0, K_V)
     for i, spring in enumerate(springs, 1):
         direction = np.zeros(8)
         direction[[i, i + 4]] = 1.0, -1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection, Mapping, Sequence
 from math import inf, isclose
 from typing import Any
@@ -78,7 +79,8 @@ def _greatest_use(summary: Mapping[str, Any]) -> str:
         for curve in summary["curves"]
         for name, loads in (curve.get("contacts") or {}).items()
     ]
-    forces = [(f, n, name) for f, n, name in found if f is not None and n is not None and f > 0.0 and n > 0.0]
+    known = ((f, n, name) for f, n, name in found if f is not None and n is not None and n > 0.0)
+    forces = [(f, n, name) for f, n, name in known if f > sys.float_info.epsilon * n]  # more than rounding
     if not forces:
         return ""
     friction, normal, name = max(forces, key=lambda one: one[0] / one[1])

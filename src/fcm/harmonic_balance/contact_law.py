@@ -164,8 +164,8 @@ class KernelLaw(Law):
         """Take the forces of the kernel, less the preload that the structure at rest balances; kind is that
         of its cycle, behaviour that of its load.
 
-        Where they are linear, as of a contact that sticks all through, the difference of load and preload
-        would have their rounding. That may be more than all that a small motion makes of the mean force.
+        Where the contact never opens, the difference of mean load and preload would have their rounding.
+        That may be more than all that a small motion makes of the mean force.
         """
         i: cython.Py_ssize_t
         normal: cython.int = self.directions - 1
@@ -174,7 +174,7 @@ class KernelLaw(Law):
         # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
         smooth: cython.bint = behaviour == CLOSED and not self.mu * self.k_u > 0.0
         self.nonlinear = kind == MIXED and not smooth
-        if kind == STUCK:
+        if kind == STUCK or behaviour == CLOSED:
             self.force[normal] = self.k_v * x[first + normal] + min(self.n_0, 0.0)
         else:
             self.force[normal] -= max(self.n_0, 0.0)

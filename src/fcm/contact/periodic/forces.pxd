@@ -58,5 +58,6 @@ cdef class PeriodicContact:
         bint gradient,
     ) noexcept nogil
     cdef void stick(self) noexcept nogil
+    cdef void press(self) noexcept nogil
     cdef void slip(self) noexcept nogil
     cdef void rescale(self, double mu, double k_u, double k_v, bint gradient) noexcept nogil

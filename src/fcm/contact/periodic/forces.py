@@ -22,6 +22,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from cython.cimports.fcm.contact.periodic.motion import (
+        CLOSED,
         FORCE,
         LOAD,
         MIXED,
@@ -33,7 +34,7 @@ if cython.compiled:
 else:
     from fcm.contact.closed_form import NAN, PI
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
-    from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, LineMotion
+    from fcm.contact.periodic.motion import CLOSED, FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, LineMotion
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
@@ -511,21 +512,33 @@ class PeriodicContact:
         k: cython.int
         row: cython.Py_ssize_t
         self.forces[0] = -self.cycle.rest[0]
-        self.forces[1] = self.motion.mean[LOAD]
         for k in range(self.motion.count):
             for i in range(self.outputs):
                 if self.output[i] == self.motion.number[k]:
                     row = 2 + 4 * i
                     self.forces[row] = self.motion.re[FORCE, k]
                     self.forces[row + 1] = self.motion.im[FORCE, k]
-                    self.forces[row + 2] = self.motion.re[LOAD, k]
-                    self.forces[row + 3] = self.motion.im[LOAD, k]
+        self.press()
+
+    def press(self) -> None:
+        """Sets the normal forces of a contact that never opens: those of its motion."""
+        i: cython.int
+        k: cython.int
+        row: cython.Py_ssize_t
+        self.forces[1] = self.motion.mean[LOAD]
+        for k in range(self.motion.count):
+            for i in range(self.outputs):
+                if self.output[i] == self.motion.number[k]:
+                    row = 4 + 4 * i
+                    self.forces[row] = self.motion.re[LOAD, k]
+                    self.forces[row + 1] = self.motion.im[LOAD, k]
 
     def slip(self) -> None:
         """Sets the forces from their integrals; those of short sticks are in the totals already."""
         i: cython.int
         h: cython.int
         row: cython.Py_ssize_t
+        opens: cython.bint = self.cycle.behaviour != CLOSED
         for i in range(-1, self.outputs):
             h = self.output[i] if i >= 0 else 0
             self.integrals.product(h, LONG, FORCE)
@@ -533,7 +546,8 @@ class PeriodicContact:
             friction_re: float = self.integrals.total_re[h]
             friction_im: float = self.integrals.total_im[h]
             self.integrals.total_re[h] = self.integrals.total_im[h] = 0.0
-            self.integrals.product(h, CONTACT, LOAD)
+            if opens:
+                self.integrals.product(h, CONTACT, LOAD)
             if i < 0:
                 self.forces[0] = 0.5 / PI * friction_re
                 self.forces[1] = 0.5 / PI * self.integrals.total_re[h]
@@ -542,6 +556,8 @@ class PeriodicContact:
                 self.forces[row], self.forces[row + 1] = friction_re / PI, friction_im / PI
                 self.forces[row + 2] = self.integrals.total_re[h] / PI
                 self.forces[row + 3] = self.integrals.total_im[h] / PI
+        if not opens:
+            self.press()
 
     def rescale(self, mu: float, k_u: float, k_v: float, gradient: bool) -> None:
         """Scales the dimensionless forces and derivatives to the units of the arguments."""
