@@ -19,8 +19,7 @@ STABILITY_NOT_YET_KNOWN = "stability is unknown there: the run was interrupted b
 
 def remedy_of_unknown_stability(summary: Mapping[str, Any]) -> str:
     """What may show a stability that is unknown: more harmonics, or why none was looked for."""
-    not_looked_for = any(one.startswith("stability: ") for one in summary.get("left_out", ()))
-    return 'none is looked for, "left out" says why' if not_looked_for else HARMONICS_HELP
+    return 'none is looked for, "left out" says why' if summary.get("without_stability") else HARMONICS_HELP
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int) -> str:

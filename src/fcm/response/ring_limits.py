@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from fcm.model.scene import InTime, Scene, in_time
 from fcm.response.options import SENTENCES
 from fcm.response.request import Request, ResponseError
@@ -74,12 +76,20 @@ def check_modes(scene: Scene, request: Request) -> None:
             raise ResponseError(f"{what}{hint}")
 
 
-def unknown(scene: Scene, request: Request) -> list[str]:
-    """Sentences on what is unknown of the curves of a scene, for want of modes or of time."""
+class UnknownOfRing(NamedTuple):
+    """Sentences on what is unknown of the curves of a ring, and whether stability is, on some of them."""
+
+    sentences: list[str]
+    stability: bool = False
+
+
+def unknown(scene: Scene, request: Request) -> UnknownOfRing:
+    """What is unknown of the curves of a scene, for want of modes or of time."""
     found: dict[str, None] = {}
+    without_stability = False
     orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
     if not orders:
-        return []
+        return UnknownOfRing([])
     from fcm.harmonic_balance.system import System
     from fcm.stability.ring_multipliers import stability_unknown
 
@@ -98,4 +108,5 @@ def unknown(scene: Scene, request: Request) -> list[str]:
         system = System(curve, request.harmonics or (1,))
         if why := stability_unknown(system, curve.frequency_range[1]):
             found[f"stability: {why}"] = None
-    return list(found)
+            without_stability = True
+    return UnknownOfRing(list(found), without_stability)

@@ -128,7 +128,9 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
         said.append(NO_TABLE_IN_PLANE if sweep.scene.planar else "the table: no contact needs it (no effect)")
     if sweep.scene.with_own_laws:
         said.append(HILL)
-    response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.request)]
+    of_ring = unknown(sweep.scene, sweep.request)
+    response.left_out = [*said, *sentences.on_means(lighter), *of_ring.sentences]
+    response.without_stability = of_ring.stability
     return response
 
 

@@ -176,6 +176,7 @@ class Response:
     frequency_unit: str
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
+    without_stability: bool = False  # whether none was looked for on some curves, as `left_out` says
     notes: list[str] = field(default_factory=list)  # of the scene: what was taken for what
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given

@@ -20,6 +20,7 @@ def summary(response: Response) -> dict[str, Any]:
         "exact_motion": response.in_time.value,
         "frequency_unit": response.frequency_unit,
         "left_out": response.left_out,
+        "without_stability": response.without_stability,
         "notes": response.notes,
         "units": dict(zip(("length", "force"), response.units, strict=True)),
         "seconds": response.seconds,
