@@ -56,8 +56,8 @@ def test_condensed_as_by_all_displacements(some, far):
     above = np.arange(6) >= 6 - far
     found = []
     for make, tolerance in (
-        (PlanarMonodromy, 1e-9),
-        (ManyPlanarMonodromy, 1e-9),
+        (PlanarMonodromy, 1e-10),
+        (ManyPlanarMonodromy, 1e-10),
         (ManyPlanarMonodromy, 1e-4),
     ):
         sequence = PlanarSequence(

@@ -5,7 +5,7 @@ cdef class ManyPlanarMonodromy(VariationalSteps):
     cdef object k_u, springs, ratios, K_closed, seen_closed, soft_closed, seen, soft, push, g_before
     cdef double omega, coefficient_floor
     cdef readonly int modes, columns
-    cdef int slipping
+    cdef int slipping, room
     cdef bint arranged
     cdef double[::1] node, C, ratio, stiff
     cdef double[:, ::1] slopes, inner, butcher, tail, K, q, p, q_new, p_new

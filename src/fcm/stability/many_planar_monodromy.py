@@ -72,10 +72,7 @@ class ManyPlanarMonodromy(VariationalSteps):
         self.shapes, self.natural, self.damping = modes.near
         self.all_soft = modes.flexibility
         self.modes = len(self.natural)
-        rule = radau(self.stages)
-        self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
-        self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
-        self.slipping = self.columns = 0
+        self.slipping = self.columns = self.room = 0
         self.arranged = False
 
     @cython.ccall
@@ -152,7 +149,7 @@ class ManyPlanarMonodromy(VariationalSteps):
     def _arrange(self) -> None:
         """Sort the contacts that slip, are open, and stick, and prepare what those do to one another."""
         self.poll()
-        state, columns, m, s = np.asarray(self.state)[self.moving], self.columns, self.modes, self.stages
+        state, columns, m = np.asarray(self.state)[self.moving], self.columns, self.modes
         slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
         opened = np.flatnonzero(state == SEPARATION)
         if not np.array_equal(opened, self.open):
@@ -173,12 +170,21 @@ class ManyPlanarMonodromy(VariationalSteps):
         self.of_slips = (soft[..., :2] * k_u[:, None]).transpose(1, 3, 0, 2).copy()
         pushes = self.push[:, slide].reshape(m, n, 3)[..., :2] * k_u[:, None]
         self.pushes = pushes.transpose(2, 0, 1).copy()
+        self.swapped_slips = np.zeros(n, dtype=np.intc)
+        self.arranged, self.room = True, 0
+
+    def _collocate(self) -> None:
+        """Take the rule of a step, and allocate for it."""
+        n, m, s, columns = self.slipping, self.modes, self.stages, self.columns
+        rule = radau(s)
+        self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
+        self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
         self.e_x, self.e_y, self.pressed, self.kept = np.zeros((4, s, n))
         self.sees, self.relaxing = np.zeros((2, s, n, 3)), np.zeros((n, s, s))
         self.by, self.force = np.zeros((s, 2 * n + m, 2 * n + m + columns)), np.zeros((s, m, columns))
         self.whole = np.zeros((s * (m + n), s * (m + n) + columns))
-        self.swapped, self.swapped_slips = np.zeros(s * (m + n), dtype=np.intc), np.zeros(n, dtype=np.intc)
-        self.arranged = True
+        self.swapped = np.zeros(s * (m + n), dtype=np.intc)
+        self.room = s
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -186,6 +192,8 @@ class ManyPlanarMonodromy(VariationalSteps):
         """Take a step from an angle on; its error relative to a disturbance, infinity if singular."""
         if not self.arranged:
             self._arrange()
+        if self.room != self.stages:
+            self._collocate()
         i: cython.int
         self.slip(theta, h)
         for i in range(self.stages):

@@ -250,14 +250,17 @@ class PlanarStabilityOptions(Frozen):
 
     Attributes
     ----------
-    stages, stages_of_many : int
-        Number of Radau points of a step, with few contacts and with many.
+    stages : int
+        Number of Radau points of a step, with few contacts.
+    stages_of_many : tuple of int
+        Numbers of Radau points that a step may have with many contacts, in rising order. A step has what
+        reaches the next event at the least cost.
     tolerance : float
         Last Legendre coefficient of the velocities over a step, relative to the size of a disturbance, up to
         which the step is accepted. Multipliers err by about a thousandth of it.
     tolerance_of_many : float
         Last Legendre coefficient, as for `tolerance`, with many contacts, where multipliers err by about a
-        hundredth of it.
+        twentieth of it.
     coefficient_floor : float
         Least value taken for that coefficient, relative to the last but one: it may vanish by chance.
     end_factor : float
@@ -282,9 +285,9 @@ class PlanarStabilityOptions(Frozen):
     """
 
     stages: int = 5
-    stages_of_many: int = 7
+    stages_of_many: tuple[int, ...] = (3, 5, 7)
     tolerance: float = 8e-5
-    tolerance_of_many: float = 1e-3
+    tolerance_of_many: float = 2e-4
     coefficient_floor: float = 0.1
     end_factor: float = 0.01
     max_step: float = 1.0

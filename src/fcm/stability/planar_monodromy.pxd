@@ -2,14 +2,15 @@ from fcm.stability.planar_sequence cimport PlanarSequence
 
 cdef class VariationalSteps:
     cdef public PlanarSequence sequence
-    cdef readonly int contacts, stages, events, steps
+    cdef readonly int contacts, events, steps
+    cdef public int stages
     cdef readonly int[::1] state, fresh, held
     cdef int first
     cdef double tolerance, max_step, min_step, min_factor, max_factor, safety, end_factor, max_retry_factor
-    cdef double event_tolerance, min_gap, next, part
+    cdef double event_tolerance, min_gap, part
     cdef object filled
-    cdef int[::1] order, whose, which
-    cdef double[::1] angle
+    cdef int[::1] order, whose, which, degrees
+    cdef double[::1] angle, longest
     cpdef bint begin(self, double omega) except -1
     cpdef double step(self, double theta, double h) except -1
     cpdef int accept(self) except -1
@@ -19,6 +20,7 @@ cdef class VariationalSteps:
     cdef int find(self) except -1
     cdef double start(self) except -1
     cdef bint propagate(self, double theta, double length, bint opens) except -1
+    cdef int cheapest(self, double left) except -1
 
 cdef class PlanarMonodromy(VariationalSteps):
     cdef readonly int modes, columns

@@ -1,7 +1,8 @@
 r"""The monodromy matrix of a motion whose contacts slide in a plane.
 
-It is carried from event to event, in steps as long as polynomials resolve its velocities. What a step does,
-and an event, is for `PlanarMonodromy` and `ManyPlanarMonodromy` to say.
+It is carried from event to event, in steps as long as polynomials resolve its velocities. Their degree is
+that which reaches the next event at the least cost. What a step does, and an event, is for `PlanarMonodromy`
+and `ManyPlanarMonodromy` to say.
 
 The modes, of mass 1 and with shapes P on the ports, obey as on a line (see `monodromy`)
 
@@ -33,7 +34,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import ceil, fabs
 
 from fcm.contact.plane.radau import radau
 from fcm.stability.following_modes import PortModes
@@ -67,10 +68,12 @@ class VariationalSteps:
         remembers at the beginning of the period.
     """
 
-    def __init__(self, sequence: PlanarSequence, stages: int, tolerance: float) -> None:
-        """stages, tolerance: of a step, see `PlanarStabilityOptions`."""
+    def __init__(self, sequence: PlanarSequence, degrees: tuple[int, ...], tolerance: float) -> None:
+        """degrees: the numbers of Radau points that a step may have; tolerance: of a step, see
+        `PlanarStabilityOptions`."""
         options = sequence.options
-        self.sequence, self.contacts, self.stages = sequence, sequence.contacts, stages
+        self.sequence, self.contacts, self.stages = sequence, sequence.contacts, max(degrees)
+        self.degrees, self.longest = np.array(degrees, dtype=np.intc), np.zeros(len(degrees))
         self.tolerance, self.max_step, self.min_step = tolerance, options.max_step, options.min_step
         self.min_factor, self.max_factor, self.safety = options.min_factor, options.max_factor, options.safety
         self.end_factor, self.event_tolerance = options.end_factor, options.event_tolerance
@@ -80,7 +83,7 @@ class VariationalSteps:
         self.whose, self.which, self.order = np.zeros((3, most), dtype=np.intc)
         self.state, self.fresh, self.held = np.zeros((3, self.contacts), dtype=np.intc)
         self.events = self.steps = self.first = 0
-        self.next, self.part = 0.0, TWO_PI
+        self.part = TWO_PI
         self.filled = np.zeros((0, 0))
 
     def matrix(self) -> npt.NDArray[np.float64]:
@@ -127,7 +130,9 @@ class VariationalSteps:
         e: cython.int
         c: cython.int
         i: cython.int
-        self.next, self.steps = self.max_step, 0
+        self.steps = 0
+        for i in range(self.longest.shape[0]):
+            self.longest[i] = self.max_step
         self.find()
         start: cython.double = self.start()
         now: cython.double = start
@@ -216,14 +221,14 @@ class VariationalSteps:
         for c in range(self.contacts):
             closed = closed or self.fresh[c] != 0
         while left > 0.0:
-            h: cython.double = min(self.next, self.max_step)
-            wanted: cython.double = h
-            refused: cython.bint = False
-            if h >= left:
-                h = left
-            elif h > 0.5 * left:
-                h = 0.5 * left
             while True:
+                i: cython.int = self.cheapest(left)
+                self.stages = self.degrees[i]
+                h: cython.double = self.longest[i]
+                if h >= left:
+                    h = left
+                elif h > 0.5 * left:
+                    h = 0.5 * left
                 if h < self.min_step:
                     return False
                 rest: cython.double = self.step(theta + length - left, h)
@@ -231,16 +236,28 @@ class VariationalSteps:
                 by: cython.double = (self.tolerance / max(rest, 1e-300)) ** (1.0 / self.stages)
                 if rest <= self.tolerance:
                     break
-                h *= min(max(self.safety * by, self.min_factor), self.max_retry_factor)
-                refused = True
-            self.next = h * min(max(self.safety * by, self.min_factor), self.max_factor)
-            if not refused:  # an event alone cut it
-                self.next = max(self.next, wanted)
+                self.longest[i] = h * min(max(self.safety * by, self.min_factor), self.max_retry_factor)
+            # a step that an event cuts short says nothing of a longer one
+            next_step: cython.double = h * min(self.safety * by, self.max_factor)
+            self.longest[i] = min(max(self.longest[i], next_step), self.max_step)
             self.accept()
             closed = False
             left = left - h if h < left else 0.0
             self.steps += 1
         return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def cheapest(self, left: cython.double) -> cython.int:
+        """Which of the degrees takes an angle at the least cost: as a cube, by its longest step."""
+        i: cython.int
+        best: cython.int = 0
+        least: cython.double = 0.0
+        for i in range(self.longest.shape[0]):
+            cost: cython.double = ceil(left / self.longest[i]) * self.degrees[i] ** 3
+            if i == 0 or cost < least:
+                best, least = i, cost
+        return best
 
 
 @cython.cclass
@@ -256,7 +273,7 @@ class PlanarMonodromy(VariationalSteps):
 
     def __init__(self, modes: PortModes, sequence: PlanarSequence) -> None:
         options = sequence.options
-        VariationalSteps.__init__(self, sequence, options.stages, options.tolerance)
+        VariationalSteps.__init__(self, sequence, (options.stages,), options.tolerance)
         self.coefficient_floor, self.max_disturbances = options.coefficient_floor, options.max_disturbances
         shapes, self.natural, self.damping = modes.near
         self.shapes, self.soft = np.ascontiguousarray(shapes), modes.flexibility
