@@ -11,11 +11,12 @@ from fcm.branches.friction_homotopy import with_friction_raised
 from fcm.branches.isolas import folds_to_follow, level_one_crossings
 from fcm.branches.mirror_images import symmetric_half
 from fcm.branches.options import BRANCHING, LEVEL_CURVE, BranchingOptions
-from fcm.branches.prolongation import at_its_frequency
+from fcm.branches.prolongation import prolongated
 from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.symmetry_in_level import unsymmetric_solutions
-from fcm.branches.trace import Traced, with_further
+from fcm.branches.trace import Traced, branches_through, with_further
 from fcm.branches.without_preload import peaks_without_preload
+from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
 
@@ -62,8 +63,9 @@ def with_isolas(system: System, found: Traced) -> Traced:
 def with_unsymmetric(system: System, found: Traced) -> Traced:
     """The branches with unsymmetric ones that curves of the level lead to; one of two mirror images.
 
-    Solutions that take other harmonics, and frequencies where the level was not followed to its end, are
-    noted.
+    The levels are those of a few harmonics. The branch of these through a solution is prolongated at many
+    points: with more harmonics it may be several. Solutions that take other harmonics, and frequencies where
+    the level was not followed to its end, are noted.
     """
     if system.harmonics[-1] < 2:
         return found
@@ -71,18 +73,20 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
     if looked.unfinished:
         levels = (replace(x, complete=x.complete and x.omega not in looked.unfinished) for x in found.found)
         found = replace(found, found=tuple(levels))
-    lost = list[tuple[float, tuple[int, ...]]]()
+    lost, known = list[tuple[float, tuple[int, ...]]](), list[Path]()
     for one in looked.solutions:
         if not {*one.even} <= {*system.harmonics}:
             lost.append((float(one.z[-1]), one.even))
             continue
-        z, symmetric = (
-            one.few.layout.with_harmonics(each, one.few.harmonics, system.harmonics)
-            for each in (one.z, one.symmetric)
-        )
-        start = at_its_frequency(system, z)
-        if start is not None:
-            found = _with_branches_of(system, found, BranchPoint(symmetric, (start,), start - symmetric))
+        images = (symmetry.image(one.z) for symmetry in broken_symmetries(one.few, one.symmetric, one.z))
+        balance = one.few.reset_balance()
+        if any(contains(path, z, balance) for z in (one.z, *images) for path in known):
+            continue
+        branch = branches_through(one.few, [one.z]).paths
+        known += branch
+        symmetric = one.few.layout.with_harmonics(one.symmetric, one.few.harmonics, system.harmonics)
+        for z in prolongated(system, one.few.harmonics, branch):
+            found = _with_branches_of(system, found, BranchPoint(symmetric, (z,), z - symmetric))
     return replace(found, symmetry_lost_in_level=tuple(lost)) if lost else found
 
 

@@ -111,7 +111,7 @@ def traced(
         yield from near
 
     user_values = [*levels, *(float(z[-1]) for z in near)]
-    branches = _branches_through(system, starts(), user_values, progress)
+    branches = branches_through(system, starts(), user_values, progress)
     response = _without_images(system, Traced(branches, tuple(found), work, fewer_peaks=peaks))
     lost = response.lost_peaks(system.option(LEVEL_CURVE))
     further = [omega for omega in level_frequencies(system, lost) if omega not in levels] if lost else []
@@ -129,7 +129,7 @@ def traced_from(
     if not near:
         return None
     places = [float(z[-1]) for z in near]
-    branches = _branches_through(system, near, places, progress)
+    branches = branches_through(system, near, places, progress)
     return _without_images(system, replace(before, branches=branches, fewer_peaks=before.peaks))
 
 
@@ -152,8 +152,11 @@ def _level_solutions(system: System, before: Traced) -> tuple[tuple[LevelSolutio
     return found, [z for one in found for z in one.solutions]
 
 
-def _branches_through(
-    system: System, starts: Iterable[FloatArray], user_values: Sequence[float], progress: Progress | None
+def branches_through(
+    system: System,
+    starts: Iterable[FloatArray],
+    user_values: Sequence[float] = (),
+    progress: Progress | None = None,
 ) -> Branches:
     """The branches through solutions, of which those outside the range do not count."""
     low, high = system.scene.frequency_range
