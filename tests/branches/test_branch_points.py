@@ -158,8 +158,8 @@ def test_even_harmonics_by_which_a_level_loses_symmetry_are_lacking_or_balanced(
 
 
 def test_a_closed_branch_is_reached_along_the_branch_of_few_harmonics():
-    """With five harmonics it is one with a branch that a level leads to; with eight it is apart, from 1.036 to
-    1.067 rad/s, and no level that is followed passes it. A march from rest settles there."""
+    """With five harmonics it is one with a branch that a level leads to. With eight it is apart (1.036 to
+    1.067 rad/s), and no level that is followed passes it. A march settles there."""
     scene, omega = KINDS["stops"](5054), 0.6 + 1.4 / 3.0
     rest = State(np.array([0.3, 0.1]), np.zeros(2), np.zeros(2))
     marched = next(iter(simulate(scene, omega, 400, rest).measures(last=1))).amplitude

@@ -370,3 +370,30 @@ def test_two_tables_of_keys_in_step():
 )
 def test_mistakes_of_keys_in_step(paired, words):
     assert words in refused(several("a", "b"), sweep={"paired": paired})
+
+
+@pytest.mark.parametrize(
+    ("nodes", "said"),
+    [
+        ([[1, 11], [12, 2], [3, 13], [4, 14]], ['1 of 4 pairs, "joint_2", has its nodes exchanged']),
+        ([[1, 11], [2, 12], [3, 13], [4, 14]], []),
+        ([[11, 1], [12, 2], [13, 3], [14, 4]], []),  # which side is the first one is not known
+        ([[1, 2], [3, 4], [12, 11]], []),  # within a body
+        ([[1], [2], [13], [14]], []),  # to the ground
+    ],
+)
+def test_a_pair_with_its_nodes_exchanged_is_told(nodes, said):
+    """Two bodies of four nodes each, which only the contacts couple."""
+    body = 4.0 * np.eye(4) - np.ones((4, 4)) + 0.1 * np.eye(4)
+    names = [*range(1, 5), *range(11, 15)]
+    structure = {
+        "dofs": [f"{node}{axis}" for axis in "xz" for node in names],
+        "stiffness": np.kron(np.eye(4), body).tolist(),
+        "mass": np.ones(16).tolist(),
+        "damping": 0.01,
+    }
+    contact = NUMBERS | {"name": "joint", "nodes": nodes, "tangential": "x", "normal": "z"}
+    data = {"structure": structure, "contact": [contact], "force": [{"dof": "1x", "amplitude": 1.0}]}
+    scene = scene_from_dict(data | {"response": {"frequency": [0.8, 1.2]}})
+    told = [note for note in scene.notes if "exchanged" in note]
+    assert len(told) == len(said) and all(words in note for words, note in zip(said, told, strict=True))

@@ -42,6 +42,7 @@ from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_s
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
 from fcm.scene.options import FILES, MESSAGES, TOLERANCES
+from fcm.scene.pair_sides import notes_of_sides
 from fcm.scene.parts import (
     contact_of,
     note_of_harmonics,
@@ -329,7 +330,9 @@ def _parts(
             check_matrices(top, matrices, cyclic, ends)
         return parts, (), (), []
     if matrices is not None:
+        sides = notes_of_sides(parts["contact"], matrices.K)
         parts, notes = with_modes(top, parts, matrices, output, ends, unit)
+        notes += sides
     else:
         parts, notes = with_exact_rigid_modes(with_base(parts), ends, unit)
         notes = [*modal["notes"], *notes]
