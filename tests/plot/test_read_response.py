@@ -90,6 +90,21 @@ def test_curves_of_which_stability_is_nowhere_told_are_dotted(path):
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["stability unknown"]
 
 
+def test_no_line_leads_across_a_jump_of_a_sweep(path):
+    """The sweep up jumps between its points, the one down does not; of the other curve nothing is said."""
+    with netCDF4.Dataset(path, "a") as data:
+        data["frequency"][0] = [1.0, 2.0, 1.0]
+        data.createVariable("sweep", str, ("curve", "point"))[...] = np.array(
+            [["up", "up", "down"], ["up"] * 3]
+        )
+        data.summary = '{"curves": [{"jumps": [{"sweep": "up", "frequency": 1.7}]}]}'
+    first, second = read_response(path).curves
+    assert np.array_equal(first.frequency, [1.0, NAN, 2.0, 1.0], equal_nan=True)
+    assert np.array_equal(first.amplitude[:, 0], [7.0, NAN, 8.0, 9.0], equal_nan=True)
+    assert first.stable.tolist() == [True, True, False, True]
+    assert second.frequency.tolist() == [1.0, 3.0]
+
+
 def test_points_alone_are_seen(path):
     """A file of peaks alone has no two points side by side; lines draw nothing of them."""
     with netCDF4.Dataset(path, "a") as data:

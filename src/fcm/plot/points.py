@@ -13,7 +13,7 @@ from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
-from fcm.plot.read import DrawnCurve, DrawnResponse, opened, read_response
+from fcm.plot.read import DrawnCurve, DrawnResponse, opened, response_in
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
 
@@ -38,10 +38,10 @@ class DrawnPoints(Frozen):
 @apart
 def read_points(path: Path) -> DrawnPoints:
     """Read what ``fcm respond --method exact -o`` has written; PlotError if the file is something else."""
-    response = read_response(path)
-    with opened(path, "a response file", ("frequency",), ("sweep",)) as dataset:
+    with opened(path, "a response file", ("frequency", "amplitude", "dof"), ("sweep",)) as dataset:
         if "sweep" not in dataset.variables:
             raise PlotError(f"{path}: no exact motions; fcm respond --method exact -o FILE writes them")
+        response = response_in(dataset)
         rows = np.asarray(dataset.variables["sweep"][:], dtype=str)
         sweeps = tuple(row[: len(c.frequency)] for row, c in zip(rows, response.curves, strict=True))
     return DrawnPoints(response, sweeps)

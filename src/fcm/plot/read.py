@@ -26,6 +26,7 @@ from fcm.plot.measured import DrawnMeasured, FittedNumber, fitted_of, measured_o
 from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
+from fcm.plot.summary import summary_of
 from fcm.plot.unfinished import NO_SPAN, Unfinished, unfinished_of
 from fcm.rotational_dofs import unit_of
 from fcm.units import CF_UNIT
@@ -162,8 +163,9 @@ def wide(curves: Sequence[DrawnCurve]) -> bool:
 @apart
 def read_response(path: Path) -> DrawnResponse:
     """Read what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED, _ALSO) as dataset:
-        return _response(dataset)
+    with opened(path, "a response file", _NEEDED, (*_ALSO, "sweep")) as dataset:
+        found = response_in(dataset)
+        return replace(found, curves=tuple(broken_at_jumps(dataset, found.curves)))
 
 
 class _Variables(dict[str, Any]):
@@ -258,7 +260,8 @@ def _hint(dataset: Any) -> str:
     return f"{alone if found == 'peak' else ''}; try fcm plot {found}" if found else ""
 
 
-def _response(dataset: Any) -> DrawnResponse:
+def response_in(dataset: Any) -> DrawnResponse:
+    """The response of an open file, with the points that it has."""
     variables = dataset.variables
     dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
     if not dofs:
@@ -313,6 +316,32 @@ def _curve(
         others["unknown"] = np.isfinite(frequency[there]) & unknown_stability(others["stable"])
         others["stable"] = others["stable"] != 0
     return DrawnCurve(parameters, frequency[there], amplitude[there], regimes=regimes, **others)
+
+
+def broken_at_jumps(dataset: Any, curves: Sequence[DrawnCurve]) -> Iterator[DrawnCurve]:
+    """The curves with a point of NaN wherever a sweep up or down jumps from one point to the next."""
+    if "sweep" not in dataset.variables:
+        yield from curves
+        return
+    sweeps = np.asarray(dataset.variables["sweep"][:], dtype=str)
+    every = [*summary_of(dataset).get("curves", []), *({} for _ in curves)]
+    for curve, row, told in zip(curves, sweeps, every, strict=False):
+        f, way, after = curve.frequency, row[: len(curve.frequency)], set[int]()
+        for jump in told.get("jumps", []):
+            same = (way[:-1] == way[1:]) & (way[1:] == jump["sweep"])
+            past = (f[:-1] - jump["frequency"]) * (f[1:] - jump["frequency"]) <= 0.0
+            after |= set((1 + np.flatnonzero(same & past)).tolist())
+        yield _broken(curve, sorted(after)) if after else curve
+
+
+def _broken(curve: DrawnCurve, places: list[int]) -> DrawnCurve:
+    """The curve with a point of NaN before each of some places."""
+    of_points: dict[str, Any] = {}
+    for name, values in vars(curve).items():
+        if isinstance(values, np.ndarray):
+            fill = values[np.array(places) - 1] if values.dtype == np.bool_ else np.nan
+            of_points[name] = np.insert(values, places, fill, axis=0)
+    return replace(curve, **of_points)
 
 
 def swept_values(variables: Any) -> dict[str, FloatArray]:
