@@ -112,6 +112,20 @@ def test_points_off_by_chance_are_no_systematic_misfit_and_those_of_a_wave_are()
     assert said.startswith("a.csv: neighbouring points are off to the same side. Of the misfit, 0.7")
 
 
+def test_a_point_that_stands_alone_is_said_and_one_of_a_resonance_that_is_missed_is_not():
+    rng = np.random.default_rng(5)
+    chance = [rng.standard_normal(40) for _ in range(1000)]
+    assert sum(bool(misfit_of(one).outliers) for one in chance) <= 2
+    wild = chance[0].copy()
+    wild[[7, 20]] = 30.0, -25.0
+    assert misfit_of(wild).outliers == [7, 20] and misfit_of(wild).summary()["outliers"] == [8, 21]
+    said = replace(fitted(0.0), data=[misfit_of(wild)]).problems()[0]
+    assert said.startswith("a.csv: points 8 and 21 of 40 stand alone, at least 8 times as far")
+    missed = 30.0 / (1.0 + (np.arange(40.0) - 20.0) ** 2)
+    assert misfit_of(missed).outliers == []
+    assert misfit_of(np.zeros(40)).outliers == []
+
+
 def test_a_search_that_stopped_early_is_said():
     assert any("before a minimum" in one for one in replace(fitted(0.0), settled=False).problems())
     assert not any("before a minimum" in one for one in fitted(0.0).problems())

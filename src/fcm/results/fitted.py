@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Measured
@@ -76,6 +77,7 @@ class FittedData(Frozen):
     modal_amplitude: FloatArray | None = None
     least: float = 1e-8  # misfit, relative: what is below is rounding
     deviations: float = 3.0  # standard deviations from chance, from which a misfit is systematic
+    isolated: float = 8.0  # times as far off as half the points, and as its neighbours, a point stands alone
 
     @property
     def misfit(self) -> float:
@@ -105,6 +107,28 @@ class FittedData(Frozen):
             self.misfit > self.least and difference < (2.0 - self.deviations * 2.0 / np.sqrt(count)) * square
         )
 
+    @property
+    def outliers(self) -> list[int]:
+        """Points that are off far more than most, and than both their neighbours: of an error of measurement.
+
+        What the model lacks shows at several neighbours.
+        """
+        one, off = self.measured, np.linalg.norm(self.residual, axis=1)
+        if off.size < 2 * self.isolated:
+            return []
+        along = self._along()
+        ordered = np.concatenate(([0.0], off[along], [0.0]))
+        beside = np.maximum(ordered[:-2], ordered[2:])
+        limit = self.isolated * np.maximum(np.maximum(beside, np.median(off)), self.least)
+        unit = self.error[:, 0] / (one.amplitude if one.damping is None else one.frequency).max()
+        far = (off[along] > limit) & ((off * unit)[along] > self.least)
+        return sorted(along[far].tolist())
+
+    def _along(self) -> npt.NDArray[np.intp]:
+        """The points in order of their frequency, for each level, or of a backbone of their amplitude."""
+        one = self.measured
+        return np.lexsort((one.frequency, one.level)) if one.damping is None else np.argsort(one.amplitude)
+
     def _squares(self) -> tuple[float, float]:
         r"""Sums of r_i^2 and of (r_(i+1) - r_i)^2 over the points in order of their frequency or amplitude.
 
@@ -112,9 +136,8 @@ class FittedData(Frozen):
         Source: von Neumann, "Distribution of the Ratio of the Mean Square Successive Difference to the
         Variance", Annals of Mathematical Statistics 12 (1941).
         """
-        one = self.measured
-        along = np.lexsort((one.frequency, one.level)) if one.damping is None else np.argsort(one.amplitude)
-        r = (self.residual[:, 1:] if one.damping is None else self.residual)[along]
+        backbone = self.measured.damping is not None
+        r = (self.residual if backbone else self.residual[:, 1:])[self._along()]
         return float((r**2).sum()), float((np.diff(r, axis=0) ** 2).sum())
 
     def summary(self) -> dict[str, Any]:
@@ -136,8 +159,24 @@ class FittedData(Frozen):
             "damping_misfit": self.damping_misfit,
             "scatter": self.scatter,
             "systematic": bool(self.systematic),
+            "outliers": [1 + i for i in self.outliers],
             "unreached": self.unreached,
         }
+
+
+def _of_outliers(part: FittedData) -> str:
+    """Sentences on points that stand alone."""
+    numbers, points = [str(1 + i) for i in part.outliers], part.measured.points
+    alone = (
+        f"point {numbers[0]} of {points} stands alone"
+        if len(numbers) == 1
+        else f"points {_listed(numbers)} of {points} stand alone"
+    )
+    return (
+        f"{part.measured.file}: {alone}, at least {part.isolated:.0f} times as far from the curve as the "
+        "neighbours. What was measured wrong may be left out: it moves the numbers, and all standard errors "
+        "become larger by it"
+    )
 
 
 class FittedStart(Frozen):
@@ -212,6 +251,8 @@ class Fitted:
             if part.unreached:
                 name = part.measured.file
                 said.append(f"{name}: the model's curve does not come to {part.unreached} of its points")
+            if part.outliers:
+                said.append(_of_outliers(part))
             off = max(part.misfit, np.nan_to_num(part.damping_misfit))
             if off > self.poor:
                 said.append(
