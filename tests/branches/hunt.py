@@ -134,6 +134,8 @@ def hunt(scene, looks=5, tries=6, deflate=False, exact=False):
 def main(arguments):
     """Hunt in scenes of a kind, and say what was found."""
     kind, *numbers = (one for one in arguments if not one.startswith("--"))
+    if {"--deflate", "--exact"} <= {*arguments}:
+        sys.exit("--deflate looks for solutions of the balance: leave out --exact")
     first, last, seconds = (*map(int, numbers), *(0, EACH, sys.maxsize)[len(numbers) :])
     count, seed = 0, first - 1
     for seed in range(first, last):

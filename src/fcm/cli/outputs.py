@@ -114,7 +114,10 @@ class Outputs:
         if part is not None and path.exists():
             before = part.written(path)
             if before is None or points < before:
-                self.messages.info(f"{plain(path)} is left as it was")
+                self.messages.info(
+                    f"{plain(path)} is left as it was: an earlier run wrote more than this one, which was "
+                    "interrupted. With another -o FILE both are kept"
+                )
                 return
         earlier = self.checkpoint is not None and self.checkpoint.written(path) is not None
         write(response, path)
