@@ -90,9 +90,13 @@ def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
 
 
 def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> float:
-    """Seconds that a curve takes with more harmonics, to a digit: in proportion to its equations."""
-    alone = found.seconds_with(more)
-    whole = max(alone, spent * alone / found.seconds if found.seconds else 0.0)
+    """Seconds that a curve takes with more harmonics, to a digit.
+
+    To trace it takes what the size of its equations says, and its errors and stability in proportion to the
+    harmonics.
+    """
+    further = max(spent - found.seconds, 0.0) * len(more) / len(found.system.harmonics)
+    whole = found.seconds_with(more) + further
     return float(f"{whole:.1g}") if whole > 1.0 else 1.0
 
 

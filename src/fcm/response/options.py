@@ -124,8 +124,8 @@ class InterruptedOptions(Frozen):
     Attributes
     ----------
     max_states : int
-        Most points times contacts of a curve with errors: a curve with more is written with fewer points, and
-        no further errors.
+        Most points times directions of contacts of a curve with errors: a curve with more is written with
+        fewer points, and no further errors.
     min_points : int
         Least number of points that are written, however many contacts there are.
     max_seconds_of_errors : float
@@ -133,16 +133,16 @@ class InterruptedOptions(Frozen):
     """
 
     max_states: int = 20_000
-    min_points: int = 200
+    min_points: int = 30
     max_seconds_of_errors: float = 0.2
 
-    def max_points(self, contacts: int) -> int:
-        """Most points that are written of a curve with so many contacts.
+    def max_points(self, directions: int) -> int:
+        """Most points that are written of a curve whose contacts have so many directions in all.
 
-        >>> InterruptedOptions().max_points(25), InterruptedOptions().max_points(300)
-        (800, 200)
+        >>> InterruptedOptions().max_points(50), InterruptedOptions().max_points(900)
+        (400, 30)
         """
-        return max(self.max_states // max(contacts, 1), self.min_points)
+        return max(self.max_states // max(directions, 1), self.min_points)
 
 
 INTERRUPTED_CURVES = InterruptedOptions()

@@ -99,7 +99,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
     assert so_far.found is not None
     whole = so_far.found
     whole.system.work.poll, whole.system.work.tell = int, str  # which interrupt no more
-    most = options.max_points(len(scene.contacts))
+    most = options.max_points(len(scene.contacts) * scene.directions_of_contact)
     few = whole.thinned(most)
     if isinstance(few, RefinedResponse):
         found = few
