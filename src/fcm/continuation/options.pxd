@@ -14,7 +14,7 @@ cdef class StepOptions(Options):
 
 cdef class EventOptions(Options):
     cdef readonly int max_evaluations, many_outputs
-    cdef readonly double peak_tolerance, peak_tolerance_of_many, tolerance, fold_bracket, min_growth, peak_threshold, max_slope_change, doubtful_slope, min_reversal, rounding_step, point_tolerance, far_tolerance, around_cosine, closing_cosine, landing_tolerance
+    cdef readonly double peak_tolerance, peak_tolerance_of_many, tolerance, fold_bracket, min_growth, peak_threshold, max_slope_change, doubtful_slope, min_reversal, rounding_step, point_tolerance, far_tolerance, repeat_tolerance, around_cosine, closing_cosine, landing_tolerance
 
 cdef class SwitchingOptions(Options):
     cdef readonly int max_predictions, departure_tries, max_pieces, many_unknowns

@@ -272,6 +272,8 @@ class EventOptions(Options):
     far_tolerance : float
         Distance from a corner, relative to the greatest unknown, beyond which the curve has left it; a later
         return to it is a second visit.
+    repeat_tolerance : float
+        Distance of two corners, relative to the greatest unknown, below which they are the very same.
     around_cosine : float
         Cosine between the directions of two visits to a corner, beyond which the curve came to it in the same
         way: it is closed.
@@ -297,6 +299,7 @@ class EventOptions(Options):
     many_outputs: cython.int = 24
     point_tolerance: cython.double = 1e-6
     far_tolerance: cython.double = 1e-4
+    repeat_tolerance: cython.double = 1e-10
     around_cosine: cython.double = 0.9999
     closing_cosine: cython.double = 0.5
     landing_tolerance: cython.double = 0.25

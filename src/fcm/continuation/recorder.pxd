@@ -16,6 +16,7 @@ cdef class Recorder:
     cdef bint keep_events(self, double limit) except -1
     cdef bint revisits_user_point(self) except -1
     cdef bint revisits_corner(self) except -1
+    cdef bint along(self, Py_ssize_t i, Py_ssize_t k) except -1
     cdef int add(self, long mark) except -1
     cdef int add_corner(self, Point point) except -1
     cdef void update_greatest(self) noexcept

@@ -155,26 +155,42 @@ class Recorder:
     @cython.exceptval(-1, check=False)
     def revisits_corner(self) -> cython.bint:
         """Whether the last point, a corner, was passed before in its direction, and the curve was elsewhere
-        in between: it then goes around for ever."""
+        in between: it then goes around for ever.
+
+        So it does where it comes to the very same point again from another corner, however near that is.
+        """
         store: PointStore = self.store
+        repeated: cython.double = self.stepper.options.events.repeat_tolerance
         i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
         last: cython.Py_ssize_t = store.count - 1
         elsewhere: cython.bint = False
+        turned: cython.bint = False
         for i in range(last - 1, -1, -1):
             if not elsewhere:
                 elsewhere = not store.same(i, last, self.far)
-            elif store.mark[i] & CORNER and store.same(i, last, self.same):
-                along: cython.double = 0.0
-                one: cython.double = 0.0
-                other: cython.double = 0.0
-                for j in range(self.n + 1):
-                    along += store.direction[i, j] * store.direction[last, j]
-                    one += store.direction[i, j] * store.direction[i, j]
-                    other += store.direction[last, j] * store.direction[last, j]
-                if along > self.stepper.options.events.around_cosine * sqrt(one * other):
-                    return True  # and does not cross itself there
+            if not store.mark[i] & CORNER or not store.same(i, last, self.same if elsewhere else repeated):
+                turned = turned or store.mark[i] & CORNER != 0
+                continue
+            if not self.along(i, last):  # it crosses itself there
+                turned = True
+            elif elsewhere or turned:
+                return True
         return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def along(self, i: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
+        """Whether the curve has the same direction at two points that are kept."""
+        j: cython.Py_ssize_t
+        both: cython.double = 0.0
+        one: cython.double = 0.0
+        other: cython.double = 0.0
+        direction: cython.double[:, ::1] = self.store.direction
+        for j in range(self.n + 1):
+            both += direction[i, j] * direction[k, j]
+            one += direction[i, j] * direction[i, j]
+            other += direction[k, j] * direction[k, j]
+        return both > self.stepper.options.events.around_cosine * sqrt(one * other)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
