@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.accuracy.refinement import refined_response
 from fcm.branches.force_level import linear_responses
 from fcm.branches.trace import traced as branches
 from fcm.continuation import Events, FollowOptions, Mark, Status, follow
@@ -40,6 +41,14 @@ def test_a_contact_that_sticks_once_in_a_cycle_has_few_corners():
     (path,) = branches(System(random_plane(220), (1, 2, 3))).branches.paths
     assert path.status is Status.COMPLETE
     assert path.where(Mark.CORNER).size < 30
+
+
+def test_a_curve_that_bounces_between_two_corners_is_ended_there():
+    """They are 7e-7 of the motion apart; it went to and fro until the work was at its limit, two minutes."""
+    system = System(replace(random_plane(149), harmonics=None))
+    found = refined_response(system, 1e-2)
+    assert system.work.seconds < 0.02 * system.options.work.max_seconds  # of the cost model, no clock's
+    assert found.max_error < 1e-2 and found.traced.branches.paths[-1].status is Status.COMPLETE
 
 
 @pytest.mark.slow
