@@ -397,3 +397,21 @@ def test_a_pair_with_its_nodes_exchanged_is_told(nodes, said):
     scene = scene_from_dict(data | {"response": {"frequency": [0.8, 1.2]}})
     told = [note for note in scene.notes if "exchanged" in note]
     assert len(told) == len(said) and all(words in note for words, note in zip(said, told, strict=True))
+
+
+def test_so_is_one_between_two_sectors_of_a_ring():
+    body = 4.0 * np.eye(4) - np.ones((4, 4)) + 0.1 * np.eye(4)
+    structure = {
+        "dofs": [f"{node}{axis}" for axis in "xz" for node in range(1, 5)],
+        "stiffness": np.kron(np.eye(2), body).tolist(),
+        "mass": np.ones(8).tolist(),
+        "damping": 0.01,
+    }
+    nodes = [["1", "next.2"], ["next.2", "3"], ["2", "next.3"]]
+    contact = NUMBERS | {"name": "shroud", "nodes": nodes, "tangential": "x", "normal": "z"}
+    scene = scene_from_dict(
+        {"structure": structure, "contact": [contact], "force": [{"dof": "1x", "amplitude": 1.0}]}
+        | {"cyclic": {"sectors": 6, "engine_order": 1}, "response": {"frequency": [0.8, 1.2]}}
+    )
+    (told,) = (note for note in scene.notes if "exchanged" in note)
+    assert '1 of 3 pairs, "shroud_2", has its nodes exchanged' in told

@@ -279,14 +279,19 @@ def _is_one(value: Any) -> bool:
     return not isinstance(value, str) and not _is_list(value)
 
 
-def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Notes on pairs with one number for all: totals shared by areas, or the same for each pair."""
-    groups: dict[str, list[Mapping[str, Any]]] = {}
+def pairs_by_contact(drafts: Iterable[Mapping[str, Any]]) -> dict[str, list[Mapping[str, Any]]]:
+    """The drafts of the pairs of each contact over pairs of nodes, by its name."""
+    found: dict[str, list[Mapping[str, Any]]] = {}
     for draft in drafts:
         if "group" in draft:
-            groups.setdefault(draft["group"], []).append(draft)
+            found.setdefault(draft["group"], []).append(draft)
+    return found
+
+
+def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Notes on pairs with one number for all: totals shared by areas, or the same for each pair."""
     said: dict[str, list[str]] = {}  # the names of the contacts of which a sentence is said
-    for name, pairs in groups.items():
+    for name, pairs in pairs_by_contact(drafts).items():
         if share := pairs[0]["share"]:
             totals = _are(list(share), "totals", "a total")
             said.setdefault(f"{totals}, which {len(pairs)} pairs share by their areas", []).append(name)

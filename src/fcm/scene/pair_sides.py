@@ -1,21 +1,26 @@
 """Notes on pairs of nodes that are the other way round than the rest of their interface.
 
 The first node of a pair is on the side that moves along the normal as the contact closes. Where two bodies
-meet, all first nodes belong to one of them. A pair with its nodes exchanged opens where it should close.
+meet, or two sectors of a ring, all first nodes belong to one of them. A pair with its nodes exchanged opens
+where it should close.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from fcm.scene.errors import counted, several
+from fcm.scene.node_pairs import pairs_by_contact
+from fcm.structure.rigid_body import bodies
 
 
-def notes_of_sides(drafts: Iterable[Mapping[str, Any]], K: Any) -> list[str]:
+def notes_of_sides(drafts: Sequence[Mapping[str, Any]], K: Any) -> list[str]:
     """Notes on the pairs of groups, whose normals (row,) lead from one body of a stiffness matrix to another.
+
+    Of a ring it is that of a sector, and normals have the rows of the next sector behind.
 
     >>> import scipy.sparse
     >>> K = scipy.sparse.block_diag([np.ones((2, 2)), np.ones((2, 2))])
@@ -24,24 +29,20 @@ def notes_of_sides(drafts: Iterable[Mapping[str, Any]], K: Any) -> list[str]:
     >>> notes_of_sides(drafts, K)[0].partition(". ")[0]
     'contact c: 1 of 3 pairs, "c_2", has its nodes exchanged, so that it opens where its neighbours close'
     """
-    groups: dict[str, list[Mapping[str, Any]]] = {}
-    for draft in drafts:
-        if "group" in draft and draft["normal"] is not None:
-            groups.setdefault(draft["group"], []).append(draft)
-    if not any(len(pairs) > 2 for pairs in groups.values()):
-        return []
-    from scipy.sparse.csgraph import connected_components
-
-    body = connected_components(abs(K), directed=False)[1]
-    notes = []
-    for name, pairs in groups.items():
+    contacts, notes = pairs_by_contact(drafts), list[str]()
+    if not any(len(pairs) > 2 for pairs in contacts.values()):
+        return notes
+    body = bodies(K)
+    if len(drafts[0]["normal"]) > body.size:
+        body = np.concatenate((body, body + body.max() + 1))
+    for name, pairs in contacts.items():
         few = _fewer(pairs, body)
         if few:
             has = "has its nodes exchanged, so that it opens where its neighbours close"
             have = "have their nodes exchanged, so that they open where their neighbours close"
             notes.append(
                 f"contact {name}: {len(few)} of {counted(len(pairs), 'pair')}, {several(few)}, "
-                f"{has if len(few) == 1 else have}. Elsewhere the first node is on the other body"
+                f"{has if len(few) == 1 else have}. Elsewhere the first node is on the other side"
             )
     return notes
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse
-import scipy.sparse.csgraph
 
 from fcm.frozen import Frozen
 from fcm.scene.entries import check_numbers, check_symmetric, symmetric
@@ -24,6 +23,7 @@ from fcm.scene.row_names import in_order, labels_of, row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section, written_as
 from fcm.structure.eigen import StructureError, factored_structure
+from fcm.structure.rigid_body import bodies
 
 
 class StructureMatrices(Frozen):
@@ -136,7 +136,7 @@ def is_mesh(K: Any, dofs: Names) -> bool:
         at.setdefault(node, set()).add(axis)
     if not all(set(TRANSLATIONS) <= axes for axes in at.values()):
         return False
-    sizes = np.bincount(scipy.sparse.csgraph.connected_components(K, directed=False)[1])
+    sizes = np.bincount(bodies(K))
     return bool(K.count_nonzero() <= TOLERANCES.mesh_entries * (sizes.astype(np.float64) ** 2).sum())
 
 

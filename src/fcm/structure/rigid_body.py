@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.structure.digits import energy_uncertain
 from fcm.structure.options import RIGID_BODY
@@ -36,10 +37,19 @@ def most_rigid(K: Matrix) -> int:
     >>> most_rigid(scipy.sparse.block_diag([np.ones((2, 2)), np.ones((9, 9))]))
     8
     """
+    return int(np.minimum(np.bincount(bodies(K)), MOST).sum())
+
+
+def bodies(K: Matrix) -> npt.NDArray[np.intp]:
+    """The body of each row (row,): the number of the part of the structure that stiffness couples it to.
+
+    >>> import scipy.sparse
+    >>> bodies(scipy.sparse.block_diag([np.ones((2, 2)), -np.ones((3, 3))])).tolist()
+    [0, 0, 1, 1, 1]
+    """
     from scipy.sparse.csgraph import connected_components  # modes from a file do without scipy
 
-    _, body = connected_components(abs(K), directed=False)
-    return int(np.minimum(np.bincount(body), MOST).sum())
+    return np.asarray(connected_components(abs(K), directed=False)[1], dtype=np.intp)
 
 
 def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
