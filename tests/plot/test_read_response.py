@@ -105,6 +105,25 @@ def test_no_line_leads_across_a_jump_of_a_sweep(path):
     assert second.frequency.tolist() == [1.0, 3.0]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[]",
+        "{",
+        '{"curves": 5}',
+        '{"curves": [5]}',
+        '{"curves": [{"jumps": [{}]}]}',
+        '{"curves": [{"jumps": 5}]}',
+    ],
+)
+def test_jumps_that_are_none_are_said(path, text):
+    with netCDF4.Dataset(path, "a") as data:
+        data.createVariable("sweep", str, ("curve", "point"))[...] = np.array([["up"] * 3] * 2)
+        data.summary = text
+    with pytest.raises(PlotError, match=r"response\.nc: not a response file"):
+        read_response(path)
+
+
 def test_points_alone_are_seen(path):
     """A file of peaks alone has no two points side by side; lines draw nothing of them."""
     with netCDF4.Dataset(path, "a") as data:

@@ -59,6 +59,7 @@ def test_condensed_as_by_all_displacements(some, far):
         (PlanarMonodromy, 1e-10),
         (ManyPlanarMonodromy, 1e-10),
         (ManyPlanarMonodromy, 1e-4),
+        (ManyPlanarMonodromy, STABILITY.planar.tolerance_of_many),
     ):
         sequence = PlanarSequence(
             contact, (1, 2), replace(STABILITY.planar, tolerance=tolerance, tolerance_of_many=tolerance)
@@ -70,6 +71,7 @@ def test_condensed_as_by_all_displacements(some, far):
     assert found[0].shape[0] >= 2 * (6 - far)
     assert found[1] == pytest.approx(found[0], abs=1e-9)
     assert found[2] == pytest.approx(found[0], abs=2e-6)
+    assert found[3] == pytest.approx(found[0], abs=0.05 * STABILITY.planar.tolerance_of_many)
 
 
 def test_more_disturbances_than_are_followed_are_none():

@@ -168,13 +168,13 @@ class Recorder:
         for i in range(last - 1, -1, -1):
             if not elsewhere:
                 elsewhere = not store.same(i, last, self.far)
-            if not store.mark[i] & CORNER or not store.same(i, last, self.same if elsewhere else repeated):
-                turned = turned or store.mark[i] & CORNER != 0
+            if not store.mark[i] & CORNER:
                 continue
-            if not self.along(i, last):  # it crosses itself there
-                turned = True
-            elif elsewhere or turned:
+            again: cython.bint = store.same(i, last, self.same if elsewhere else repeated)
+            again = again and self.along(i, last)  # and does not cross itself there
+            if again and (elsewhere or turned):
                 return True
+            turned = turned or not again
         return False
 
     @cython.cfunc

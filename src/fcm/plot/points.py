@@ -13,7 +13,7 @@ from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
-from fcm.plot.read import DrawnCurve, DrawnResponse, opened, response_in
+from fcm.plot.read import DrawnCurve, DrawnResponse, opened_response, response_in
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
 
@@ -38,7 +38,7 @@ class DrawnPoints(Frozen):
 @apart
 def read_points(path: Path) -> DrawnPoints:
     """Read what ``fcm respond --method exact -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", ("frequency", "amplitude", "dof"), ("sweep",)) as dataset:
+    with opened_response(path) as dataset:
         if "sweep" not in dataset.variables:
             raise PlotError(f"{path}: no exact motions; fcm respond --method exact -o FILE writes them")
         response = response_in(dataset)

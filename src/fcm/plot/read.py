@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,7 @@ from fcm.plot.measured import DrawnMeasured, FittedNumber, fitted_of, measured_o
 from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
-from fcm.plot.summary import summary_of
+from fcm.plot.summary import jumps_of
 from fcm.plot.unfinished import NO_SPAN, Unfinished, unfinished_of
 from fcm.rotational_dofs import unit_of
 from fcm.units import CF_UNIT
@@ -48,6 +48,7 @@ _ALSO = (
     "level",
     "complete",
     "fundamental",
+    "sweep",
     *MEASURED,
     *OF_MEASURED,
     *OF_BLADES,
@@ -163,9 +164,14 @@ def wide(curves: Sequence[DrawnCurve]) -> bool:
 @apart
 def read_response(path: Path) -> DrawnResponse:
     """Read what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED, (*_ALSO, "sweep")) as dataset:
+    with opened_response(path) as dataset:
         found = response_in(dataset)
-        return replace(found, curves=tuple(broken_at_jumps(dataset, found.curves)))
+        return replace(found, curves=tuple(_broken_at_jumps(dataset, found.curves)))
+
+
+def opened_response(path: Path) -> AbstractContextManager[Any]:
+    """The open dataset of a response, see `opened`."""
+    return opened(path, "a response file", _NEEDED, _ALSO)
 
 
 class _Variables(dict[str, Any]):
@@ -318,18 +324,18 @@ def _curve(
     return DrawnCurve(parameters, frequency[there], amplitude[there], regimes=regimes, **others)
 
 
-def broken_at_jumps(dataset: Any, curves: Sequence[DrawnCurve]) -> Iterator[DrawnCurve]:
+def _broken_at_jumps(dataset: Any, curves: Sequence[DrawnCurve]) -> Iterator[DrawnCurve]:
     """The curves with a point of NaN wherever a sweep up or down jumps from one point to the next."""
     if "sweep" not in dataset.variables:
         yield from curves
         return
     sweeps = np.asarray(dataset.variables["sweep"][:], dtype=str)
-    every = [*summary_of(dataset).get("curves", []), *({} for _ in curves)]
-    for curve, row, told in zip(curves, sweeps, every, strict=False):
+    every = [*jumps_of(dataset), *([] for _ in curves)]
+    for curve, row, jumps in zip(curves, sweeps, every, strict=False):
         f, way, after = curve.frequency, row[: len(curve.frequency)], set[int]()
-        for jump in told.get("jumps", []):
-            same = (way[:-1] == way[1:]) & (way[1:] == jump["sweep"])
-            past = (f[:-1] - jump["frequency"]) * (f[1:] - jump["frequency"]) <= 0.0
+        for sweep, at in jumps:
+            same = (way[:-1] == way[1:]) & (way[1:] == sweep)
+            past = (f[:-1] - at) * (f[1:] - at) <= 0.0
             after |= set((1 + np.flatnonzero(same & past)).tolist())
         yield _broken(curve, sorted(after)) if after else curve
 

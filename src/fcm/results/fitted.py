@@ -113,16 +113,14 @@ class FittedData(Frozen):
 
         What the model lacks shows at several neighbours.
         """
-        one, off = self.measured, np.linalg.norm(self.residual, axis=1)
+        off = np.linalg.norm(self.residual, axis=1)
         if off.size < 2 * self.isolated:
             return []
         along = self._along()
         ordered = np.concatenate(([0.0], off[along], [0.0]))
         beside = np.maximum(ordered[:-2], ordered[2:])
-        limit = self.isolated * np.maximum(np.maximum(beside, np.median(off)), self.least)
-        unit = self.error[:, 0] / (one.amplitude if one.damping is None else one.frequency).max()
-        far = (off[along] > limit) & ((off * unit)[along] > self.least)
-        return sorted(along[far].tolist())
+        limit = self.isolated * np.maximum(beside, max(float(np.median(off)), self.least))
+        return sorted(along[off[along] > limit].tolist())
 
     def _along(self) -> npt.NDArray[np.intp]:
         """The points in order of their frequency, for each level, or of a backbone of their amplitude."""

@@ -2,8 +2,7 @@ from fcm.stability.planar_sequence cimport PlanarSequence
 
 cdef class VariationalSteps:
     cdef public PlanarSequence sequence
-    cdef readonly int contacts, events, steps
-    cdef public int stages
+    cdef readonly int contacts, stages, events, steps
     cdef readonly int[::1] state, fresh, held
     cdef int first
     cdef double tolerance, max_step, min_step, min_factor, max_factor, safety, end_factor, max_retry_factor
