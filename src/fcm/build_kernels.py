@@ -43,7 +43,7 @@ LOOPS = (
     "fcm.harmonic_balance.",
     "fcm.continuation.dense_solver",
     "fcm.stability.monodromy",
-    "fcm.stability.many_planar_monodromy",
+    "fcm.stability.planar_monodromy",
 )
 # What decides, once a step, is compiled in two thirds of the time with -O1, and no slower for that.
 DECISIONS = (

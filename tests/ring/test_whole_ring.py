@@ -101,7 +101,7 @@ def test_an_accuracy_takes_the_harmonics_that_the_ring_takes():
 
 
 # a ring and the whole of it differ by the errors of their steps
-FINE = StabilityOptions(planar=PlanarStabilityOptions(tolerance=1e-6, tolerance_of_many=1e-6))
+FINE = StabilityOptions(planar=PlanarStabilityOptions(tolerance=1e-6))
 
 
 @pytest.mark.slow

@@ -42,7 +42,6 @@ from fcm.stability.rebalanced import Rebalancing
 from fcm.stability.state_sequence import BalancedSequence
 
 if TYPE_CHECKING:
-    from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
     from fcm.stability.planar_monodromy import PlanarMonodromy
     from fcm.stability.planar_sequence import PlanarSequence
 
@@ -51,7 +50,7 @@ class VariationalProblem(NamedTuple):
     """The states of a balanced motion, and the monodromy that follows its disturbances through them."""
 
     states: BalancedSequence | PlanarSequence
-    monodromy: Monodromy | ManyMonodromy | PlanarMonodromy | ManyPlanarMonodromy
+    monodromy: Monodromy | ManyMonodromy | PlanarMonodromy
 
 
 class _MotionSample(NamedTuple):
@@ -127,18 +126,13 @@ class Multipliers:
                 _many_contacts if len(self.contact) >= self.options.structure.many_contacts else _few_contacts
             )
             return make(self.system, self.far, self.contact, (fine, plain), self.options)
-        from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
         from fcm.stability.planar_monodromy import PlanarMonodromy
         from fcm.stability.planar_sequence import PlanarSequence
 
         linear = self.system.linear
         modes = PortModes(linear.ports, linear.natural, linear.damping, self.far)
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
-        options = self.options.structure
-        most = options.flexible_contacts if self.far.any() else options.many_contacts
-        if len(self.contact) < most:
-            return [VariationalProblem(one, PlanarMonodromy(modes, one)) for one in planar]
-        return [VariationalProblem(one, ManyPlanarMonodromy(modes, one, self._poll)) for one in planar]
+        return [VariationalProblem(one, PlanarMonodromy(modes, one, self._poll)) for one in planar]
 
     def _poll(self) -> None:
         self.system.work.poll()  # of now, which may be another later
@@ -481,7 +475,7 @@ def _many_contacts(
 def quasi_static_modes(
     natural: FloatArray,
     highest: float,
-    harmonics: list[int],
+    harmonics: Sequence[int],
     planar: bool,
     options: StabilityOptions = STABILITY,
 ) -> npt.NDArray[np.bool_]:

@@ -45,10 +45,7 @@ class StructureOptions(Frozen):
     many_modes : int
         Number of modes above which those far above the excitation are taken to follow without delay.
     many_contacts : int
-        Number of contacts from which on each change of one contact's state is followed on its own.
-    flexible_contacts : int
-        Number of contacts in a plane from which on each change of one contact's state is followed on its own,
-        where some modes follow without delay.
+        Number of contacts on a line from which on each change of one contact's state is followed on its own.
     above_excitation, above_harmonics : float
         Frequency of a mode above which it is far, relative to the excitation, and relative to its highest
         harmonic; the larger limit holds.
@@ -69,7 +66,6 @@ class StructureOptions(Frozen):
 
     many_modes: int = 24
     many_contacts: int = 12
-    flexible_contacts: int = 2
     above_excitation: float = 6.0
     above_harmonics: float = 1.5
     above_of_few: float = 2.0
@@ -250,17 +246,12 @@ class PlanarStabilityOptions(Frozen):
 
     Attributes
     ----------
-    stages : int
-        Number of Radau points of a step, with few contacts.
-    stages_of_many : tuple of int
-        Numbers of Radau points that a step may have with many contacts, in rising order. A step has what
-        reaches the next event at the least cost.
+    stages : tuple of int
+        Numbers of Radau points that a step may have, in rising order. A step has what reaches the next event
+        at the least cost.
     tolerance : float
         Last Legendre coefficient of the velocities over a step, relative to the size of a disturbance, up to
-        which the step is accepted. Multipliers err by about a thousandth of it.
-    tolerance_of_many : float
-        Last Legendre coefficient, as for `tolerance`, with many contacts, where multipliers err by about a
-        twentieth of it.
+        which the step is accepted. Multipliers err by about a twentieth of it.
     coefficient_floor : float
         Least value taken for that coefficient, relative to the last but one: it may vanish by chance.
     end_factor : float
@@ -273,8 +264,8 @@ class PlanarStabilityOptions(Frozen):
         Greatest ratio of a rejected step's next attempt to it.
     min_step : float
         [rad] Shortest step; where none as short is accepted, stability is unknown.
-    max_disturbances, most_of_many : int
-        Most disturbances that are followed, with few contacts and with many; with more, stability is unknown.
+    max_disturbances : int
+        Most disturbances that are followed; with more, stability is unknown.
     initial_panels : int
         Number of panels of slip that are recorded for a contact at first.
     event_tolerance : float
@@ -284,10 +275,8 @@ class PlanarStabilityOptions(Frozen):
         [rad] Distance of two events above which a period may begin between them.
     """
 
-    stages: int = 5
-    stages_of_many: tuple[int, ...] = (3, 5, 7)
-    tolerance: float = 8e-5
-    tolerance_of_many: float = 2e-4
+    stages: tuple[int, ...] = (3, 5, 7)
+    tolerance: float = 1e-4
     coefficient_floor: float = 0.1
     end_factor: float = 0.01
     max_step: float = 1.0
@@ -296,8 +285,7 @@ class PlanarStabilityOptions(Frozen):
     safety: float = 0.8
     max_retry_factor: float = 0.7
     min_step: float = 1e-13
-    max_disturbances: int = 160
-    most_of_many: int = 800
+    max_disturbances: int = 800
     initial_panels: int = 200
     event_tolerance: float = 1e-7
     min_gap: float = 1e-6

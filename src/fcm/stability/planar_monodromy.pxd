@@ -8,7 +8,7 @@ cdef class VariationalSteps:
     cdef double tolerance, max_step, min_step, min_factor, max_factor, safety, end_factor, max_retry_factor
     cdef double event_tolerance, min_gap, part
     cdef object filled
-    cdef int[::1] order, whose, which, degrees
+    cdef int[::1] order, whose, which, stage_counts
     cdef double[::1] angle, longest
     cpdef bint begin(self, double omega) except -1
     cpdef double step(self, double theta, double h) except -1
@@ -22,31 +22,24 @@ cdef class VariationalSteps:
     cdef int cheapest(self, double left) except -1
 
 cdef class PlanarMonodromy(VariationalSteps):
+    cdef object poll, shapes, natural, damping, all_soft, moving, number, remembered, open
+    cdef object k_u, springs, ratios, K_closed, seen_closed, soft_closed, seen, soft, push, g_before
+    cdef double omega, coefficient_floor
     cdef readonly int modes, columns
-    cdef int max_disturbances, actives, unknowns
-    cdef bint modal, remote
-    cdef double coefficient_floor, period, taken
-    cdef double[:, ::1] shapes, soft, butcher, slopes, inner, tail, system, seen
-    cdef double[::1] natural, damping, node, scale, fore, aft
-    cdef double[:, ::1] q, p, memory, force, work, push, q_new, p_new, after, du, stress, rest_to, rest_by
-    cdef double[:, :, ::1] q_to, p_to, q_by, p_by, inverse, feels
-    cdef double[:, :, :, ::1] answer
-    cdef double[:, ::1] kept, e_x, e_y
-    cdef int[::1] active
-    cdef void activate(self) noexcept
-    cdef void displaced(self, int c) noexcept
-    cdef double contact_ratio(self, int c) noexcept
-    cdef void prepare(self, double h) noexcept
-    cdef void respond(self, int m, double h) noexcept
-    cdef void couple(self) noexcept
-    cdef void slip(self, int c, double theta, double h) noexcept
-    cdef void unforced(self) noexcept
-    cdef void assemble(self, int a) noexcept
-    cdef bint solve(self, int size) noexcept
-    cdef void displace(self) noexcept
-    cdef void strain(self, int a) noexcept
-    cdef void move(self) noexcept
-    cdef double rest(self) noexcept
+    cdef int slipping, room, max_disturbances
+    cdef bint arranged
+    cdef double[::1] node, C, ratio, stiff
+    cdef double[:, ::1] slopes, inner, butcher, tail, K, q, p, q_new, p_new
+    cdef double[:, ::1] held_push, e_x, e_y, pressed, kept, whole
+    cdef double[:, :, ::1] memory, g, seen_by, pushes, relaxing, by, force
+    cdef double[:, :, :, ::1] of_slips, sees
+    cdef int[::1] slips, sliders, swapped, swapped_slips
+    cdef void slip(self, double theta, double h) noexcept
+    cdef bint at_node(self, int i) noexcept
+    cdef void push_modes(self, int i) noexcept
+    cdef void equations_of_modes(self, double h) noexcept
+    cdef void equations_of_slip(self, double h) noexcept
+    cdef double move(self, double h) noexcept
 
 cdef class RingPlanarMonodromy(PlanarMonodromy):
     cdef object renumber, source

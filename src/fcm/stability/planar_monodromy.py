@@ -1,8 +1,7 @@
-r"""The monodromy matrix of a motion whose contacts slide in a plane.
+r"""The monodromy matrix of a motion whose contacts slide in a plane: a small disturbance after a period.
 
 It is carried from event to event, in steps as long as polynomials resolve its velocities. Their degree is
-that which reaches the next event at the least cost. What a step does, and an event, is for `PlanarMonodromy`
-and `ManyPlanarMonodromy` to say.
+that which reaches the next event at the least cost.
 
 The modes, of mass 1 and with shapes P on the ports, obey as on a line (see `monodromy`)
 
@@ -22,14 +21,36 @@ together again; at a closing w = u where the load vanishes, so dw = du - u' dv /
 at once nothing is remembered: of all solutions of the equation of s, whose factor r vanishes there, one is
 regular. A slider that never slips stays where it is.
 
-Between events the equations are collocated at Radau's points, as that of the direction is (see `Panel`), in
-steps as long as polynomials resolve the velocities. The equation of s, with r before s', has no singular
-point where the load vanishes. The answers of the modes to forces at the points, and of s to displacements,
-are known beforehand. What is left are equations for the displacements of the closed contacts at the points of
-a step, or of the modes where these are fewer. They are solved for all disturbances at once.
+The structure with the springs K of all contacts, as if they stuck, is put together once. With S the
+flexibility of the modes far above, and P the shapes of the others,
+
+    d = R^-1 P^T q + R^-1 S g,    R = 1 + S K,    q'' + .. + (w^2 + P K R^-1 P^T) q = (R^-1 P^T)^T g
+
+What a contact does otherwise than stick is a force g on it, of which there is none where it sticks all
+through the cycle:
+
+    stick        g = k_u dw
+    slip         g = k_u (e . du - dr) e + k_u s e_perp
+    separation   g = K d
+
+One that is open is linear as long as it stays so: with T = (K_o^-1 - (R^-1 S)_oo)^-1 of these it is put into
+the structure, until another one opens or closes:
+
+    d = (R^-1 P^T + (R^-1 S)_o T (R^-1 P^T)_o) q + (R^-1 S + (R^-1 S)_o T (R^-1 S)_o) g
+
+Between events the equations are collocated at Radau's points, as that of the direction is (see `Panel`). The
+equation of s, with r before s', has no singular point where the load vanishes. What depends on one angle
+alone is found at each point by itself, from (q, s). These are e . du - dr of the contacts that slip, the
+right sides for their s, and the forces on the modes. With these a step of the length h leaves equations for
+p = q' and s at all its points, solved for all disturbances at once. With the rule's matrices A and D, and
+q_0, p_0 and s_0 at the beginning,
+
+    q = q_0 + h A p,    p = p_0 + h A (forces - K q - C p),    r (D s + d s_0) + h lambda s = what s feels
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import cython
 import numpy as np
@@ -42,11 +63,15 @@ from fcm.stability.following_modes import PortModes
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
+    from cython.cimports.fcm.continuation.dense_solver import condense
     from cython.cimports.fcm.stability.planar_sequence import PlanarSequence
 else:
     from fcm.contact.periodic.motion import TWO_PI
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
+    from fcm.continuation.dense_solver import condense
     from fcm.stability.planar_sequence import PlanarSequence
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @cython.cclass
@@ -68,13 +93,11 @@ class VariationalSteps:
         remembers at the beginning of the period.
     """
 
-    def __init__(self, sequence: PlanarSequence, degrees: tuple[int, ...], tolerance: float) -> None:
-        """degrees: the numbers of Radau points that a step may have; tolerance: of a step, see
-        `PlanarStabilityOptions`."""
-        options = sequence.options
-        self.sequence, self.contacts, self.stages = sequence, sequence.contacts, max(degrees)
-        self.degrees, self.longest = np.array(degrees, dtype=np.intc), np.zeros(len(degrees))
-        self.tolerance, self.max_step, self.min_step = tolerance, options.max_step, options.min_step
+    def __init__(self, sequence: PlanarSequence) -> None:
+        options, counts = sequence.options, np.array(sequence.options.stages, dtype=np.intc)
+        self.sequence, self.contacts, self.stages = sequence, sequence.contacts, int(counts.max())
+        self.stage_counts, self.longest = counts, np.zeros(counts.size)
+        self.tolerance, self.max_step, self.min_step = options.tolerance, options.max_step, options.min_step
         self.min_factor, self.max_factor, self.safety = options.min_factor, options.max_factor, options.safety
         self.end_factor, self.event_tolerance = options.end_factor, options.event_tolerance
         self.max_retry_factor, self.min_gap = options.max_retry_factor, options.min_gap
@@ -86,12 +109,12 @@ class VariationalSteps:
         self.part = TWO_PI
         self.filled = np.zeros((0, 0))
 
-    def matrix(self) -> npt.NDArray[np.float64]:
+    def matrix(self) -> FloatArray:
         """The monodromy matrix, (2 modes + memories, the same).
 
         It is nan where there are more disturbances than the options allow.
         """
-        found: npt.NDArray[np.float64] = self.filled
+        found: FloatArray = self.filled
         return found
 
     @cython.ccall
@@ -119,7 +142,7 @@ class VariationalSteps:
         raise NotImplementedError
 
     @cython.ccall
-    def disturbances(self) -> npt.NDArray[np.float64]:
+    def disturbances(self) -> FloatArray:
         """The present disturbances, rows (q, q', memory)."""
         raise NotImplementedError
 
@@ -223,7 +246,7 @@ class VariationalSteps:
         while left > 0.0:
             while True:
                 i: cython.int = self.cheapest(left)
-                self.stages = self.degrees[i]
+                self.stages = self.stage_counts[i]
                 h: cython.double = self.longest[i]
                 if h >= left:
                     h = left
@@ -249,12 +272,12 @@ class VariationalSteps:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def cheapest(self, left: cython.double) -> cython.int:
-        """Which of the degrees takes an angle at the least cost: as a cube, by its longest step."""
+        """Which number of stages takes an angle at the least cost: as a cube, by its longest step."""
         i: cython.int
         best: cython.int = 0
         least: cython.double = 0.0
         for i in range(self.longest.shape[0]):
-            cost: cython.double = ceil(left / self.longest[i]) * self.degrees[i] ** 3
+            cost: cython.double = ceil(left / self.longest[i]) * self.stage_counts[i] ** 3
             if i == 0 or cost < least:
                 best, least = i, cost
         return best
@@ -262,617 +285,436 @@ class VariationalSteps:
 
 @cython.cclass
 class PlanarMonodromy(VariationalSteps):
-    """The monodromy of few contacts: with the displacements of those that are closed, or of the modes, as
-    unknowns.
+    """The monodromy of contacts in a plane: of those that never move nothing is followed.
 
     Parameters
     ----------
     modes : PortModes
         With three ports for each contact.
+    poll : callable, optional
+        Called at every event, which it may interrupt.
     """
 
-    def __init__(self, modes: PortModes, sequence: PlanarSequence) -> None:
-        options = sequence.options
-        VariationalSteps.__init__(self, sequence, (options.stages,), options.tolerance)
-        self.coefficient_floor, self.max_disturbances = options.coefficient_floor, options.max_disturbances
-        shapes, self.natural, self.damping = modes.near
-        self.shapes, self.soft = np.ascontiguousarray(shapes), modes.flexibility
-        m, c, s = len(self.natural), sequence.contacts, options.stages
-        self.modes = m
-        rule = radau(s)
-        self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
-        self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
-        # at the nodes of a step, of what modes do by themselves, by q and q'; and by forces at the nodes
-        self.q_to, self.p_to = np.zeros((2, m, s, 2))
-        self.q_by, self.p_by = np.zeros((2, m, s, s))
-        self.rest_to, self.rest_by = np.zeros((2 * m, 2)), np.zeros((2 * m, s))
-        self.system = np.zeros((s, 2 * s))
-        # of the unknowns at the nodes, by the forces on closed contacts there; those of modes, and the rest
-        self.answer, self.seen = np.zeros((s, 3 * c, s, 3 * c)), np.zeros((m, 3 * c))
-        self.remote = bool(modes.far.any())
-        # of s at the nodes: what it feels of displacements there, and what is kept of s at the start
-        self.inverse, self.feels = np.zeros((c, s, s)), np.zeros((c, s, 3))
-        self.kept, self.e_x, self.e_y = np.zeros((3, c, s))
-        self.fore, self.aft = np.zeros((2, s))
-        self.active = np.zeros(c, dtype=np.intc)
-        self.actives = self.unknowns = 0
-        self.modal = False
-        self.taken = self.period = 0.0
-        self._room(2 * m)
-
-    def _room(self, columns: int) -> None:
-        """Allocate arrays for a number of disturbances."""
-        m, c, s = self.modes, self.contacts, self.stages
-        self.columns = columns
-        self.q, self.p, self.q_new, self.p_new = np.zeros((4, m, columns))
-        self.memory, self.after = np.zeros((2, 2 * c, columns))
-        self.force, self.du = np.zeros((3 * c, columns)), np.zeros((3, columns))
-        self.stress = np.zeros((3 * c * s, columns))
-        self.work = np.zeros((3 * c * s, 3 * c * s + columns))
-        self.push, self.scale = np.zeros((m * s, columns)), np.zeros(columns)
-
-    def disturbances(self) -> npt.NDArray[np.float64]:
-        """The present disturbances, rows (q, q', memory)."""
-        rows = [2 * c + i for c in range(self.contacts) for i in range(self.held[c])]
-        return np.concatenate((self.q, self.p, np.asarray(self.memory)[rows]))
+    def __init__(self, modes: PortModes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
+        VariationalSteps.__init__(self, sequence)
+        self.poll, self.max_disturbances = poll, sequence.options.max_disturbances
+        self.coefficient_floor = sequence.options.coefficient_floor
+        self.shapes, self.natural, self.damping = modes.near
+        self.all_soft = modes.flexibility
+        self.modes = len(self.natural)
+        self.slipping = self.columns = self.room = 0
+        self.arranged = False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def begin(self, omega: cython.double) -> cython.bint:
         """Set the frequency and the initial disturbances; false if these are too many."""
-        c: cython.int
-        i: cython.int
-        j: cython.int
-        self.period, self.taken = 1.0 / omega, -1.0
-        columns: cython.int = 2 * self.modes
-        for c in range(self.contacts):
-            columns += self.held[c]
+        count, state = np.asarray(self.sequence.count), np.asarray(self.sequence.state)
+        self.moving = np.flatnonzero((count > 1) | (state[:, 0] == SLIP))
+        self.number = np.full(count.size, -1)
+        self.number[self.moving] = np.arange(self.moving.size)
+        held = np.asarray(self.held)[self.moving]
+        columns = 2 * self.modes + int(held.sum())
         if columns > self.max_disturbances:
             return False
-        if columns != self.columns:
-            self._room(columns)
-        for i in range(self.modes):
-            for j in range(columns):
-                self.q[i, j], self.p[i, j] = float(i == j), float(self.modes + i == j)
-        columns = 2 * self.modes
-        for c in range(self.contacts):
-            for i in range(2):
-                for j in range(self.columns):
-                    self.memory[2 * c + i, j] = 0.0
-                if i < self.held[c]:
-                    self.memory[2 * c + i, columns] = 1.0
-                    columns += 1
-        self.activate()
+        self._structure(omega)
+        m, self.columns = self.modes, columns
+        self.q, self.p = np.eye(m, columns), np.eye(m, columns, m)
+        self.q_new, self.p_new = np.zeros((2, m, columns))
+        # (contact, number, disturbance), and the forces g (contact, direction, disturbance) of closed ones
+        memory, g = np.zeros((self.moving.size, 2, columns)), np.zeros((self.moving.size, 3, columns))
+        self.remembered = [(k, i) for k, n in enumerate(held.tolist()) for i in range(n)]
+        for column, (k, i) in enumerate(self.remembered, 2 * m):
+            memory[k, i, column] = 1.0
+        sticks = np.asarray(self.state)[self.moving] == STICK
+        g[sticks, :2] = self.k_u[sticks, None, None] * memory[sticks]
+        self.memory, self.g = memory, g
+        self.arranged = False
         return True
 
-    def activate(self) -> None:
-        """List the contacts that are closed, and forget what forces on these do."""
-        c: cython.int
-        i: cython.int
-        m: cython.int
-        self.actives = 0
-        for c in range(self.contacts):
-            if self.state[c] == SEPARATION:
-                continue
-            for m in range(self.modes):
-                for i in range(3):
-                    self.seen[m, 3 * self.actives + i] = self.shapes[m, 3 * c + i]
-            self.active[self.actives] = c
-            self.actives += 1
-        # what modes far above add to displacements is of the contacts, not of the modes
-        self.modal = not self.remote and self.modes < 3 * self.actives
-        self.unknowns = self.modes if self.modal else 3 * self.actives
-        self.taken = -1.0
+    def _structure(self, omega: float) -> None:
+        """Put the structure with the springs together, as the moving contacts see it."""
+        contact, m = np.asarray(self.sequence.contact), self.modes
+        rubs = contact[:, 0] * contact[:, 1] > 0.0
+        opened = (np.asarray(self.sequence.count) == 1) & (np.asarray(self.state) == SEPARATION)
+        springs = np.stack((contact[:, 1] * rubs, contact[:, 1] * rubs, contact[:, 2]), axis=1)
+        springs[opened] = 0.0
+        self.k_u, self.springs = springs[self.moving, 0], springs[self.moving]
+        self.ratios = np.where(rubs, contact[:, 0] * contact[:, 2] / np.where(rubs, contact[:, 1], 1.0), 0.0)
+        self.ratios, every = self.ratios[self.moving], springs.ravel()
+        ports = _ports(self.moving)
+        seen: FloatArray = self.shapes.T
+        soft: FloatArray = self.all_soft[:, ports]
+        if self.all_soft.any():
+            R: FloatArray = np.eye(every.size) + self.all_soft * every
+            found = np.asarray(np.linalg.solve(R, np.concatenate((seen, soft), axis=1)), dtype=np.float64)
+            seen, soft = found[:, :m], found[:, m:]
+        self.C = 2.0 * self.damping * self.natural / omega
+        self.omega = omega
+        self.K_closed = ((self.shapes * every) @ seen + np.diag(self.natural**2)) / omega**2
+        self.seen_closed, self.soft_closed = seen[ports], soft[ports]
+        self.open = np.full(1, -1)  # of no contact yet
+
+    def _open(self, contacts: npt.NDArray[np.intp]) -> None:
+        """Put contacts that are open into the structure with the springs of all."""
+        self.open, ports = contacts, _ports(contacts)
+        seen, soft, K = self.seen_closed, self.soft_closed, self.K_closed
+        if ports.size:
+            springs = self.springs[contacts].ravel()
+            freed = np.eye(ports.size) - soft[np.ix_(ports, ports)] * springs
+            both = np.concatenate((seen[ports], soft[ports]), axis=1)
+            force = springs[:, None] * np.asarray(np.linalg.solve(freed, both), dtype=np.float64)
+            m = self.modes
+            K = K - seen[ports].T @ force[:, :m] / self.omega**2
+            seen, soft = seen + soft[:, ports] @ force[:, :m], soft + soft[:, ports] @ force[:, m:]
+        self.K, self.seen, self.soft = K, seen, soft
+        self.push = self.seen.T / self.omega**2
 
     @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
-        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
-        j: cython.int
-        x: cython.Py_ssize_t = 2 * c
-        before: cython.int = self.state[c]
-        now: cython.int = self.sequence.state[c, i]
-        angle: float = self.sequence.begin[c, i]
-        self.state[c], self.fresh[c] = now, now == SLIP and before == SEPARATION
-        if (now == SLIP and before == STICK) or (now == STICK and before == SLIP):
-            self.sequence.direction(self.sequence.panel(c, angle, now == STICK), angle)
-        if now == STICK:
-            self.displaced(c)
-            self.sequence.rates(c, angle)
-        e_x: float = self.sequence.e_x
-        e_y: float = self.sequence.e_y
-        ratio: float = self.contact_ratio(c)
-        for j in range(self.columns):
-            w_x: float = self.memory[x, j]
-            w_y: float = self.memory[x + 1, j]
-            v: float = self.du[2, j]
-            if now == SLIP and before == STICK:
-                w_x, w_y = e_x * w_y - e_y * w_x, 0.0
-            elif now == STICK and before == SLIP:
-                along: float = e_x * self.du[0, j] + e_y * self.du[1, j] - ratio * v
-                w_x, w_y = along * e_x - w_x * e_y, along * e_y + w_x * e_x
-            elif now == STICK:
-                later: float = ratio * v / self.sequence.r_1
-                w_x = self.du[0, j] - self.sequence.x_1 * later
-                w_y = self.du[1, j] - self.sequence.y_1 * later
-            else:
-                w_x = w_y = 0.0
-            self.memory[x, j], self.memory[x + 1, j] = w_x, w_y
-        self.activate()
-        return 0
+    def disturbances(self) -> FloatArray:
+        """The present disturbances, rows (q, q', memory)."""
+        kept = np.array([self.memory[k, i] for k, i in self.remembered]).reshape(-1, self.columns)
+        return np.concatenate((self.q, self.p, kept))
 
-    def displaced(self, c: cython.int) -> None:
-        """Fill `du` with the displacements of a contact, which far modes share in."""
-        d: cython.int
-        i: cython.int
-        j: cython.int
-        by: float
-        for d in range(3):
-            for j in range(self.columns):
-                self.du[d, j] = 0.0
-            for i in range(self.modes):
-                by = self.shapes[i, 3 * c + d]
-                for j in range(self.columns):
-                    self.du[d, j] += by * self.q[i, j]
-            for i in range(3 * self.contacts):
-                by = self.soft[3 * c + d, i]
-                if by != 0.0:
-                    for j in range(self.columns):
-                        self.du[d, j] -= by * self.force[i, j]
+    def _arrange(self) -> None:
+        """Sort the contacts that slip, are open, and stick, and prepare what those do to one another."""
+        self.poll()
+        state, columns, m = np.asarray(self.state)[self.moving], self.columns, self.modes
+        slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
+        opened = np.flatnonzero(state == SEPARATION)
+        if not np.array_equal(opened, self.open):
+            self._open(opened)
+        n = self.slipping = slips.size
+        self.slips, self.sliders = slips.astype(np.intc), self.moving[slips].astype(np.intc)
+        self.ratio, self.stiff = self.ratios[slips], self.k_u[slips]
+        slide, rest = _ports(slips), _ports(sticks, 2)
+        # what the memory of those that stick pushes on the modes, and moves the others by
+        still = np.asarray(self.g)[sticks, :2].reshape(rest.size, columns)
+        self.held_push = self.push[:, rest] @ still
+        moved = self.soft[slide[:, None], rest] @ still
+        by = np.concatenate((self.seen[slide], moved), axis=1)
+        # of contacts that slip, by their directions: (direction, contact, what by)
+        self.seen_by = by.reshape(n, 3, by.shape[1]).transpose(1, 0, 2).copy()
+        k_u = np.asarray(self.stiff)
+        soft = self.soft[slide[:, None], slide].reshape(n, 3, n, 3)
+        self.of_slips = (soft[..., :2] * k_u[:, None]).transpose(1, 3, 0, 2).copy()
+        pushes = self.push[:, slide].reshape(m, n, 3)[..., :2] * k_u[:, None]
+        self.pushes = pushes.transpose(2, 0, 1).copy()
+        self.swapped_slips = np.zeros(n, dtype=np.intc)
+        self.arranged, self.room = True, 0
 
-    def contact_ratio(self, c: cython.int) -> float:
-        """Ratio mu k_v / k_u: derivative of the radius by the normal displacement."""
-        k_u: float = self.sequence.contact[c, 1]
-        ratio: float = self.sequence.contact[c, 0] * self.sequence.contact[c, 2] / k_u if k_u > 0.0 else 0.0
-        return ratio
-
-    def prepare(self, h: float) -> None:
-        """Compute the answers of modes and closed contacts to forces at the nodes of a step."""
-        m: cython.int
-        if h == self.taken:
-            return
-        for m in range(self.modes):
-            self.respond(m, h)
-        self.couple()
-        self.taken = h
-
-    def respond(self, m: cython.int, h: float) -> None:
-        """Compute the answer of one mode to forces f at the nodes of a step.
-
-        q = q_to (q_0, p_0) + q_by f, and p likewise, from q = q_0 + h A p, p = p_0 + h A p'.
-
-        With p' = -w^2 q - 2 zeta w p + f: (1 + 2 zeta w h A + w^2 h^2 A^2) p = p_0 - w^2 h A q_0 + h A f.
-        """
-        s: cython.int = self.stages
-        i: cython.int
-        j: cython.int
-        k: cython.int
-        part: float
-        square: float = self.natural[m] * self.period * h
-        damp: float = 2.0 * self.damping[m] * square
-        square *= square
-        for i in range(s):
-            for j in range(s):
-                part = 0.0
-                for k in range(s):
-                    part += self.butcher[i, k] * self.butcher[k, j]
-                self.system[i, j] = square * part + damp * self.butcher[i, j] + float(i == j)
-                self.system[i, s + j] = self.butcher[i, j]
-        # of a rule's matrix and positive numbers no pivot vanishes
-        for k in range(s):
-            for i in range(s):
-                if i == k:
-                    continue
-                part = self.system[i, k] / self.system[k, k]
-                for j in range(k + 1, 2 * s):
-                    self.system[i, j] -= part * self.system[k, j]
-        for k in range(s):
-            part = 1.0 / self.system[k, k]
-            for j in range(s):
-                self.p_by[m, k, j] = h * part * self.system[k, s + j]
-        square /= h * h
-        damp /= h
-        for i in range(s):
-            once: float = 0.0
-            twice: float = 0.0
-            for j in range(s):
-                part = 0.0
-                for k in range(s):
-                    part += self.butcher[i, k] * self.p_by[m, k, j]
-                self.q_by[m, i, j] = h * part
-                once += self.p_by[m, i, j]
-                twice += h * part
-            self.q_to[m, i, 0], self.q_to[m, i, 1] = 1.0 - square * twice, once
-            self.p_to[m, i, 0], self.p_to[m, i, 1] = -square * once, 1.0 - damp * once - square * twice
-        for i in range(2):
-            for j in range(2):
-                part = self.tail[i, 0] if j == 1 else 0.0
-                for k in range(s):
-                    part += self.tail[i, k + 1] * self.p_to[m, k, j]
-                self.rest_to[2 * m + i, j] = part
-            for j in range(s):
-                part = 0.0
-                for k in range(s):
-                    part += self.tail[i, k + 1] * self.p_by[m, k, j]
-                self.rest_by[2 * m + i, j] = part
-
-    def couple(self) -> None:
-        """Compute the answers of the unknowns to forces on closed contacts, by near and far modes."""
-        s: cython.int = self.stages
-        ports: cython.int = 3 * self.actives
-        i: cython.int
-        j: cython.int
-        a: cython.int
-        b: cython.int
-        m: cython.int
-        part: float
-        for i in range(s):
-            for a in range(self.unknowns):
-                for j in range(s):
-                    part = -self.period * self.period * self.q_by[a, i, j] if self.modal else 0.0
-                    for b in range(ports):
-                        self.answer[i, a, j, b] = part * self.seen[a, b] if self.modal else 0.0
-        if self.modal:
-            return
-        for a in range(ports):
-            for b in range(ports):
-                part = self.soft[3 * self.active[a // 3] + a % 3, 3 * self.active[b // 3] + b % 3]
-                for i in range(s):
-                    self.answer[i, a, i, b] = -part
-        for m in range(self.modes):
-            for i in range(s):
-                for a in range(ports):
-                    for j in range(s):
-                        part = -self.period * self.period * self.q_by[m, i, j] * self.seen[m, a]
-                        for b in range(ports):
-                            self.answer[i, a, j, b] += part * self.seen[m, b]
-
-    def slip(self, c: cython.int, theta: float, h: float) -> None:
-        """Compute s of a contact that slips at the nodes of a step.
-
-        s = inverse (feels . (du, dv)) + kept s_0.
-
-        As it closes, no s_0: the polynomial has the nodes only.
-        """
-        s: cython.int = self.stages
-        i: cython.int
-        j: cython.int
-        k: cython.int
-        part: float
-        ratio: float = self.contact_ratio(c)
-        for i in range(s):
-            at: float = theta + h * self.node[i]
-            self.sequence.direction(self.sequence.panel(c, at, False), at)
-            self.sequence.rates(c, at)
-            e_x: float = self.sequence.e_x
-            e_y: float = self.sequence.e_y
-            r: float = max(self.sequence.r, 1e-12 * self.sequence.mean[c])
-            x_1: float = h * self.sequence.x_1
-            y_1: float = h * self.sequence.y_1
-            across: float = e_x * y_1 - e_y * x_1
-            push: float = max(e_x * x_1 + e_y * y_1 - h * self.sequence.r_1, 0.0)
-            self.e_x[c, i], self.e_y[c, i] = e_x, e_y
-            self.feels[c, i, 0] = -push * e_y - across * e_x
-            self.feels[c, i, 1] = push * e_x - across * e_y
-            self.feels[c, i, 2] = across * ratio
-            for j in range(s):
-                self.system[i, j] = r * (self.inner[i, j] if self.fresh[c] else self.slopes[i, j + 1])
-                self.system[i, s + j] = float(i == j)
-            self.system[i, i] += push
-            self.kept[c, i] = 0.0 if self.fresh[c] else -r * self.slopes[i, 0]
-        for k in range(s):
-            for i in range(s):
-                if i == k:
-                    continue
-                part = self.system[i, k] / self.system[k, k]
-                for j in range(k + 1, s + k + 1):
-                    self.system[i, j] -= part * self.system[k, j]
-        for i in range(s):
-            self.fore[i] = self.kept[c, i]
-        for i in range(s):
-            part = 1.0 / self.system[i, i]
-            self.kept[c, i] = 0.0
-            for j in range(s):
-                self.inverse[c, i, j] = part * self.system[i, s + j]
-                self.kept[c, i] += self.inverse[c, i, j] * self.fore[j]
+    def _collocate(self) -> None:
+        """Take the rule of a step, and allocate for it."""
+        n, m, s, columns = self.slipping, self.modes, self.stages, self.columns
+        rule = radau(s)
+        self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
+        self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
+        self.e_x, self.e_y, self.pressed, self.kept = np.zeros((4, s, n))
+        self.sees, self.relaxing = np.zeros((2, s, n, 3)), np.zeros((n, s, s))
+        self.by, self.force = np.zeros((s, 2 * n + m, 2 * n + m + columns)), np.zeros((s, m, columns))
+        self.whole = np.zeros((s * (m + n), s * (m + n) + columns))
+        self.swapped = np.zeros(s * (m + n), dtype=np.intc)
+        self.room = s
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def step(self, theta: cython.double, h: cython.double) -> cython.double:
-        """Take one step from an angle on, in `q_new`, `p_new` and `work`; its error, as `rest`."""
-        a: cython.int
-        self.prepare(h)
-        for a in range(self.actives):
-            if self.state[self.active[a]] == SLIP:
-                self.slip(self.active[a], theta, h)
-        self.unforced()
-        for a in range(self.actives):
-            self.assemble(a)
-        if not self.solve(self.unknowns * self.stages):
+        """Take a step from an angle on; its error relative to a disturbance, infinity if singular."""
+        if not self.arranged:
+            self._arrange()
+        if self.room != self.stages:
+            self._collocate()
+        i: cython.int
+        self.slip(theta, h)
+        for i in range(self.stages):
+            if not self.at_node(i):
+                return 1e300
+            self.push_modes(i)
+        self.equations_of_modes(h)
+        self.equations_of_slip(h)
+        if not condense(self.whole, self.swapped):
             return 1e300
-        self.move()
-        return self.rest()
+        return self.move(h)
 
-    def unforced(self) -> None:
-        """Fill `work` with the unit matrix, and the unknowns as the modes go on without forces."""
-        size: cython.int = self.unknowns * self.stages
-        i: cython.int
-        j: cython.int
+    def slip(self, theta: float, h: float) -> None:
+        """Fill for the contacts that slip, at the nodes: directions, right sides for s, and how s answers to
+        these."""
         a: cython.int
-        m: cython.int
-        row: cython.Py_ssize_t
-        by: float
-        on: float
-        for i in range(self.stages):
-            for a in range(self.unknowns):
-                row = i * self.unknowns + a
-                for j in range(size + self.columns):
-                    self.work[row, j] = 0.0
-                self.work[row, row] = 1.0
-                for m in range(self.modes):
-                    if self.modal and m != a:
-                        continue
-                    by = 1.0 if self.modal else self.seen[m, a]
-                    by, on = by * self.q_to[m, i, 0], by * self.q_to[m, i, 1]
-                    for j in range(self.columns):
-                        self.work[row, size + j] += by * self.q[m, j] + on * self.p[m, j]
-
-    def assemble(self, a: cython.int) -> None:
-        """Subtract the effect of a closed contact's forces from `work`."""
-        s: cython.int = self.stages
-        c: cython.int = self.active[a]
-        state: cython.int = self.state[c]
-        x: cython.Py_ssize_t = 3 * a
+        c: cython.int
         i: cython.int
         j: cython.int
-        k: cython.int
+        r: float
+        least: float = 0.0
+        for a in range(self.slipping):
+            c = self.sliders[a]
+            for i in range(self.stages):
+                at: float = theta + h * self.node[i]
+                self.sequence.direction(self.sequence.panel(c, at, False), at)
+                self.sequence.rates(c, at)
+                e_x: float = self.sequence.e_x
+                e_y: float = self.sequence.e_y
+                x_1: float = h * self.sequence.x_1
+                y_1: float = h * self.sequence.y_1
+                across: float = e_x * y_1 - e_y * x_1
+                push: float = max(e_x * x_1 + e_y * y_1 - h * self.sequence.r_1, 0.0)
+                self.e_x[i, a], self.e_y[i, a], self.pressed[i, a] = e_x, e_y, push
+                self.kept[i, a] = self.sequence.r
+                self.sees[0, i, a, 0], self.sees[0, i, a, 1] = e_x, e_y
+                self.sees[0, i, a, 2] = -self.ratio[a]
+                self.sees[1, i, a, 0] = -push * e_y - across * e_x
+                self.sees[1, i, a, 1] = push * e_x - across * e_y
+                self.sees[1, i, a, 2] = across * self.ratio[a]
+                least = max(least, 1e-12 * fabs(self.sequence.r))
+        for a in range(self.slipping):
+            fresh: cython.bint = self.fresh[self.sliders[a]] != 0
+            for i in range(self.stages):
+                r = max(self.kept[i, a], least)
+                self.kept[i, a] = 0.0 if fresh else -r * self.slopes[i, 0]
+                for j in range(self.stages):
+                    self.relaxing[a, i, j] = r * (self.inner[i, j] if fresh else self.slopes[i, j + 1])
+                self.relaxing[a, i, i] += self.pressed[i, a]
+
+    def at_node(self, i: cython.int) -> cython.bint:
+        """Fill `by` at a node; false where that is singular.
+
+        By (q, s, disturbances): e . du - dr of contacts that slip, what s feels, forces on modes.
+        """
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        a: cython.int
         b: cython.int
-        row: cython.Py_ssize_t
-        size: cython.Py_ssize_t = self.unknowns * s
-        k_u: float = self.sequence.contact[c, 1]
-        k_v: float = self.sequence.contact[c, 2]
-        ratio: float = self.contact_ratio(c)
-        own: float
-        other: float
+        j: cython.int
+        row: cython.int
+        by: cython.double[:, ::1] = self.by[i]
+        of: cython.double[:, :, :, ::1] = self.of_slips
+        seen: cython.double[:, :, ::1] = self.seen_by
+        e_x: cython.double[::1] = self.e_x[i]
+        e_y: cython.double[::1] = self.e_y[i]
+        f: float
+        g: float
+        for row in range(2 * n):
+            a = row % n
+            x: float = self.sees[row // n, i, a, 0]
+            y: float = self.sees[row // n, i, a, 1]
+            z: float = self.sees[row // n, i, a, 2]
+            for b in range(n):
+                f = x * of[0, 0, a, b] + y * of[1, 0, a, b] + z * of[2, 0, a, b]
+                g = x * of[0, 1, a, b] + y * of[1, 1, a, b] + z * of[2, 1, a, b]
+                by[row, b] = -f * e_x[b] - g * e_y[b]
+                by[row, n + m + b] = g * e_x[b] - f * e_y[b]
+            for j in range(m):
+                by[row, n + j] = x * seen[0, a, j] + y * seen[1, a, j] + z * seen[2, a, j]
+            for j in range(m, m + self.columns):
+                by[row, 2 * n + j] = x * seen[0, a, j] + y * seen[1, a, j] + z * seen[2, a, j]
+        for a in range(n):
+            by[a, a] += 1.0
+        for a in range(m):
+            row = 2 * n + a
+            for b in range(n):
+                f, g = self.pushes[0, a, b], self.pushes[1, a, b]
+                by[row, b] = -f * e_x[b] - g * e_y[b]
+                by[row, n + m + b] = g * e_x[b] - f * e_y[b]
+            for j in range(m):
+                by[row, n + j] = 0.0
+            for j in range(self.columns):
+                by[row, 2 * n + m + j] = self.held_push[a, j]
+        return condense(by, self.swapped_slips)
+
+    def push_modes(self, i: cython.int) -> None:
+        """Add the force -K q on the modes to `by`, and fill `force` at a node, of q_0 and without slip."""
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        a: cython.int
+        b: cython.int
+        j: cython.int
         part: float
-        for i in range(s):
-            for b in range(self.unknowns):
-                row = i * self.unknowns + b
-                own = 0.0
-                other = 0.0
-                if state == SLIP:
-                    for j in range(s):
-                        self.aft[j] = k_u * (
-                            self.answer[i, b, j, x + 1] * self.e_x[c, j]
-                            - self.answer[i, b, j, x] * self.e_y[c, j]
-                        )
-                        own += self.aft[j] * self.kept[c, j]
-                for k in range(s):
-                    by_x: float = k_u * self.answer[i, b, k, x]
-                    by_y: float = k_u * self.answer[i, b, k, x + 1]
-                    by_v: float = k_v * self.answer[i, b, k, x + 2]
-                    if state == SLIP:
-                        part = 0.0
-                        for j in range(s):
-                            part += self.aft[j] * self.inverse[c, j, k]
-                        by_v += ratio * (by_x * self.e_x[c, k] + by_y * self.e_y[c, k])
-                        by_v -= part * self.feels[c, k, 2]
-                        by_x = -self.aft[k] * self.e_y[c, k] - part * self.feels[c, k, 0]
-                        by_y = self.aft[k] * self.e_x[c, k] - part * self.feels[c, k, 1]
-                    elif state == STICK:
-                        own += by_x
-                        other += by_y
-                    else:
-                        by_x = by_y = 0.0
-                    if self.modal:
-                        for j in range(self.unknowns):
-                            self.work[row, k * self.unknowns + j] -= (
-                                by_x * self.seen[j, x]
-                                + by_y * self.seen[j, x + 1]
-                                + by_v * self.seen[j, x + 2]
-                            )
-                    else:
-                        self.work[row, k * self.unknowns + x] -= by_x
-                        self.work[row, k * self.unknowns + x + 1] -= by_y
-                        self.work[row, k * self.unknowns + x + 2] -= by_v
+        by: cython.double[:, ::1] = self.by[i]
+        for a in range(m):
+            for j in range(self.columns):
+                self.force[i, a, j] = by[2 * n + a, 2 * n + m + j]
+            for b in range(m):
+                by[2 * n + a, n + b] -= self.K[a, b]
+                part = by[2 * n + a, n + b]
                 for j in range(self.columns):
-                    self.work[row, size + j] -= (
-                        own * self.memory[2 * c, j] + other * self.memory[2 * c + 1, j]
-                    )
+                    self.force[i, a, j] += part * self.q[b, j]
 
-    def solve(self, size: cython.int) -> bool:
-        """Replace the right side of `work` by the solution: Gaussian elimination, pivots along columns."""
+    def equations_of_modes(self, h: float) -> None:
+        """Fill the equations of the modes in `whole`.
+
+        p + h A C p - h A (forces by q_0 + h A p, s, and disturbances) = p_0.
+        """
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        s: cython.int = self.stages
+        a: cython.int
+        b: cython.int
         i: cython.int
         j: cython.int
         k: cython.int
-        p: cython.int
-        by: float
-        width: cython.int = size + self.columns
-        for k in range(size):
-            p = k
-            for i in range(k + 1, size):
-                if fabs(self.work[i, k]) > fabs(self.work[p, k]):
-                    p = i
-            if not 1e-300 < fabs(self.work[p, k]) < 1e300:
-                return False
-            if p != k:
-                for j in range(k, width):
-                    self.work[k, j], self.work[p, j] = self.work[p, j], self.work[k, j]
-            for i in range(k + 1, size):
-                by = self.work[i, k] / self.work[k, k]
-                if by != 0.0:
-                    for j in range(k + 1, width):
-                        self.work[i, j] -= by * self.work[k, j]
-        for k in range(size - 1, -1, -1):
-            by = 1.0 / self.work[k, k]
-            for j in range(size, width):
-                self.work[k, j] *= by
-            for i in range(k):
-                by = self.work[i, k]
-                for j in range(size, width):
-                    self.work[i, j] -= by * self.work[k, j]
-        return True
-
-    def move(self) -> None:
-        """Fill the forces at the nodes, and `q_new`, `p_new` at the end of the step.
-
-        `stress`: the forces; `push`: these on the modes.
-        """
-        s: cython.int = self.stages
-        ports: cython.int = 3 * self.actives
-        a: cython.int
-        i: cython.int
-        j: cython.int
-        m: cython.int
-        by: float
-        on: float
-        self.displace()
-        for a in range(self.actives):
-            self.strain(a)
-        for i in range(s):
-            for m in range(self.modes):
-                for j in range(self.columns):
-                    self.push[i * self.modes + m, j] = 0.0
-                for a in range(ports):
-                    by = -self.period * self.period * self.seen[m, a]
-                    for j in range(self.columns):
-                        self.push[i * self.modes + m, j] += by * self.stress[i * ports + a, j]
-        for m in range(self.modes):
-            for j in range(self.columns):
-                self.q_new[m, j] = (
-                    self.q_to[m, s - 1, 0] * self.q[m, j] + self.q_to[m, s - 1, 1] * self.p[m, j]
-                )
-                self.p_new[m, j] = (
-                    self.p_to[m, s - 1, 0] * self.q[m, j] + self.p_to[m, s - 1, 1] * self.p[m, j]
-                )
-            for i in range(s):
-                by, on = self.q_by[m, s - 1, i], self.p_by[m, s - 1, i]
-                for j in range(self.columns):
-                    self.q_new[m, j] += by * self.push[i * self.modes + m, j]
-                    self.p_new[m, j] += on * self.push[i * self.modes + m, j]
-
-    def displace(self) -> None:
-        """Fill `stress` with the displacements of closed contacts at the nodes."""
-        ports: cython.int = 3 * self.actives
-        size: cython.Py_ssize_t = self.unknowns * self.stages
-        a: cython.int
-        i: cython.int
-        j: cython.int
-        m: cython.int
+        first: cython.int
         row: cython.Py_ssize_t
-        by: float
-        for i in range(self.stages):
-            for a in range(ports):
-                row = i * ports + a
-                if not self.modal:
-                    for j in range(self.columns):
-                        self.stress[row, j] = self.work[row, size + j]
-                    continue
+        part: float
+        twice: float
+        out: cython.double[:, ::1] = self.whole
+        by: cython.double[:, :, ::1] = self.by
+        for i in range(s):
+            for a in range(m):
+                row = i * m + a
+                for j in range(s * m):
+                    out[row, j] = 0.0
                 for j in range(self.columns):
-                    self.stress[row, j] = 0.0
-                for m in range(self.modes):
-                    by = self.seen[m, a]
-                    for j in range(self.columns):
-                        self.stress[row, j] += by * self.work[i * self.modes + m, size + j]
-
-    def strain(self, a: cython.int) -> None:
-        """Replace the displacements of a closed contact by its forces, and fill its memory at the end."""
-        s: cython.int = self.stages
-        c: cython.int = self.active[a]
-        state: cython.int = self.state[c]
-        ports: cython.int = 3 * self.actives
-        i: cython.int
-        j: cython.int
-        k: cython.int
-        x: cython.Py_ssize_t
-        k_u: float = self.sequence.contact[c, 1]
-        k_v: float = self.sequence.contact[c, 2]
-        ratio: float = self.contact_ratio(c)
-        for j in range(self.columns):
-            known: float = self.memory[2 * c, j]
-            other: float = self.memory[2 * c + 1, j]
-            if state == SLIP:
-                for i in range(s):
-                    x = i * ports + 3 * a
-                    self.fore[i] = self.feels[c, i, 0] * self.stress[x, j]
-                    self.fore[i] += self.feels[c, i, 1] * self.stress[x + 1, j]
-                    self.fore[i] += self.feels[c, i, 2] * self.stress[x + 2, j]
-                for i in range(s):
-                    self.aft[i] = self.kept[c, i] * known
+                    out[row, s * (m + n) + j] = self.p[a, j]
+                for j in range(s):
+                    part = h * self.butcher[i, j]
                     for k in range(s):
-                        self.aft[i] += self.inverse[c, i, k] * self.fore[k]
-                self.after[2 * c, j] = self.aft[s - 1]
-            for i in range(s):
-                x = i * ports + 3 * a
-                u_x: float = self.stress[x, j]
-                u_y: float = self.stress[x + 1, j]
-                v: float = self.stress[x + 2, j]
-                if state == SLIP:
-                    e_x: float = self.e_x[c, i]
-                    e_y: float = self.e_y[c, i]
-                    across: float = e_x * u_y - e_y * u_x - self.aft[i]
-                    u_x, u_y = ratio * v * e_x - across * e_y, ratio * v * e_y + across * e_x
-                elif state == STICK:
-                    u_x, u_y = u_x - known, u_y - other
-                else:
-                    u_x = u_y = 0.0
-                self.stress[x, j], self.stress[x + 1, j], self.stress[x + 2, j] = (
-                    k_u * u_x,
-                    k_u * u_y,
-                    k_v * v,
-                )
+                        twice = part * h * self.butcher[j, k]
+                        for b in range(m):
+                            out[row, k * m + b] -= twice * by[j, 2 * n + a, n + b]
+                    out[row, j * m + a] += part * self.C[a]
+                    first = s * m + j * n
+                    for b in range(n):
+                        out[row, first + b] = -part * by[j, 2 * n + a, n + m + b]
+                    for k in range(self.columns):
+                        out[row, s * (m + n) + k] += part * self.force[j, a, k]
+                out[row, row] += 1.0
 
-    def rest(self) -> float:
-        """Error of a step: the last coefficient of the velocities, relative to a disturbance.
+    def equations_of_slip(self, h: float) -> None:
+        """Fill the equations of slip in `whole`.
 
-        See `Panel.rest`.
+        relaxing s - what s feels of q_0 + h A p and s = what it feels of the rest, and s_0.
         """
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
+        s: cython.int = self.stages
+        a: cython.int
+        b: cython.int
         i: cython.int
         j: cython.int
-        k: cython.int
-        m: cython.int
-        most: float = 0.0
-        value: float
-        for j in range(self.columns):
-            self.scale[j] = 1.0
-        for m in range(self.modes):
-            for j in range(self.columns):
-                self.scale[j] = max(self.scale[j], fabs(self.q[m, j]), fabs(self.p[m, j]))
-        for m in range(self.modes):
-            for i in range(2):
+        last: cython.Py_ssize_t = s * (m + n)
+        row: cython.Py_ssize_t
+        part: float
+        out: cython.double[:, ::1] = self.whole
+        by: cython.double[:, ::1]
+        for i in range(s):
+            by = self.by[i]
+            for a in range(n):
+                row = s * m + i * n + a
+                for j in range(s):
+                    part = h * self.butcher[i, j]
+                    for b in range(m):
+                        out[row, j * m + b] = -part * by[n + a, n + b]
+                    for b in range(n):
+                        out[row, s * m + j * n + b] = -by[n + a, n + m + b] if i == j else 0.0
+                    out[row, s * m + j * n + a] += self.relaxing[a, i, j]
                 for j in range(self.columns):
-                    value = self.rest_to[2 * m + i, 0] * self.q[m, j]
-                    value += self.rest_to[2 * m + i, 1] * self.p[m, j]
-                    for k in range(self.stages):
-                        value += self.rest_by[2 * m + i, k] * self.push[k * self.modes + m, j]
-                    value = fabs(value) if i == 1 else self.coefficient_floor * fabs(value)
-                    most = max(most, value / self.scale[j])
+                    out[row, last + j] = by[n + a, 2 * n + m + j]
+                    out[row, last + j] += self.kept[i, a] * self.memory[self.slips[a], 0, j]
+                for b in range(m):
+                    part = by[n + a, n + b]
+                    for j in range(self.columns):
+                        out[row, last + j] += part * self.q[b, j]
+
+    def move(self, h: float) -> float:
+        """Fill `q_new`, `p_new` at the end of the step; return its error.
+
+        That is the last coefficient of the velocities, relative to the disturbances.
+        """
+        m: cython.int = self.modes
+        s: cython.int = self.stages
+        first: cython.Py_ssize_t = s * (m + self.slipping)
+        a: cython.int
+        i: cython.int
+        j: cython.int
+        p: float
+        most: float = 0.0
+        out: cython.double[:, ::1] = self.whole
+        for j in range(self.columns):
+            scale: float = 1.0
+            size: float = 0.0
+            for a in range(m):
+                scale = max(scale, fabs(self.q[a, j]), fabs(self.p[a, j]))
+            for a in range(m):
+                q: float = 0.0
+                before: float = self.tail[0, 0] * self.p[a, j]
+                last: float = self.tail[1, 0] * self.p[a, j]
+                for i in range(s):
+                    p = out[i * m + a, first + j]
+                    q += self.butcher[s - 1, i] * p
+                    before += self.tail[0, i + 1] * p
+                    last += self.tail[1, i + 1] * p
+                self.q_new[a, j], self.p_new[a, j] = self.q[a, j] + h * q, p
+                size = max(size, fabs(last), self.coefficient_floor * fabs(before))
+            most = max(most, size / scale)
         return most
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def accept(self) -> cython.int:
         """Take the end of the step for the present place of the disturbances."""
+        n: cython.int = self.slipping
+        m: cython.int = self.modes
         a: cython.int
+        b: cython.int
         c: cython.int
         i: cython.int
         j: cython.int
-        ports: cython.int = 3 * self.actives
-        last: cython.Py_ssize_t = ports * (self.stages - 1)
+        part: float
+        end: cython.Py_ssize_t = self.stages * (m + n)
+        first: cython.Py_ssize_t = end - n  # of s at the end
+        by: cython.double[:, ::1] = self.by[self.stages - 1]
         self.q, self.q_new = self.q_new, self.q
         self.p, self.p_new = self.p_new, self.p
-        for i in range(3 * self.contacts):
+        for a in range(n):
+            c = self.slips[a]
+            along: cython.double[::1] = self.g[c, 2]
             for j in range(self.columns):
-                self.force[i, j] = 0.0
-        for a in range(self.actives):
-            c = self.active[a]
-            for i in range(3):
+                along[j] = by[a, 2 * n + m + j]
+            for b in range(m):
+                part = by[a, n + b]
                 for j in range(self.columns):
-                    self.force[3 * c + i, j] = self.stress[last + 3 * a + i, j]
-            if self.state[c] == SLIP:
-                self.fresh[c] = 0
+                    along[j] += part * self.q[b, j]
+            for b in range(n):
+                part = by[a, n + m + b]
                 for j in range(self.columns):
-                    self.memory[2 * c, j] = self.after[2 * c, j]
+                    along[j] += part * self.whole[first + b, end + j]
+            x: float = self.stiff[a] * self.e_x[self.stages - 1, a]
+            y: float = self.stiff[a] * self.e_y[self.stages - 1, a]
+            for j in range(self.columns):
+                part = self.whole[first + a, end + j]
+                self.memory[c, 0, j] = part
+                self.g[c, 0, j], self.g[c, 1, j] = x * along[j] - y * part, y * along[j] + x * part
+                along[j] = 0.0
+        for i in range(self.contacts):
+            self.fresh[i] = 0
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
+        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
+        sequence, k = self.sequence, int(self.number[c])
+        before, now, angle = int(self.state[c]), int(sequence.state[c, i]), float(sequence.begin[c, i])
+        self.state[c], self.fresh[c] = now, now == SLIP and before == SEPARATION
+        memory, g, ratio = np.asarray(self.memory), np.asarray(self.g), self.ratios[k]
+        w, made = memory[k], np.zeros_like(memory[k])
+        if self.arranged:  # several events at one angle see the displacements before them all
+            self.g_before = g.reshape(-1, self.columns).copy()
+        if {before, now} == {STICK, SLIP}:
+            e = sequence.slip_at(c, np.array([angle]), now == STICK)[0, :2]
+            aside = np.array([-e[1], e[0]])
+        if now == STICK:
+            ports = slice(3 * k, 3 * k + 3)
+            du = self.seen[ports] @ np.asarray(self.q) + self.soft[ports] @ self.g_before
+        if now == SLIP and before == STICK:
+            made[0] = aside @ w
+        elif now == STICK and before == SLIP:
+            made = np.outer(e, e @ du[:2] - ratio * du[2]) + np.outer(aside, w[0])
+        elif now == STICK:
+            rate = sequence.slip_at(c, np.array([angle]))[0, 2:5]
+            made = du[:2] - np.outer(rate[:2], ratio * du[2] / rate[2])
+        memory[k] = made
+        g[k, :2] = self.k_u[k] * made if now == STICK else 0.0
+        self.arranged = False
         return 0
 
 
@@ -890,14 +732,20 @@ class RingPlanarMonodromy(PlanarMonodromy):
         modes: PortModes,
         sequence: PlanarSequence,
         part: float,
-        renumber: npt.NDArray[np.float64],
+        renumber: FloatArray,
         source: npt.NDArray[np.intp],
+        poll: Callable[[], object] = int,
     ) -> None:
-        PlanarMonodromy.__init__(self, modes, sequence)
+        PlanarMonodromy.__init__(self, modes, sequence, poll)
         self.part, self.renumber, self.source = part, renumber, source
 
-    def disturbances(self) -> npt.NDArray[np.float64]:
+    def disturbances(self) -> FloatArray:
         """The present disturbances, rows (q, q', memory), as the sectors are numbered at the beginning."""
-        rows = [2 * self.source[c] + i for c in range(self.contacts) for i in range(self.held[c])]
+        whose = self.number[self.source[self.moving]]
+        kept = np.array([self.memory[whose[k], i] for k, i in self.remembered]).reshape(-1, self.columns)
         q, p = self.renumber @ np.asarray(self.q), self.renumber @ np.asarray(self.p)
-        return np.concatenate((q, p, np.asarray(self.memory)[rows]))
+        return np.concatenate((q, p, kept))
+
+
+def _ports(contacts: npt.NDArray[np.intp], directions: int = 3) -> npt.NDArray[np.intp]:
+    return (3 * contacts[:, None] + np.arange(directions)).ravel()

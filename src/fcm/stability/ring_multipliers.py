@@ -97,7 +97,7 @@ class RingMultipliers(Multipliers):
         turned = 2.0 * np.pi / n, near.renumber, source
         if self.planar:
             self.fine, self.plain = (
-                VariationalProblem(states, RingPlanarMonodromy(modes, states, *turned))
+                VariationalProblem(states, RingPlanarMonodromy(modes, states, *turned, self._poll))
                 for states in (
                     PlanarSequence(contact, tuple(numbers), options.planar) for numbers in (finer, harmonics)
                 )
