@@ -98,5 +98,5 @@ def _is_shareable(system: System) -> bool:
 
 
 def _key(system: System, more: tuple[int, ...], options: PairOptions) -> tuple[object, ...]:
-    of_scene = (*system.linear.numbers, system.scene.frequency_range)
+    of_scene = (*system.linear.numbers, system.scene.frequency_range, system.scene.reported)
     return (*of_scene, system.harmonics, more, options.newton_tolerance)

@@ -15,7 +15,7 @@ import numpy as np
 from fcm.branches.fold_continuation import Folds, folds_from
 from fcm.branches.force_level import LevelSolutions, few_harmonics
 from fcm.branches.level_folds import LevelFold
-from fcm.branches.options import FOLDS, PROLONGATION, FoldOptions
+from fcm.branches.options import FOLDS, PROLONGATION_POINTS, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
@@ -124,7 +124,7 @@ class _Curves:
 
     def _stages(self, own: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
         """The harmonics with which a fold is followed in turn, the last those that it was found with."""
-        count, factor = few_harmonics(self.system), self.system.option(PROLONGATION).harmonics_factor
+        count, factor = few_harmonics(self.system), self.system.option(PROLONGATION_POINTS).harmonics_factor
         while count < len(own):
             yield own[:count]
             count *= factor
@@ -201,7 +201,8 @@ def _corrected_in_plane(system: System, z: FloatArray, way: FloatArray) -> Float
 
 def _prolongated(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution with more harmonics near one with few."""
-    prolongation = Prolongation(system.new_balance(), list(few.harmonics), list(system.harmonics), 1e-6)
+    tolerance = system.option(PROLONGATION_POINTS).tolerance
+    prolongation = Prolongation(system.new_balance(), list(few.harmonics), list(system.harmonics), tolerance)
     if not prolongation.find_normal(z, way):
         return None
     return _corrected_in_plane(system, np.array(prolongation.newton.z), system.extended(way, few.harmonics))

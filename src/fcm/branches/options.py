@@ -88,7 +88,7 @@ class LevelOptions(Frozen):
 LEVELS = LevelOptions()
 
 
-class ProlongationOptions(Frozen):
+class ProlongationPointOptions(Frozen):
     """Options on which points of a branch are prolongated to more harmonics."""
 
     max_of_a_kind: int = 8  # most peaks, and most folds, that are prolongated
@@ -103,7 +103,7 @@ class ProlongationOptions(Frozen):
     tolerance: float = 1e-6
 
 
-PROLONGATION = ProlongationOptions()
+PROLONGATION_POINTS = ProlongationPointOptions()
 
 
 class BranchingOptions(Frozen):

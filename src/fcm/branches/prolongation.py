@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from fcm.branches.options import PROLONGATION, ProlongationOptions
+from fcm.branches.options import PROLONGATION_POINTS, ProlongationPointOptions
 from fcm.continuation import Mark, Path
 from fcm.continuation.nearby_solution import solution_near
 from fcm.harmonic_balance.prolongation import Prolongation
@@ -22,18 +22,16 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
-def prolongated(
-    system: System, fewer: Sequence[int], paths: Sequence[Path], options: ProlongationOptions = PROLONGATION
-) -> Iterator[FloatArray]:
+def prolongated(system: System, fewer: Sequence[int], paths: Sequence[Path]) -> Iterator[FloatArray]:
     """Solutions (unknown + 1,) of a system within its range, near points of paths of fewer harmonics.
 
     First one of each path, then the next of each, so that most branches are known before their other points;
     then the last before those from which Newton's method diverges: there the branch of more harmonics leaves
     that of few, and may be another one than elsewhere.
     """
-    low, high = system.scene.frequency_range
+    low, high, options = *system.scene.frequency_range, system.option(PROLONGATION_POINTS)
     ways = _harmonic_stages(system, tuple(fewer), options)
-    every = [_ProlongatedPath(path, ways, prolongation_points(path, options)) for path in paths]
+    every = [_ProlongatedPath(path, ways, _prolongation_points(path, options)) for path in paths]
     for k in range(max((len(one.places) for one in every), default=0)):
         for one in every:
             z = one.at(one.places[k]) if k < len(one.places) else None
@@ -72,10 +70,9 @@ class _ProlongatedPath:
                 yield last
 
 
-def at_its_frequency(
-    system: System, z: FloatArray, options: ProlongationOptions = PROLONGATION
-) -> FloatArray | None:
+def at_its_frequency(system: System, z: FloatArray) -> FloatArray | None:
     """The solution that Newton's method finds from z at its frequency, if that is not far."""
+    options = system.option(PROLONGATION_POINTS)
     system.reset_balance()
     newton = system.shared_stepper.newton
     found = solution_near(newton, z)
@@ -83,7 +80,7 @@ def at_its_frequency(
 
 
 def _harmonic_stages(
-    system: System, fewer: tuple[int, ...], options: ProlongationOptions
+    system: System, fewer: tuple[int, ...], options: ProlongationPointOptions
 ) -> list[list[Prolongation]]:
     """Stages of harmonics from fewer to those of a system: at once, and by some of them."""
     more = system.harmonics
@@ -99,7 +96,7 @@ def _harmonic_stages(
 
 
 def _prolongation(
-    system: System, fewer: tuple[int, ...], more: tuple[int, ...], options: ProlongationOptions
+    system: System, fewer: tuple[int, ...], more: tuple[int, ...], options: ProlongationPointOptions
 ) -> Prolongation:
     return Prolongation(system.with_harmonics(more).new_balance(), list(fewer), list(more), options.tolerance)
 
@@ -118,7 +115,7 @@ def _prolongated_by_stages(
     return z
 
 
-def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
+def _prolongation_points(path: Path, options: ProlongationPointOptions) -> list[int]:
     """The points of a path that are prolongated: its peaks, ends and folds, and some between them.
 
     A corner, a fold, or a peak at one, is replaced by a point beside it. While contacts rest the point with
@@ -134,7 +131,7 @@ def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION)
     return list(dict.fromkeys(every.tolist()))
 
 
-def _plain_points(path: Path, options: ProlongationOptions) -> npt.NDArray[np.intp]:
+def _plain_points(path: Path, options: ProlongationPointOptions) -> npt.NDArray[np.intp]:
     """The points that are not at a corner or a fold, nor lie in one place with it along the path."""
     size, change = np.abs(path.z).max(axis=1, initial=0.0), np.abs(np.diff(path.z, axis=0)).max(axis=1)
     place = np.concatenate(([0], np.cumsum(change >= options.same_point * size[1:])))

@@ -97,8 +97,8 @@ class System(Frozen):
         return self._with(harmonics=self._with_driven(harmonics))
 
     def with_scene(self, scene: Scene) -> System:
-        """The system of another scene of the same contacts, with which it shares what they have in common."""
-        return self._with(scene=scene, linear=linear_of(scene))
+        """The system of another scene, with the same harmonics and options; its work is counted together."""
+        return self._with(scene=scene, linear=linear_of(scene), port_responses={}, cache={})
 
     def _with_driven(self, harmonics: tuple[int, ...]) -> tuple[int, ...]:
         driven = self.linear.driven
@@ -127,19 +127,10 @@ class System(Frozen):
         return self._with(scene=replace(self.scene, contacts=contacts), work=work)
 
     def _with(self, **other: object) -> System:
+        """The system with other fields; of what follows from them the equilibrium of its scene is kept."""
         found = object.__new__(type(self))
-        found.__dict__.update(vars(self), **other)
-        for made in (
-            "_workspace",
-            "own_laws",
-            "loads_at_rest",
-            "preload_unit",
-            "normalised",
-            "modal_compliance",
-            "layout",
-            "table_balance",
-        ):
-            found.__dict__.pop(made, None)
+        kept = {*self.__dataclass_fields__} | ({"_at_rest"} if "scene" not in other else set())
+        found.__dict__.update({name: value for name, value in vars(self).items() if name in kept}, **other)
         return found
 
     @cached_property
@@ -362,9 +353,10 @@ def _workspace_of(system: System) -> _Workspace:
     if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
-    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
+    key = (*system.linear.numbers, scene.frequency_range, scene.reported, system.harmonics, *approximate)
     found = kept.pop(key, None)
-    if found is None or found.system.options != system.options:  # whose hash takes as long as a point
+    own = system.options, system.condensation  # whose hash takes as long as a point
+    if found is None or (found.system.options, found.system.condensation) != own:
         found = _Workspace(system)
     kept[key] = found
     if len(kept) > system.options.workspace.max_count:

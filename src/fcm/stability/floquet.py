@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.hill import HillMultipliers
-from fcm.stability.multipliers import Multipliers
+from fcm.stability.multipliers import Multipliers, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -44,7 +44,8 @@ def multipliers_of(
     linear = system.linear
     if 2 * linear.natural.size + len(system.scene.contacts) > options.structure.max_cached:
         return Multipliers(system, highest, options=options)
-    key = (*linear.numbers, system.harmonics, options)
+    far = quasi_static_modes(linear.natural, highest, system.harmonics, system.scene.planar, options)
+    key = (*linear.numbers, system.harmonics, options, far.tobytes())
     if _WORKSPACES.multipliers is None or _WORKSPACES.key != key:
         _WORKSPACES.key, _WORKSPACES.multipliers = key, Multipliers(system, highest, options=options)
     _WORKSPACES.multipliers.take(system)

@@ -113,10 +113,7 @@ class VariedBalance:
     def system(self) -> System:
         """The system with the numbers at the present s."""
         if self._system is None:
-            self._system = copy(self.base)
-            object.__setattr__(self._system, "scene", self.line.scene(self.base.scene, self.s))
-            if self.structure:
-                object.__setattr__(self._system, "linear", linear_of(self._system.scene))
+            self._system = self.base.with_scene(self.line.scene(self.base.scene, self.s))
         return self._system
 
     def set_parameter(self, s: float) -> None:
