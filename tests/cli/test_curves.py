@@ -177,8 +177,8 @@ def test_residual_friction_is_told_of_those_curves_alone_of_which_it_is_known():
     known["peak"]["u"]["residual_change"], unknown["peak"]["u"]["residual_change"] = 0.0, None
     run = {"method": "exact", "exact_motion": InTime.COMPUTED.value}
     told = [residual_friction({"curves": ones} | run) for ones in ([known], [known, unknown])]
-    assert "decides: it changes no peak" in told[0]
-    assert "decides: on 1 of 2 curves it changes no peak" in told[1]
+    assert "decides: it changes none of the greatest peaks" in told[0]
+    assert "decides: on 1 of 2 curves it changes none of the greatest peaks" in told[1]
 
 
 def test_what_is_said_of_residual_friction_agrees_with_its_column():
@@ -202,7 +202,8 @@ def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
         kept_friction({"curves": ones} | run) for ones in ([known, unknown], [known], [unknown])
     )
     assert (
-        "it changes no peak. Errors of other points leave it out. At 3 points the motion may be one of many"
+        "it changes none of the greatest peaks. Lower peaks and other points may change, too: "
+        "--method exact --at F computes how far the motions range. At 3 points the motion may be one of many"
         in both
     )
     assert one == residual_friction({"curves": [known]} | run)
@@ -216,7 +217,10 @@ def test_contacts_that_shake_down_are_not_said_to_be_as_they_are_whatever_their_
     one["peak"]["u"]["residual_change"] = 0.0
     run = {"method": "closed-form", "exact_motion": InTime.COMPUTED.value, "frequency_unit": "Hz"}
     alone, shaken = {"curves": [one]} | run, {"curves": [one | {"shakedown_at": 1.25}]} | run
-    assert "it changes no peak" in residual_friction(alone) and residual_friction(shaken) == ""
+    assert (
+        "it changes none of the greatest peaks" in residual_friction(alone)
+        and residual_friction(shaken) == ""
+    )
     assert "With less preload" in linear(alone) and "With less preload" not in linear(shaken)
     assert "would slip at 1.25 Hz" in linear(shaken) and "--method exact --at 1.25 looks for them" in linear(
         shaken
@@ -249,7 +253,7 @@ def test_residual_friction_is_told_of_the_peaks_that_are_shown():
     for dof, peak in one["peak"].items():
         peak["residual_change"] = 1e6 if dof == "still" else 0.02
     run = {"method": "exact", "exact_motion": InTime.COMPUTED.value, "curves": [one]}
-    assert "may change a peak by up to 2 %" in residual_friction(run)
+    assert "may change a greatest peak by up to 2 %" in residual_friction(run)
 
 
 def test_jumps_and_folds_that_nobody_could_see_are_counted():

@@ -14,7 +14,7 @@ from fcm.continuation import Status, follow
 from fcm.harmonic_balance.system import System as Balanced
 from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.shooting import OrbitProblem
-from fcm.shooting.force_level import LevelMotions, LevelProblem, level_motions, level_motions_at
+from fcm.shooting.force_level import ForceLevelShooting, LevelMotions, level_motions, level_motions_at
 from fcm.shooting.options import SHOOTING
 from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.residual import Shooting
@@ -35,7 +35,11 @@ def at_level(scene, level):
 )
 def test_the_derivative_by_the_level_is_that_of_differences_of_the_forces(scene, omega):
     """Away from where the period closes, from a motion that slips."""
-    x, level, step = LevelProblem(scene, omega).shooting.unknowns(simulate(scene, omega, 20).end), 0.9, 1e-6
+    x, level, step = (
+        ForceLevelShooting(scene, omega).shooting.unknowns(simulate(scene, omega, 20).end),
+        0.9,
+        1e-6,
+    )
     shot = Shooting(scene).residual(x, omega, level, by_level=True)
     gaps = [Shooting(at_level(scene, level + h)).residual(x, omega).closure for h in (0.0, step, -step)]
     assert shot.closure == pytest.approx(gaps[0], abs=1e-13 * np.abs(x).max())

@@ -6,8 +6,8 @@ import pytest
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.following_modes import PortModes, combined
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
+from fcm.stability.quasi_static_modes import PortModes, combined
 from fcm.stability.state_sequence import BalancedSequence
 
 from ..harmonic_balance.strips import strip

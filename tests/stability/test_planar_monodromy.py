@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import fcm
-from fcm.stability.following_modes import PortModes
 from fcm.stability.options import STABILITY
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence
+from fcm.stability.quasi_static_modes import PortModes
 
 OMEGA = 1.1
 AWAY = 1e-7  # [rad] from where the load vanishes

@@ -29,7 +29,7 @@ from fcm.accuracy.reference_pieces import (
     rates,
 )
 from fcm.accuracy.reference_stretch import ReferencePiece, StretchFollower
-from fcm.accuracy.residual import changes_left_out
+from fcm.accuracy.truncation_changes import changes_left_out
 from fcm.continuation import Mark, Path
 from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen

@@ -201,12 +201,12 @@ def with_more(
     """The response with more harmonics, or None; then the harmonics that take too long, and whether tracing
     had begun.
 
-    is_known tells whether these harmonics are known to improve the accuracy. Otherwise, or if they take too
-    long, only as many are added as are quick, at least the lowest three.
+    is_known tells whether these harmonics are known to improve the accuracy: then as many are added as the
+    work allows. Otherwise only as many as are quick, at least the lowest three.
     """
     work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
-    if not is_known or work.seconds + found.seconds_with(more) > most:
-        more = found.limited_harmonics(options.max_seconds_without_progress - work.seconds, more, options)
+    allowed = most if is_known else options.max_seconds_without_progress
+    more = found.limited_harmonics(allowed - work.seconds, more, options)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
     if work.seconds + found.seconds_with(more) > most:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fcm.harmonic_balance.system import System
 
 
-class ProblemAtLevel(Protocol):
+class WithLoad(Protocol):
     """A problem in the frequency, at the level of the forces that is its load."""
 
     load: float
@@ -88,7 +88,7 @@ def _direction(path: Path, i: int, unit: float) -> FloatArray:
     return unit * np.insert(path.direction[i], -1, 0.0)
 
 
-def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) -> bool:
+def reaches_level_one(problem: WithLoad, newton: Newton, turn: LevelFold) -> bool:
     """Whether a fold is brought to the level 1, by shorter stages where one was too long.
 
     newton belongs to that problem, and is then at the solution.

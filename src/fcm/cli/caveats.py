@@ -441,13 +441,12 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     if share == "0" and any("shakedown_at" in one for one in curves):
         return ""
     if share == "0":
-        return f"{_KEEPS}: {where}it changes no peak. Errors of other points leave it out"
+        of_peaks = "it changes none of the greatest peaks"
+    else:
+        of_peaks = f"it may change a greatest peak by up to {share} of it, estimated"
     how = _how(summary)
-    tells = f". {how} computes how far the motions range" if how else ""
-    return (
-        f"{_KEEPS}: {where}it may change a peak by up to {share} of it, estimated. That is an uncertainty "
-        f"of the peak{tells}"
-    )
+    tells = f": {how} computes how far the motions range" if how else ""
+    return f"{_KEEPS}: {where}{of_peaks}. Lower peaks and other points may change, too{tells}"
 
 
 def _how(summary: Mapping[str, Any]) -> str:

@@ -18,8 +18,8 @@ class Checkpoint(NamedTuple):
     z: FloatArray  # (n + 1,) of the stepper
     scale: FloatArray  # (n + 1,)
     tangent: FloatArray  # (n + 1,) in units of the scale
-    bend: FloatArray  # (n + 1,)
-    aside: FloatArray  # (n + 1,) of the next point, beyond a corner
+    curvature: FloatArray  # (n + 1,)
+    offset: FloatArray  # (n + 1,) of the next point, beyond a corner
     cubic: tuple[FloatArray, FloatArray, bool, bool]  # second and third derivative; known, taken
     margin: FloatArray
     output: FloatArray
@@ -28,8 +28,8 @@ class Checkpoint(NamedTuple):
     step: float  # the next one
     greatest: FloatArray  # of each output so far
     size: float  # of the solution at the start
-    start: FloatArray  # (n + 1,)
-    heading: FloatArray  # (n + 1,) the direction there
+    first: FloatArray  # (n + 1,)
+    initial_direction: FloatArray  # (n + 1,) the direction there
     interior: bool  # whether the start is inside the span
     evaluations: int
 
@@ -49,8 +49,8 @@ def stepper_state(stepper: Stepper) -> dict[str, Any]:
     way = stepper.predictor
     more = {
         "scale": np.array(stepper.newton.scale),
-        "bend": np.array(way.curvature),
-        "aside": np.array(stepper.offset),
+        "curvature": np.array(way.curvature),
+        "offset": np.array(stepper.offset),
     }
     cubic = np.array(way.second), np.array(way.third), bool(way.has_cubic), bool(way.cubic)
     return {
@@ -69,7 +69,7 @@ def restore_stepper(stepper: Stepper, checkpoint: Checkpoint) -> None:
     stepper.here.orientation = checkpoint.orientation
     np.asarray(stepper.newton.scale)[:] = checkpoint.scale
     way = stepper.predictor
-    np.asarray(way.curvature)[:] = checkpoint.bend
-    np.asarray(stepper.offset)[:] = checkpoint.aside
+    np.asarray(way.curvature)[:] = checkpoint.curvature
+    np.asarray(stepper.offset)[:] = checkpoint.offset
     np.asarray(way.second)[:], np.asarray(way.third)[:], way.has_cubic, way.cubic = checkpoint.cubic
     stepper.newton.evaluations = checkpoint.evaluations

@@ -82,15 +82,15 @@ class Recorder:
         """Have the points that were kept, and no others."""
         self.store.restore(checkpoint.kept)
         self.interior, self.greatest[:] = checkpoint.interior, checkpoint.greatest
-        self.first, self.initial_direction = checkpoint.start.copy(), checkpoint.heading.copy()
+        self.first, self.initial_direction = checkpoint.first.copy(), checkpoint.initial_direction.copy()
 
     def state(self) -> dict[str, Any]:
         """The part of a checkpoint that comes from the recorder."""
         return {
             "kept": self.store.state(),
             "greatest": self.greatest.copy(),
-            "start": np.array(self.first),
-            "heading": np.array(self.initial_direction),
+            "first": np.array(self.first),
+            "initial_direction": np.array(self.initial_direction),
             "interior": bool(self.interior),
         }
 

@@ -52,7 +52,7 @@ def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> Refi
 def of_all_dofs(found: UncheckedResponse, scene: Scene) -> UncheckedResponse:
     """A response followed by master degrees of freedom at all degrees of freedom of a scene, without
     errors."""
-    system = found.system.of(scene)
+    system = found.system.with_scene(scene)
     quantities = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
     return UncheckedResponse(system, found.traced, quantities, found.seconds)
 

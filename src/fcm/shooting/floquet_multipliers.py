@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from fcm.stability.disturbance import Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.following_modes import PortModes
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.quasi_static_modes import PortModes
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.segments import Segments, SegmentSequence
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fcm.harmonic_balance.system import System
 
 
-class LevelProblem(OrbitProblem):
+class ForceLevelShooting(OrbitProblem):
     """The closure of one period at omega [rad/s], z = (q, q', f, level) at the forces' angle 0."""
 
     def __init__(self, scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> None:
@@ -57,7 +57,7 @@ class LevelProblem(OrbitProblem):
         return 0
 
 
-class ProblemAtLevel(OrbitProblem):
+class FrequencyShooting(OrbitProblem):
     """The closure of one period, z = (q, q', f, omega), with all harmonic forces times its `load`."""
 
     @property
@@ -139,7 +139,7 @@ def level_motions_at(
     found = list[FloatArray]()
     try:
         complete = _followed(
-            LevelProblem(scene, omega, bounded.options), one, known, bounded.poll, found, along
+            ForceLevelShooting(scene, omega, bounded.options), one, known, bounded.poll, found, along
         )
     except WorkLimitError:
         return LevelMotions(omega, tuple(found), False, out_of_time=True)
@@ -147,7 +147,7 @@ def level_motions_at(
 
 
 def _followed(
-    problem: LevelProblem,
+    problem: ForceLevelShooting,
     one: System,
     known: Sequence[FloatArray],
     poll: Poll,
@@ -210,7 +210,7 @@ class _InterruptibleFollow(Frozen):
 
 
 def _from_rest(
-    problem: LevelProblem, linear: float, span: tuple[float, float], along: Follow
+    problem: ForceLevelShooting, linear: float, span: tuple[float, float], along: Follow
 ) -> tuple[Path] | None:
     """The curve from where contacts are linear to the end of the span; None if it cannot be followed.
 
@@ -232,7 +232,7 @@ def _beyond_level_folds(
     """Stable motions (unknown + 1,) beside folds of the level below 1, at frequencies within the range."""
     from fcm.branches.level_folds import reaches_level_one, solutions_past_fold
 
-    problem, (low, high) = ProblemAtLevel(scene, options=options), scene.frequency_range
+    problem, (low, high) = FrequencyShooting(scene, options=options), scene.frequency_range
     newton = Newton(problem)
     for turn in turns:
         poll()
@@ -243,7 +243,7 @@ def _beyond_level_folds(
                     yield z
 
 
-def _linear_starts(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
+def _linear_starts(problem: ForceLevelShooting, linear: float) -> Iterator[FloatArray]:
     """The motions (unknown + 1,) at levels at which contacts are linear, or nearly so."""
     from fcm.branches.options import LEVEL_CURVE
 

@@ -20,8 +20,8 @@ from fcm.stability.bifurcation_functions import MultiplierSample, multiplier_sam
 from fcm.stability.classification import Classification, meeting_angle
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import InsertedPoint
-from fcm.stability.multipliers import quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.quasi_static_modes import quasi_static_modes
 from fcm.stability.spaced_points import path_lengths
 
 Mask = npt.NDArray[np.bool_]

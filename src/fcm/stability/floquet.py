@@ -10,8 +10,9 @@ import numpy.typing as npt
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.hill import HillMultipliers
-from fcm.stability.multipliers import Multipliers, quasi_static_modes
+from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.quasi_static_modes import quasi_static_modes
 
 ComplexArray = npt.NDArray[np.complex128]
 

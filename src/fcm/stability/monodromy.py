@@ -59,8 +59,8 @@ from cython.cimports.libc.math import ceil, fabs, sqrt
 
 from fcm.distinct_values import distinct_values
 from fcm.stability.disturbance import Propagator
-from fcm.stability.following_modes import PortModes
 from fcm.stability.options import STABILITY, PropagationOptions
+from fcm.stability.quasi_static_modes import PortModes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK

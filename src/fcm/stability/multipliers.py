@@ -35,9 +35,9 @@ from fcm.stability.classification import (
 )
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.following_modes import PortModes, combined
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.quasi_static_modes import PortModes, combined, quasi_static_modes
 from fcm.stability.rebalanced import Rebalancing
 from fcm.stability.state_sequence import BalancedSequence
 
@@ -470,24 +470,6 @@ def _many_contacts(
     return [
         VariationalProblem(one, ManyMonodromy(shown, contact, one, options.propagation)) for one in states
     ]
-
-
-def quasi_static_modes(
-    natural: FloatArray,
-    highest: float,
-    harmonics: Sequence[int],
-    planar: bool,
-    options: StabilityOptions = STABILITY,
-) -> npt.NDArray[np.bool_]:
-    """Mask (mode,) of the modes so far above the excitation that they follow without delay: of many modes.
-
-    With contacts in a plane also of few: steps would have to resolve each of their vibrations.
-    """
-    times = max(options.structure.above_excitation, options.structure.above_harmonics * max(harmonics))
-    if natural.size <= options.structure.many_modes:
-        times *= options.structure.above_of_few if planar else np.inf
-    far: npt.NDArray[np.bool_] = natural > highest * times
-    return far
 
 
 def _distance_from_one(value: complex) -> float:

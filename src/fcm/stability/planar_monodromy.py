@@ -58,7 +58,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import ceil, fabs
 
 from fcm.contact.plane.radau import radau
-from fcm.stability.following_modes import PortModes
+from fcm.stability.quasi_static_modes import PortModes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI

@@ -21,12 +21,12 @@ from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.stability.classification import Classification
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.following_modes import PortModes
 from fcm.stability.monodromy import RingMonodromy
-from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
+from fcm.stability.multipliers import Multipliers, VariationalProblem
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import RingPlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence
+from fcm.stability.quasi_static_modes import PortModes, quasi_static_modes
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.structure.ring import RingLinear
 

@@ -1,4 +1,4 @@
-r"""Modes that follow without delay, and few combinations of them that yield beside the springs of contacts.
+r"""Quasi-static modes, which follow contacts without delay, and few combinations that yield beside springs.
 
 With springs k of the contacts' directions, and shapes P on them of modes of mass 1,
 
@@ -10,10 +10,13 @@ more than a mode for each s_i above a tolerance, the springs would change by no 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+from fcm.stability.options import STABILITY, StabilityOptions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,6 +40,24 @@ class PortModes(NamedTuple):
         following: FloatArray = self.shapes[self.far]
         found: FloatArray = (following.T * self.natural[self.far] ** -2.0) @ following
         return found
+
+
+def quasi_static_modes(
+    natural: FloatArray,
+    highest: float,
+    harmonics: Sequence[int],
+    planar: bool,
+    options: StabilityOptions = STABILITY,
+) -> npt.NDArray[np.bool_]:
+    """Mask (mode,) of the modes so far above the excitation that they follow without delay: of many modes.
+
+    With contacts in a plane also of few: steps would have to resolve each of their vibrations.
+    """
+    times = max(options.structure.above_excitation, options.structure.above_harmonics * max(harmonics))
+    if natural.size <= options.structure.many_modes:
+        times *= options.structure.above_of_few if planar else np.inf
+    far: npt.NDArray[np.bool_] = natural > highest * times
+    return far
 
 
 def combined(shapes: FloatArray, natural: FloatArray, springs: FloatArray, tolerance: float) -> FloatArray:
