@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from fcm import load_scene, periodic_forces, periodic_loop, planar_loop
+from fcm.cli.loop import _drawn_in_plane, _one_of
 from fcm.cli.loop_cases import PlanarCase, of_file
 from fcm.cli.loop_names import titles
+from fcm.plot.interface import draw_interface, points_of, read_interface
 from fcm.plot.loop_file import PlaceOnCurve
 from fcm.plot.normal_force import DrawnNormalForce, draw_normal_force
 from fcm.response import trace
@@ -202,6 +204,25 @@ def test_one_of_them(fcm, folded):
     assert one["solution"] == 2 and not one["stable"]
 
 
+def test_the_contacts_have_the_same_solutions_with_their_number_in_text_and_picture(fcm, folded):
+    """One of several was drawn, and nothing said so."""
+    at = ("--curve", 1, "--at", 1.2)
+    found = loops(fcm("plot", "loop", folded, *at, "--json"))
+    done = fcm("plot", "contacts", folded, *at, "-o", "c.png")
+    heads = re.findall(r"at ([0-9.]+) rad/s, (\d) of 3", done.err)
+    assert done.code == 0 and "2 of 3, unstable, curve 1" in done.err
+    assert heads == [(f"{one['frequency']:.6g}", str(one["solution"])) for one in found]
+    read = read_interface(folded)
+    titles = [axes.get_title() for axes in draw_interface(read, points_of(read, (1.2,), 1)).axes[:3]]
+    assert ["1 of 3" in one for one in titles] == [True, False, False] and "3 of 3" in titles[2]
+    (second,) = points_of(read, (1.2,), 1, solution=2)
+    assert second.solution.number == 2 and second.frequency == found[1]["frequency"]
+    done = fcm("plot", "contacts", folded, *at, "--solution", 4)
+    assert done.code == 2 and "--solution 4: the curve has 3 solutions at 1.2" in done.err
+    done = fcm("plot", "contacts", folded, *at, "--at", 1.21, "--at", 1.19)
+    assert "9 points by --at are too many: a picture has room for 6; --solution 1 takes one" in done.err
+
+
 OUTPUT = """
 modal = { dofs = ["u", "v"], frequency = [1, 2], damping = [0.02, 0.02], shapes = [[1, 0.05], [-0.05, 1]] }
 force = [{ dof = "u", amplitude = 1.0 }, { dof = "v", amplitude = 1.0 }]
@@ -299,7 +320,7 @@ def test_nonsense_is_said(fcm, tmp_path, args, said):
         (("--curve", 2), "there is no curve 2; it has 2 curves, numbers 0 to 1"),
         (("--curve", 0, "--at", 3), "curve 0 goes from 0.7 to 1.7 rad/s, not to 3"),
         (("--curve", 0, "--contact", "blade"), 'there is no contact "blade"; it has "shroud"'),
-        (("--curve", 0, "--at", 1, "--solution", 2), "there are 1 at this frequency"),
+        (("--curve", 0, "--at", 1, "--solution", 2), "--solution 2: the curve has 1 solution at 1"),
         (("--curve", 0, "--phi", 1), "--phi is of no use with a FILE"),
         (("--curve", 0, "--harmonic", "u", 2, 1, 0), "--harmonic is of no use with a FILE"),
     ],
@@ -422,7 +443,9 @@ def test_several_loops_in_a_plane_are_too_many(fcm, tmp_path):
     fcm("respond", "plane.toml", "-o", "plane.nc")
     done = fcm("plot", "loop", "plane.nc", "--at", "0.97", "--at", "1.0")
     assert done.code == 2
-    assert "2 loops in a plane are too many for a picture" in done.err
+    assert "2 loops in a plane are too many for a picture: give --at once." in done.err
+    folded = {"curves": (), "at": (470.0,), "amplitudes": ()}
+    assert _one_of(folded) == "the curve is folded there; take one solution, as by --solution 1"
     done = fcm("plot", "loop", "plane.nc", "--cosine")
     assert done.code == 2 and "--cosine is of no use in a plane" in done.err
 
@@ -436,6 +459,8 @@ def test_a_loop_in_a_plane_without_dimensions():
     still = PlanarCase(loop, ("x", "y"), (), "", {"a": 0.0, "k_u a": 0.0}, None)
     with pytest.raises(click.UsageError, match="the motion in the plane is zero"):
         still.dimensionless()
+    figure = _drawn_in_plane(replace(case, note="1 of 3, stable"), True, None)
+    assert figure.get_suptitle() == f"1 of 3, stable, {loop.sequence}"
 
 
 def test_a_point_beside_the_frequency_asked_for_is_said(fcm, folded):

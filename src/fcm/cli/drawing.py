@@ -34,6 +34,12 @@ def draws_file(ending: str, page: bool = False) -> Callable[[Any], Any]:
     return lambda command: click.argument("file", type=kind)(option(command))
 
 
+solution_option = click.option(
+    "--solution", type=click.IntRange(min=1), metavar="K",
+    help="On a folded curve only the K-th, that of the greatest amplitude being 1.",
+)  # fmt: skip
+
+
 def picture_of(file: Path, output: Path | None, ending: str, *read: Path | None, page: bool = False) -> Path:
     """Path of the picture of a result file, which is none of the files that are read."""
     if output is None and file.suffix == ending:

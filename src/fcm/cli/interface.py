@@ -7,7 +7,15 @@ from pathlib import Path
 import click
 
 from fcm.cli.columns import aligned
-from fcm.cli.drawing import drawing, draws_file, is_page, not_at, picture_of, save_picture_of
+from fcm.cli.drawing import (
+    drawing,
+    draws_file,
+    is_page,
+    not_at,
+    picture_of,
+    save_picture_of,
+    solution_option,
+)
 from fcm.cli.files import wrote
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
@@ -22,7 +30,7 @@ OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file'
 @draws_file("-contacts.png", page=True)
 @click.option(
     "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
-    help="The frequency, in the file's unit, or the level; several make a film strip.  "
+    help="The frequency, in the file's unit, or the level; several make a film strip, as do solutions.  "
     "[default: of the greatest peak of the scene's output]",
 )  # fmt: skip
 @click.option(
@@ -33,6 +41,7 @@ OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file'
     "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K", default=(0,),
     help="Of a sweep, counted from 0; several make a film strip.  [default: 0]",
 )  # fmt: skip
+@solution_option
 @click.option(
     "--places", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="PLACES",
     help="A text file with a line NAME X Y for each contact.  [default: places of node sets, or a row]",
@@ -45,6 +54,7 @@ def contacts(
     at: tuple[float, ...],
     amplitude: tuple[float, ...],
     curves: tuple[int, ...],
+    solution: int | None,
     places: Path | None,
 ) -> None:
     """Draw what the contacts do of FILE, the netCDF file of `fcm respond -o FILE`.
@@ -60,6 +70,7 @@ def contacts(
         points_of,
         read_interface,
         read_places,
+        stays_at,
     )
     from fcm.plot.style import LAYOUT
     from fcm.scene.errors import counted
@@ -67,15 +78,19 @@ def contacts(
     output = picture_of(file, output, "-contacts.png", places, page=True)
     if at and amplitude:
         raise click.UsageError("--at and --amplitude both say where; give one of them.")
-    count = max(len(at), len(amplitude), 1) * len(curves)
-    if count > LAYOUT.panels:
-        asked = (("--at", at), ("--amplitude", amplitude), ("--curve", curves))
-        options = " and ".join(name for name, given in asked if len(given) > 1)
-        raise click.UsageError(
-            f"{count} points by {options} are too many: a picture has room for {LAYOUT.panels}."
-        )
     read = read_interface(file)
-    points = [point for curve in curves for point in points_of(read, at, curve, amplitude)]
+    along: list[tuple[tuple[float, ...], tuple[float, ...]]] = [
+        *(((one,), ()) for one in at),
+        *(((), (one,)) for one in amplitude),
+    ]
+    found = [
+        (curve, (*here, *modal), points_of(read, here, curve, modal, solution))
+        for curve in curves
+        for here, modal in along or [((), ())]
+    ]
+    points = [point for *_, here in found for point in here]
+    if len(points) > LAYOUT.panels:
+        raise click.UsageError(_too_many(len(points), at, amplitude, curves, len(found)))
     where, axes = read.places, read.axes
     if places is not None:
         where, axes = read_places(places, read.contacts), type(read).axes
@@ -83,20 +98,23 @@ def contacts(
     head = [f"{key} [{units[key]}]" if units.get(key) else key for key in HEAD]
     if read.places is not None:
         head.append(f"at {', '.join(read.axes)}" + (f" [{read.units[1]}]" if read.units[1] else ""))
-    each = [(curve, wanted) for curve in curves for wanted in at or amplitude or (None,)]
-    for point, (curve, wanted) in zip(points, each, strict=True):
-        there = point.frequency if at else point.modal_amplitude
-        unit = read.unit if at else ""
-        if wanted is not None and there is not None and (said := not_at(wanted, [there], unit)):
-            messages.info(said)
-        takers = greatest_takers(read, point, SENTENCES.rows)
-        swept = ", ".join(f"{key} = {value:.6g}" for key, value in point.swept.items())
-        of = f", curve {curve}{f' ({swept})' if swept else ''}" if len(read.frequency) > 1 else ""
-        energy = ", those that take most energy:" if takers else ": none takes energy"
-        states = f"{counted(len(read.contacts), 'contact')} ({counted_states(point)})"
-        messages.info(f"at {place_of(read, point)}{of}; {states}{energy}")
-        if takers:
-            messages.info(aligned([head, *takers], left=0))
+    for curve, asked, here in found:
+        there = [
+            point.frequency if point.modal_amplitude is None or at else point.modal_amplitude
+            for point in here
+        ]
+        for one in asked:
+            if said := not_at(one, there, read.unit if at else ""):
+                messages.info(said)
+        for point in here:
+            takers = greatest_takers(read, point, SENTENCES.rows)
+            swept = ", ".join(f"{key} = {value:.6g}" for key, value in point.swept.items())
+            of = f", curve {curve}{f' ({swept})' if swept else ''}" if len(read.frequency) > 1 else ""
+            energy = ", those that take most energy:" if takers else ": none takes energy"
+            states = f"{counted(len(read.contacts), 'contact')} ({counted_states(point)})"
+            messages.info(f"at {place_of(read, point)}{stays_at(point)}{of}; {states}{energy}")
+            if takers:
+                messages.info(aligned([head, *takers], left=0))
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 
@@ -105,3 +123,16 @@ def contacts(
     else:
         save_picture_of(lambda: draw_interface(read, points, where, axes), output)
     messages.info(wrote(output))
+
+
+def _too_many(
+    count: int, at: tuple[float, ...], amplitude: tuple[float, ...], curves: tuple[int, ...], asked: int
+) -> str:
+    """Message on more points than a picture has room for, and what takes fewer."""
+    from fcm.plot.style import LAYOUT
+
+    options = (("--at", at), ("--amplitude", amplitude), ("--curve", curves))
+    by = " and ".join(name for name, given in options if len(given) > 1)
+    folded = "; --solution 1 takes one where a curve is folded" if count > asked else ""
+    of = f" by {by}" if by else ""
+    return f"{count} points{of} are too many: a picture has room for {LAYOUT.panels}{folded}."

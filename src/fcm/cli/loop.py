@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli.drawing import ENDINGS, angle, angles, save_picture, save_picture_of
+from fcm.cli.drawing import ENDINGS, angle, angles, save_picture, save_picture_of, solution_option
 from fcm.cli.files import check_not_read, check_output, output_option, wrote
 from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages, pass_messages
@@ -131,10 +131,7 @@ def _parameters(command: Any) -> Any:
 @click.option(
     "--contact", metavar="NAME", help="Of FILE: the contact.  [default: that which takes most energy]"
 )
-@click.option(
-    "--solution", type=click.IntRange(min=1), metavar="K",
-    help="On a folded curve only the K-th, that of the greatest amplitude being 1.",
-)  # fmt: skip
+@solution_option
 @click.option("--dimensionless", is_flag=True, help="Divide displacements by a and forces by k_u a.")
 @click.option(
     "--units", nargs=2, metavar="LENGTH FORCE", help="Units to write at the axes, as in --units mm N."
@@ -173,9 +170,10 @@ def loop(
     cases = _cases(given, file, options, units, messages.info)
     without_friction = isinstance(cases[0], NormalCase)
     if without_friction:
-        _check_without_friction(given, len(cases))
-    if len(cases) > 1 and isinstance(cases[0], PlanarCase):
-        raise click.UsageError(f"{len(cases)} loops in a plane are too many for a picture: say which one.")
+        _check_without_friction(given)
+    if len(cases) > 1 and isinstance(cases[0], PlanarCase | NormalCase):
+        what = "normal forces" if without_friction else "loops in a plane"
+        raise click.UsageError(f"{len(cases)} {what} are too many for a picture: {_one_of(options)}.")
     if cosine and isinstance(cases[0], PlanarCase):
         raise click.UsageError("--cosine is of no use in a plane: each direction has a phase of its own.")
     if len(cases) > REQUESTS.loops:
@@ -252,12 +250,18 @@ def _check(given: set[str], of_file: bool) -> None:
         raise click.UsageError(f"{'; '.join(filter(None, wrong))}.")
 
 
-def _check_without_friction(given: set[str], count: int) -> None:
+def _check_without_friction(given: set[str]) -> None:
     """A usage error on what the normal force of a contact without friction cannot have."""
-    wrong = [_useless(given, ("cosine", "dimensionless"), ": the contact has no friction, and so no loop")]
-    wrong.append(f"{count} normal forces are too many for a picture: say which one" if count > 1 else "")
-    if any(wrong):
-        raise click.UsageError(f"{'; '.join(filter(None, wrong))}.")
+    if wrong := _useless(given, ("cosine", "dimensionless"), ": the contact has no friction, and so no loop"):
+        raise click.UsageError(f"{wrong}.")
+
+
+def _one_of(options: dict[str, Any]) -> str:
+    """How to choose one loop of several of a file."""
+    several = [_option(name) for name in ("curves", "at", "amplitudes") if len(options[name]) > 1]
+    if several:
+        return f"give {' and '.join(several)} once"
+    return "the curve is folded there; take one solution, as by --solution 1"
 
 
 def _useless(given: set[str], names: tuple[str, ...], why: str) -> str:
@@ -287,7 +291,7 @@ def _drawn(
 def _drawn_in_plane(case: PlanarCase, scaled: bool, units: tuple[str, str] | None) -> Figure:
     from fcm.plot.planar_loop import DrawnPlanarLoop, draw_planar_loop
 
-    title = ", ".join(filter(None, [*(name.drawn for name in case.names), case.loop.sequence]))
+    title = ", ".join(filter(None, [*(name.drawn for name in case.names), case.note, case.loop.sequence]))
     drawn = DrawnPlanarLoop(case.loop, title, case.directions, units or case.units)
     if not scaled:
         drawn = replace(drawn, loop=case.dimensionless(), units=None, dimensionless=True)

@@ -222,10 +222,7 @@ def of_file(
     planar: list[PlanarCase] = []
     normal: list[NormalCase] = []
     for curve, place in product(curves, places):
-        points = points_at(file, curve, contact, place)
-        if solution is not None and solution > len(points):
-            raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
-        points = points if solution is None else points[solution - 1 : solution]
+        points = points_at(file, curve, contact, place, solution)
         if place is not None:
             unit = "" if place.modal else file.unit
             if said := not_at(place.value, [place.of(one) for one in points], unit):
@@ -273,18 +270,17 @@ def _said(point: LoopPoint, file: LoopFile, asked: Name) -> tuple[tuple[Name, ..
     )
     if point.fundamental:
         names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
-    several = f"{point.solution} of {point.solutions}, " if point.solutions > 1 else ""
     stable = {True: "stable", False: "unstable", None: ""}[point.stable]
     facts = {
         "curve": point.curve, "parameters": point.parameters, "contact": point.contact,
         ("level" if unit == "level" else "frequency"): point.frequency,
         **({} if modal is None else {"modal_amplitude": modal}),
-        "solution": point.solution, "solutions": point.solutions,
+        "solution": point.solution.number, "solutions": point.solution.among,
         "output": point.output, "output_amplitude": point.displacement, "peak": point.peak,
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,
         "harmonics": point.harmonics, "states": point.states,
     }  # fmt: skip
-    return names, (several + stable).strip(", "), facts
+    return names, ", ".join(filter(None, (str(point.solution), stable))), facts
 
 
 def _peak(point: LoopPoint, file: LoopFile) -> Name:

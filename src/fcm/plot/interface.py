@@ -14,7 +14,7 @@ from fcm.frozen import Frozen
 from fcm.mesh.pairing import PAIRING
 from fcm.plot.dof import asked_for, greatest_column
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, short_names, with_unit
+from fcm.plot.labels import curve_label, short_names, staying, with_unit
 from fcm.plot.pairs import direction_name, plane_view
 from fcm.plot.read import (
     LEVEL,
@@ -28,6 +28,7 @@ from fcm.plot.read import (
     swept_values,
 )
 from fcm.plot.reader_process import apart
+from fcm.plot.solutions import Solution, solutions_at
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
 from fcm.quoting import quoted
 from fcm.results.contact_states import STATES, contact_states
@@ -91,6 +92,7 @@ class InterfacePoint(Frozen):
     swept: Mapping[str, float] = field(default_factory=dict)  # of a sweep, by short names
     modal_amplitude: float | None = None  # of a nonlinear mode, which is neither stable nor unstable
     asked: str = ""  # the place asked for, where the nearest point is beside it
+    solution: Solution | None = None  # which of those that the curve has at this place
 
 
 @apart
@@ -152,17 +154,21 @@ def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
 
 
 def points_of(
-    file: InterfaceFile, at: Sequence[float], curve: int = 0, amplitude: Sequence[float] = ()
+    file: InterfaceFile,
+    at: Sequence[float],
+    curve: int = 0,
+    amplitude: Sequence[float] = (),
+    solution: int | None = None,
 ) -> list[InterfacePoint]:
-    """The point of a curve nearest to each frequency or level, or to each modal amplitude.
+    """The points of a curve nearest to each frequency or level, or to each modal amplitude.
 
-    Of several solutions there it is the highest that is not unstable, or the highest. Without any it is the
-    point of the greatest amplitude, of the scene's output where it has one.
+    There is one for each solution there, or that of a number alone, see `solutions_at`. Without any place it
+    is the point of the greatest amplitude, of the scene's output where it has one.
 
     Raises
     ------
     PlotError
-        If the curve, a frequency or a modal amplitude is not in the file.
+        If the curve, a frequency, a modal amplitude or the solution is not in the file.
     """
     if not 0 <= curve < len(file.frequency):
         raise PlotError(f"{file.path}: there is no curve {curve}; it has {curves_there(len(file.frequency))}")
@@ -170,9 +176,9 @@ def points_of(
         raise PlotError(f"{file.path}: curve {curve} has no points")
     if amplitude and file.modal_amplitude is None:
         raise PlotError(f"{file.path}: --amplitude is of nonlinear modes (fcm respond --mode); take --at")
+    column = greatest_column(file.dofs, file.amplitude.reshape(-1, len(file.dofs)), file.asked)
+    height = file.amplitude[curve, :, column]
     if not at and not amplitude:
-        column = greatest_column(file.dofs, file.amplitude.reshape(-1, len(file.dofs)), file.asked)
-        height = file.amplitude[curve, :, column]
         if file.steady is not None and (held := (file.steady[curve] != 0.0) & np.isfinite(height)).any():
             height = np.where(held, height, np.nan)
         return [_point(file, curve, int(np.nanargmax(height)))]
@@ -182,32 +188,24 @@ def points_of(
         along, places, option, digits = file.frequency[curve], at, "--at", 6
     found = []
     for place in places:
-        k = _nearest(file, curve, along, place, option)
         unit = file.unit if option == "--at" else ""
-        beside = asked_beside(place, float(along[k]), unit, digits)
-        found.append(replace(_point(file, curve, k), asked=beside))
+        for one in solutions_at(along, _on_curve(file, along, place, option), height, solution):
+            beside = asked_beside(place, float(along[one.point]), unit, digits)
+            found.append(replace(_point(file, curve, one.point), asked=beside, solution=one))
     return found
 
 
-def _nearest(file: InterfaceFile, curve: int, along: FloatArray, one: float, option: str) -> int:
-    """The point whose place along the curve is nearest to one; see `points_of`."""
-    asked, one = one, on_curve(along, one)
-    if np.isnan(one):
+def _on_curve(file: InterfaceFile, along: FloatArray, asked: float, option: str) -> float:
+    """The place asked for along a curve; PlotError if it is beyond."""
+    place = on_curve(along, asked)
+    if np.isnan(place):
         low, high = np.nanmin(along), np.nanmax(along)
         unit = "" if option != "--at" else f" {file.unit}"
         help_ = "; --amplitude takes modal amplitudes" * (
             option == "--at" and file.modal_amplitude is not None
         )
         raise PlotError(f"{option} {asked:g}: the curve goes from {low:g} to {high:g}{unit}{help_}")
-    before, after = along[:-1], along[1:]
-    passed = np.flatnonzero((np.minimum(before, after) <= one) & (one <= np.maximum(before, after)))
-    nearer = passed + (np.abs(after[passed] - one) < np.abs(before[passed] - one))
-    if not nearer.size:  # a point alone, or beside a gap
-        nearer = np.array([int(np.nanargmin(np.abs(along - one)))])
-    stays = file.stable[curve, nearer] != 0.0
-    nearer = nearer[stays] if stays.any() else nearer
-    height = file.amplitude[curve, nearer]
-    return int(nearer[np.nanmax(np.where(np.isfinite(height), height, -1.0), axis=1).argmax()])
+    return place
 
 
 def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
@@ -221,11 +219,18 @@ def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
 
 
 def place_of(file: InterfaceFile, point: InterfacePoint) -> str:
-    """The frequency or the level of a point, and its modal amplitude."""
+    """The frequency or the level of a point, its modal amplitude, and which of several solutions it is."""
+    which = f", {point.solution}" if point.solution is not None and point.solution.among > 1 else ""
     if file.unit == LEVEL:
-        return f"{LEVEL} {point.frequency:.6g}"
+        return f"{LEVEL} {point.frequency:.6g}{which}"
     modal = "" if point.modal_amplitude is None else f", modal amplitude {point.modal_amplitude:.4g}"
-    return f"{point.frequency:.6g} {file.unit}{modal}"
+    return f"{point.frequency:.6g} {file.unit}{modal}{which}"
+
+
+def stays_at(point: InterfacePoint) -> str:
+    """What is to be said of the stability of a point; nothing of a nonlinear mode's that is not known."""
+    said = staying(point.stable)
+    return "" if np.isnan(point.stable) and point.modal_amplitude is not None else said
 
 
 def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> list[tuple[str, ...]]:
@@ -401,11 +406,9 @@ def _name_contacts(grid: Any, names: Sequence[str], at: FloatArray, room: float,
 
 def _head(file: InterfaceFile, point: InterfacePoint) -> str:
     """Heading of a panel: which point of which curve it shows."""
-    unknown = ", stability unknown" if point.modal_amplitude is None else ""
-    stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
     place = place_of(file, point).replace(", ", "\n")  # a film strip has narrow panels
     asked = f"\n{point.asked}" if point.asked else ""
-    return (f"{point.curve}\n" if point.curve else "") + f"{place}{stays}{asked}"
+    return (f"{point.curve}\n" if point.curve else "") + f"{place}{stays_at(point)}{asked}"
 
 
 def _in_plane(

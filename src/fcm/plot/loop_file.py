@@ -15,6 +15,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, curves_there, floats, on_curve, opened, read_response
 from fcm.plot.reader_process import apart
+from fcm.plot.solutions import Solution, solutions_at
 from fcm.plot.summary import summary_of
 
 _ENERGY = "dissipated_energy"
@@ -109,8 +110,7 @@ class LoopPoint(Frozen):
     parameters: dict[str, float]  # the swept values of the curve
     contact: str
     frequency: float  # of the point, in the file's unit
-    solution: int  # 1 for that of the greatest tangential amplitude
-    solutions: int  # how many the curve has near this frequency
+    solution: Solution  # which of those that the curve has near this frequency
     stable: bool | None  # None where the file does not know
     n0_bar: float
     b_bar: float
@@ -216,17 +216,21 @@ def _motions(data: Any) -> MotionFile | None:
 
 
 def points_at(
-    file: LoopFile, curve: int | None, contact: str | None, place: PlaceOnCurve | None
+    file: LoopFile,
+    curve: int | None,
+    contact: str | None,
+    place: PlaceOnCurve | None,
+    solution: int | None = None,
 ) -> list[LoopPoint]:
     """The points of a curve nearest to a place.
 
-    There is one for each solution there, greatest amplitude first. Without a place it is the peak of the
-    scene's output, see `LoopFile.column`. Without a contact it is the `busiest`.
+    There is one for each solution there, or that of a number alone, see `solutions_at`. Without a place it is
+    the peak of the scene's output, see `LoopFile.column`. Without a contact it is the `busiest`.
 
     Raises
     ------
     PlotError
-        If the curve, the contact or the place along the curve is not in the file.
+        If the curve, the contact, the place along the curve or the solution is not in the file.
     """
     row, column = _row(file, curve), _column(file, contact)
     along, unit, amplitude = file.frequency[row], f" {file.unit}", file.loop[3, row, :, column]
@@ -242,28 +246,18 @@ def points_at(
         there = np.isfinite(amplitude)
         if file.steady is not None and (held := there & (file.steady[row] != 0.0)).any():
             there = held
-        found = [int(np.nanargmax(np.where(there, file.amplitude[row, :, file.column], np.nan)))]
+        top = int(np.nanargmax(np.where(there, file.amplitude[row, :, file.column], np.nan)))
+        found = [Solution(top, 1, 1)]
     else:
-        found = _solutions(along, on_curve(along, place.value))
-        found.sort(key=lambda k: -amplitude[k])
-        if not found:
+        at = on_curve(along, place.value)
+        if np.isnan(at):
             ends = f"from {np.nanmin(along):.6g} to {np.nanmax(along):.6g}{unit}"
             raise PlotError(f"{file.path}: curve {row} goes {ends}, not to {place.value:.6g}")
-    indices = [PointIndex(row, k, column) for k in found]
-    return [_point(file, index, i + 1, len(found), place is None) for i, index in enumerate(indices)]
+        found = solutions_at(along, at, file.amplitude[row, :, file.column], solution)
+    return [_point(file, PointIndex(row, one.point, column), one, place is None) for one in found]
 
 
-def _solutions(frequency: FloatArray, at: float) -> list[int]:
-    """The nearer end of every segment of the curve that crosses the frequency."""
-    start, end = frequency[:-1] - at, frequency[1:] - at
-    crossing = np.flatnonzero(start * end <= 0.0)
-    nearer = np.where(np.abs(start[crossing]) <= np.abs(end[crossing]), crossing, crossing + 1)
-    if frequency.size == 1 and frequency[0] == at:
-        return [0]
-    return sorted(set(nearer.tolist()))
-
-
-def _point(file: LoopFile, index: PointIndex, solution: int, solutions: int, peak: bool) -> LoopPoint:
+def _point(file: LoopFile, index: PointIndex, solution: Solution, peak: bool) -> LoopPoint:
     row, k, column = index
     n0_bar, b_bar, phi, amplitude, force = file.loop[:, row, k, column].tolist()
     frequency, stable = float(file.frequency[row, k]), float(file.stable[row, k])
@@ -280,7 +274,7 @@ def _point(file: LoopFile, index: PointIndex, solution: int, solutions: int, pea
             "fcm respond -o writes it now"
         )
     return LoopPoint(
-        row, file.parameters[row], name, frequency, solution, solutions,
+        row, file.parameters[row], name, frequency, solution,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
         file.harmonics, str(file.states[index]),
         file.motions is None and len(file.harmonics) > 1, motion,
