@@ -1,9 +1,12 @@
 """Exact motions marked over curves: which markers are where, and what does not fit is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fcm.plot import DrawnCurve, DrawnPoints, DrawnResponse, PlotError, draw_response
+from fcm.plot.measured import read_measured_points
 
 KEY = "contact.shroud.n_0"
 FREQUENCY = np.linspace(1.0, 2.0, 21)
@@ -76,7 +79,12 @@ def test_a_traced_curve_is_marked_by_circles():
 
 @pytest.mark.parametrize(
     ("points", "said"),
-    [(swept(curve(3.0)), "= 3"), (swept(curve(1.0), dofs=("x", "y")), 'no degree of freedom "u"')],
+    [
+        (swept(curve(3.0)), "that of the points with n_0 = 3; the curves have n_0 = 1, 2$"),
+        (swept(curve(0.0)), "of the points of a scene without a sweep; the curves have n_0 = 1, 2$"),
+        (swept(curve(1.0), unit="level"), "the curves are over frequency, the points over the level of the"),
+        (swept(curve(1.0), dofs=("x", "y")), 'no degree of freedom "u"'),
+    ],
 )
 def test_points_of_something_else_are_refused(points, said):
     with pytest.raises(PlotError, match=said):
@@ -90,3 +98,52 @@ def test_curves_without_room_for_their_names_are_named_in_a_legend_beside_points
     assert not figure.axes[0].texts
     named = [[text.get_text() for text in legend.get_texts()] for legend in figure.legends]
     assert len(named[-1]) == 12 and named[0] == ["harmonic balance", "exact motion, swept up", "swept down"]
+
+
+def test_points_over_frequency_are_not_drawn_over_levels(tmp_path):
+    """They were, with frequencies on the axis of the level."""
+    over_levels = DrawnResponse(("u", "v"), "level", (curve(0.0),))
+    with pytest.raises(PlotError, match="--points takes points over the level of the forces"):
+        draw_response(over_levels, points=swept(curve(0.0)))
+    path = tmp_path / "a.csv"
+    path.write_text("frequency,amplitude\n1,2\n")
+    with pytest.raises(
+        PlotError, match="a.csv: measured points are over frequency, the curves over the level"
+    ):
+        read_measured_points(path, "level")
+
+
+def backbones(*parameters):
+    x = np.array([1.3, 1.45, 1.55])
+    each = tuple(DrawnCurve(one, x, np.column_stack((x, [3.0, 5.0, 9.0]))) for one in parameters)
+    return DrawnResponse(("u", "v"), "rad/s", each)
+
+
+def test_a_backbone_of_other_swept_values_is_refused_and_the_forces_may_be_other_ones():
+    """That of another preload was drawn over all curves."""
+    response = DrawnResponse(("u", "v"), "rad/s", (curve(1.0), curve(2.0)))
+    for own, said in (({KEY: 3.0}, "the mode with n_0 = 3"), ({}, "the mode of a scene without a sweep")):
+        with pytest.raises(PlotError, match=f"no curve of the file is that of {said}; .* n_0 = 1, 2$"):
+            draw_response(response, backbone=backbones({KEY: 1.0}, own))
+    (line,) = backbone_lines(draw_response(response, backbone=backbones({KEY: 2.0})))
+    curves = draw_response(response).axes[0].get_lines()
+    assert line.get_color() == curves[1].get_color()
+    levels = [replace(curve(0.0), parameters={"excitation.level": one}) for one in (1.0, 2.0)]
+    assert backbone_lines(draw_response(replace(response, curves=tuple(levels)), backbone=backbones({})))
+
+
+def test_a_backbone_ends_at_the_height_of_the_curves():
+    """It left the axes at their top."""
+    response = DrawnResponse(("u", "v"), "rad/s", (curve(0.0),))
+    (line,) = backbone_lines(draw_response(response, "v", backbone=backbones({})))
+    highest = 10.0
+    assert np.nanmax(line.get_ydata()) == 9.0 < highest
+    low = DrawnResponse(("u", "v"), "rad/s", (replace(curve(0.0), amplitude=0.6 * curve(0.0).amplitude),))
+    (line,) = backbone_lines(draw_response(low, "v", backbone=backbones({})))
+    there = np.isfinite(line.get_ydata())
+    assert line.get_ydata()[there] == pytest.approx([3.0, 5.0, 6.0])
+    assert line.get_xdata()[there] == pytest.approx([1.3, 1.45, 1.475])
+
+
+def backbone_lines(figure):
+    return [line for line in figure.axes[0].get_lines() if line.get_label() == "_backbone"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,8 +10,8 @@ import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
-from fcm.plot.points import frequency_factor, same_parameters
-from fcm.plot.read import LEVEL, DrawnCurve, DrawnResponse, opened, read_response
+from fcm.plot.points import frequency_factor, match
+from fcm.plot.read import LEVEL, DrawnCurve, DrawnResponse, FloatArray, opened, read_response
 from fcm.plot.reader_process import apart
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 NAME = "nonlinear mode (backbone)"
 COLOUR, WIDTH, DASHES = "#D55E00", 1.0, (0, (6.0, 1.5, 1.0, 1.5))
+_FORCES = ("force.", "base.", "excitation.")  # swept quantities that a mode does not depend on
 
 
 @apart
@@ -38,14 +39,14 @@ def draw_backbone(
     curves: Sequence[DrawnCurve],
     colours: Sequence[str],
 ) -> Line2D:
-    """Draw the modes within the axes, which stay as they are; what stands for them in a legend.
+    """Draw the modes up to the highest curve; the axes stay as they are. What stands for them in a legend.
 
-    A mode with the swept values of a curve has its colour.
+    A mode of one curve of several has its colour. The forces of the curves may differ, which move no mode.
 
     Raises
     ------
     PlotError
-        If the modes have other degrees of freedom, or nothing within the axes.
+        If the modes have other degrees of freedom or other swept values, or nothing within the axes.
     """
     from matplotlib.lines import Line2D
 
@@ -53,22 +54,36 @@ def draw_backbone(
         raise PlotError("the curves are against the level of the forces; a backbone is over frequencies")
     own = column_of(modes.dofs, response.dofs[column], "the modes have")
     factor = frequency_factor(modes.frequency_unit, response.frequency_unit)
-    (low, high), top = axes.get_xlim(), axes.get_ylim()[1]
-    seen = False
+    (low, high), top = axes.get_xlim(), float(axes.dataLim.y1)
+    seen, of_curves = False, [_without_forces(curve.parameters) for curve in curves]
     for mode in modes.curves:
-        x, y = factor * mode.frequency, mode.amplitude[:, own]
-        seen |= bool(((x >= low) & (x <= high) & (y <= top)).any())
-        same = [
-            colour
-            for curve, colour in zip(curves, colours, strict=True)
-            if len(curves) > 1 and same_parameters(mode.parameters, curve.parameters)
-        ]
+        values = _without_forces(mode.parameters)
+        distinct = [one for i, one in enumerate(of_curves) if one not in of_curves[:i]]
+        theirs = distinct[match(values, distinct, "mode")]
+        alone = len(curves) > 1 and of_curves.count(theirs) == 1
+        x, y = _below(factor * mode.frequency, mode.amplitude[:, own], top)
+        seen |= bool(((x >= low) & (x <= high) & np.isfinite(y)).any())
         axes.plot(
-            x, y, color=same[0] if same else COLOUR, linewidth=WIDTH, linestyle=DASHES,
-            label="_backbone", scalex=False, scaley=False,
+            x, y, color=colours[of_curves.index(theirs)] if alone else COLOUR, linewidth=WIDTH,
+            linestyle=DASHES, label="_backbone", scalex=False, scaley=False,
         )  # fmt: skip
     if not seen:
         every = np.concatenate([mode.frequency for mode in modes.curves] or [np.zeros(1)])
         ends = f"{factor * np.nanmin(every):.6g} to {factor * np.nanmax(every):.6g} {response.frequency_unit}"
         raise PlotError(f"the modes, from {ends}, are not within the range and heights of the curves")
     return Line2D([], [], color=COLOUR, linewidth=WIDTH, linestyle=DASHES)
+
+
+def _without_forces(parameters: Mapping[str, float]) -> dict[str, float]:
+    """Swept values that modes depend on."""
+    return {key: value for key, value in parameters.items() if not key.startswith(_FORCES)}
+
+
+def _below(x: FloatArray, y: FloatArray, top: float) -> tuple[FloatArray, FloatArray]:
+    """A line up to a height, with the points at which it passes that."""
+    above = y - top
+    passing = np.flatnonzero(above[:-1] * above[1:] < 0.0)
+    part = above[passing] / (above[passing] - above[passing + 1])
+    x = np.insert(x, passing + 1, x[passing] + part * (x[passing + 1] - x[passing]))
+    y = np.insert(y, passing + 1, top)
+    return x, np.where(y <= top, y, np.nan)

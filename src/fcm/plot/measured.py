@@ -172,12 +172,17 @@ def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasur
     Raises
     ------
     PlotError
-        If it cannot be read.
+        If it cannot be read, or the curves are over the level of the forces.
     """
+    from fcm.plot.read import LEVEL
     from fcm.scene.files import DataFileError, Files
     from fcm.scene.measured_file import read_measured
     from fcm.scene.measured_function import displacements, function_of_table
 
+    if unit == LEVEL:
+        raise PlotError(
+            f"{path}: measured points are over frequency, the curves over the level of the forces"
+        )
     try:
         read = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), ())
         found, function, of_head = read.columns, read.function, read.units.get("amplitude", "")

@@ -10,6 +10,7 @@ class ReadOptions(Frozen):
 
     dofs_named: int = 12  # most degrees of freedom that a message names
     contacts_named: int = 10  # most contacts that a message lists
+    values_named: int = 6  # most values of a swept quantity that a message lists
     # relative difference of levels, and of places along a curve, up to which they are the same
     same_level: float = 1e-9
     # ratio of the greatest damping to that at the ends of a mode, above which it lies between them

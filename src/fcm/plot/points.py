@@ -12,8 +12,9 @@ import numpy.typing as npt
 from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label
-from fcm.plot.read import DrawnCurve, DrawnResponse, opened_response, response_in
+from fcm.plot.labels import short_names
+from fcm.plot.options import READ
+from fcm.plot.read import LEVEL, DrawnCurve, DrawnResponse, opened_response, response_in
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
 
@@ -55,16 +56,23 @@ def draw_points(
     Raises
     ------
     PlotError
-        If the points are of other degrees of freedom, or of other curves.
+        If the points are of other degrees of freedom, of other curves, or over the other axis.
     """
     theirs = points.response
+    if (theirs.frequency_unit == LEVEL) != (unit == LEVEL):
+        over = ("frequency", "the level of the forces")
+        ours = over[unit == LEVEL]
+        raise PlotError(
+            f"the curves are over {ours}, the points over {over[unit != LEVEL]}; "
+            f"--points takes points over {ours}"
+        )
     column, factor = (
         column_of(theirs.dofs, dof, "the points have"),
         frequency_factor(theirs.frequency_unit, unit),
     )
     several = len(curves) > 1
     for curve, sweep in zip(theirs.curves, points.sweeps, strict=True):
-        number = _match(curve, curves)
+        number = match(curve.parameters, [one.parameters for one in curves], "points")
         for way in (way for way in MARKERS if way in sweep):
             chosen = np.flatnonzero((sweep == way) & np.isfinite(curve.frequency))
             if not way:
@@ -100,14 +108,33 @@ def frequency_factor(theirs: str, ours: str) -> float:
     return units.get(theirs, 1.0) / units.get(ours, 1.0)
 
 
-def _match(points: DrawnCurve, curves: Sequence[DrawnCurve]) -> int:
-    """Number of the curve that has the parameters of the points."""
-    if len(curves) == 1 and not (points.parameters and curves[0].parameters):
+def match(own: Mapping[str, float], curves: Sequence[Mapping[str, float]], what: str) -> int:
+    """Number of the first curve that has the swept values of points or of a mode.
+
+    Raises
+    ------
+    PlotError
+        If none has. A curve alone is theirs, too, where it or they are of a scene without a sweep.
+    """
+    if len(curves) == 1 and not (own and curves[0]):
         return 0
-    for number, curve in enumerate(curves):
-        if same_parameters(points.parameters, curve.parameters):
+    for number, values in enumerate(curves):
+        if same_parameters(own, values):
             return number
-    raise PlotError(f"no curve of the file is that of the points with {curve_label(points.parameters)}")
+    names = short_names(own)
+    told = ", ".join(f"{names[key]} = {value:.6g}" for key, value in own.items())
+    theirs = f"with {told}" if told else "of a scene without a sweep"
+    raise PlotError(f"no curve of the file is that of the {what} {theirs}; the curves have {_swept(curves)}")
+
+
+def _swept(curves: Sequence[Mapping[str, float]]) -> str:
+    """The values of each swept quantity, of many the first."""
+    told = []
+    for key, name in short_names(curves[0]).items():
+        values = list(dict.fromkeys(f"{values[key]:.6g}" for values in curves))
+        more = ", ..." * (len(values) > READ.values_named)
+        told.append(f"{name} = {', '.join(values[: READ.values_named])}{more}")
+    return "; ".join(told) or "no swept values"
 
 
 def same_parameters(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
