@@ -40,6 +40,10 @@ def test_measured_points_beyond_are_left_out_and_only_ends_within_have_a_cross()
 def test_a_window_that_shows_nothing_is_refused(tmp_path):
     with pytest.raises(PlotError, match="7 to 8 shows nothing; the curves go from 1 to 5"):
         within(response(), (7.0, 8.0))
+    with pytest.raises(
+        PlotError, match="nothing: no point lies between those at 2.5 and 3; take a wider one"
+    ):
+        within(response(), (2.6, 2.61))
     path = tmp_path / "n5.nc"
     assert called("respond", "yang1998-n5", "--harmonics", 1, "-o", path).code == 0
     for options, said in (

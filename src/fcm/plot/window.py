@@ -29,6 +29,11 @@ def within(response: DrawnResponse, window: Window) -> DrawnResponse:
         unit = response.frequency_unit  # or "level", which has none
         last = f"{there.max():g}" + ("" if unit == LEVEL else f" {unit}") if there.size else ""
         ends = f"; the curves go from {there.min():g} to {last}" if last else ""
+        before, after = there[there < low], there[there > high]
+        if before.size and after.size:
+            ends = (
+                f": no point lies between those at {before.max():.9g} and {after.min():.9g}; take a wider one"
+            )
         raise PlotError(f"the window {low:g} to {high:g} shows nothing{ends}")
     measured = tuple(
         replace(
