@@ -108,7 +108,7 @@ def test_points_over_frequency_are_not_drawn_over_levels(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("frequency,amplitude\n1,2\n")
     with pytest.raises(
-        PlotError, match="a.csv: measured points are over frequency, the curves over the level"
+        PlotError, match=r"a\.csv: measured points are over frequency, the curves over the level"
     ):
         read_measured_points(path, "level")
 

@@ -155,3 +155,17 @@ def test_too_many_curves_are_refused(path):
     history = read_history(path)
     with pytest.raises(PlotError, match="choose at most 6"):
         draw_history(replace(history, motions=history.motions[:1] * 7))
+
+
+def test_the_axis_has_the_unit_and_the_power_and_the_dof_is_one_that_the_scene_asks_for(path):
+    """The power of ten stood on a number of the axis above."""
+    with netCDF4.Dataset(path, "a") as data:
+        data.output = '["root"]'
+        data["displacement"].units = "m"
+        for name in ("cycle_least", "cycle_greatest", "cycle_mean"):
+            data[name][...] = 1e-4 * data[name][...]
+    history = read_history(path)
+    assert history.dof == "root" and read_history(path, "tip").dof == "tip"
+    axes = draw_history(history).axes[0]
+    assert axes.get_ylabel().split("\n")[0] == "Displacement root ($10^{-4}$ m)"
+    assert "= 5" in axes.get_ylabel() and not axes.yaxis.get_offset_text().get_visible()

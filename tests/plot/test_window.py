@@ -41,7 +41,7 @@ def test_a_window_that_shows_nothing_is_refused(tmp_path):
     with pytest.raises(PlotError, match="7 to 8 shows nothing; the curves go from 1 to 5"):
         within(response(), (7.0, 8.0))
     with pytest.raises(
-        PlotError, match="nothing: no point lies between those at 2.5 and 3; take a wider one"
+        PlotError, match=r"nothing: no point lies between those at 2\.5 and 3; take a wider one"
     ):
         within(response(), (2.6, 2.61))
     path = tmp_path / "n5.nc"

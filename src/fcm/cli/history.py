@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 
 @click.command()
 @draws_file("-history.png")
-@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
+@click.option(
+    "--dof",
+    metavar="NAME",
+    help="The degree of freedom to draw.  [default: the first of the scene's output, or of all]",
+)
 @click.option(
     "--against", type=click.Choice(["cycles", "time"]), default="cycles", show_default=True,
     help="The axis: cycles of the force, or time in s.",

@@ -8,9 +8,10 @@ import numpy as np
 
 from fcm.plot.errors import PlotError
 from fcm.plot.history_file import DrawnHistory, DrawnMotion
-from fcm.plot.labels import curve_label, frequency_label, plain
+from fcm.plot.labels import curve_label, frequency_label, plain, power_to_label, with_unit
 from fcm.plot.read import FloatArray
 from fcm.plot.style import LAYOUT, house_style, new_figure
+from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,13 +43,17 @@ def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
             axes.margins(y=0.05)
             axes.set_xlim(shown)
             axes.minorticks_on()
-            named = curve_label(motion.parameters, units=history.units)
-            name = plain(f"Displacement {history.dof}")
-            axes.set_ylabel("\n".join(filter(None, (name, *named.split(", ")))))
+            name = plain(with_unit(f"Displacement {history.dof}", unit_of(history.dof, history.length)))
+            axes.set_ylabel(name)
         panels[-1].set_xlabel("Time (s)" if history.axis == "time" else "Cycles")
         _name_phases(panels[0], history, shown)
         if handles := max((axes.get_legend_handles_labels()[0] for axes in panels), key=len):
             figure.legend(handles=handles, loc="outside lower center", ncols=2)
+        figure.draw_without_rendering()
+        for axes, motion in zip(panels, motions, strict=True):
+            power_to_label(axes.yaxis)
+            named = curve_label(motion.parameters, units=history.units)
+            axes.set_ylabel("\n".join(filter(None, (axes.get_ylabel(), *named.split(", ")))))
     return figure
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fcm.frozen import Frozen
-from fcm.plot.dof import column_of
+from fcm.plot.dof import asked_for, column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
@@ -42,14 +42,19 @@ class DrawnHistory(Frozen):
     boundaries: FloatArray  # (phase + 1,) where the phases begin and the last one ends
     motions: tuple[DrawnMotion, ...]
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
+    length: str = ""  # unit of displacements, if the file says it
 
 
 @apart
 def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> DrawnHistory:
-    """Read the motion that ``fcm respond -o`` has written; PlotError if the file has none."""
+    """Read the motion that ``fcm respond -o`` has written; PlotError if the file has none.
+
+    Without a degree of freedom it is that of the first of the scene's output, or of the first.
+    """
     with opened(path, "the file of a scene with a schedule", _NEEDED) as data:
         dofs = [str(name) for name in np.atleast_1d(data["dof"][:])]
-        column = column_of(dofs, dof)
+        asked = asked_for(getattr(data, "output", ""), dofs)
+        column = column_of(dofs, dof or next(iter(asked), None))
         boundaries, edges = _edges(data, axis)
         swept = swept_values(data.variables)
         motions = tuple(
@@ -59,9 +64,10 @@ def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> Dr
         unit = str(getattr(data, "frequency_unit", "rad/s"))
         frequency = floats(data["schedule_frequency"])
         units = swept_units(data.variables, swept)
+        length = str(getattr(data["displacement"], "units", ""))
     if not any(motion.least.size for motion in motions):
         raise PlotError(f"{path}: holds no cycle of the schedule")
-    return DrawnHistory(axis, dofs[column], unit, frequency, boundaries, motions, units)
+    return DrawnHistory(axis, dofs[column], unit, frequency, boundaries, motions, units, length)
 
 
 def _edges(data: Any, axis: str) -> tuple[FloatArray, FloatArray]:
