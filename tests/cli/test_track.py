@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import netCDF4
@@ -152,6 +153,22 @@ def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():
     track = DrawnTrack("peak of u", number, number, heights, none, none, none + 1.0)
     upper = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", (track,))).axes[0]
     assert upper.get_yscale() == "log" and upper.get_ylabel() == "Peak amplitude of u"
+
+
+def test_onsets_are_called_so_with_what_they_are_of_and_the_dof_is_one_that_the_scene_asks_for():
+    """They were called peaks, of the first degree of freedom without its name."""
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    both = np.column_stack((number, 3.0 * number))
+    tracks = [
+        DrawnTrack(f"slip of {c}", number, number, both, none, none, none + 1.0) for c in ("tip", "mid")
+    ]
+    drawn = DrawnTracking("level", ("u", "v"), "Hz", tuple(tracks), length="mm", asked=("v",))
+    upper, lower = draw_tracked(drawn).axes[:2]
+    assert upper.get_ylabel() == "Amplitude of v (mm)" and lower.get_ylabel() == "Frequency $f$ (Hz)"
+    assert upper.get_title("left") == "at the onset of slip"
+    assert upper.lines[0].get_ydata().tolist() == (3.0 * number).tolist()
+    one = draw_tracked(replace(drawn, tracks=drawn.tracks[:1]), "u").axes[0]
+    assert one.get_title("left") == "at the onset of slip of tip" and "of u" in one.get_ylabel()
 
 
 def test_a_gap_in_a_tracked_peak_is_explained():

@@ -11,7 +11,7 @@ import numpy as np
 
 from fcm.frozen import Frozen
 from fcm.plot.curve_names import name_at_side
-from fcm.plot.dof import column_of
+from fcm.plot.dof import asked_for, column_of, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
 from fcm.plot.options import READ
@@ -75,6 +75,7 @@ class DrawnTracking(Frozen):
     at_bound: bool = False  # whether the optimum is at an end of the range of the number
     tried: FloatArray = field(default_factory=lambda: np.empty((0, 2)))  # (value, 2) number, and peak there
     swept: Mapping[str, str] = field(default_factory=dict)  # keys of what was swept, with their units
+    asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
 
 
 @apart
@@ -109,9 +110,10 @@ def read_tracked(path: Path) -> DrawnTracking | None:
                 higher = float(floats(variables["optimum_higher_peak"])[0])
                 stays += f" (and one of {higher:.4g} that was not followed)"
         kind = np.atleast_1d(variables["optimum_kind"][:]).tolist() if "optimum_kind" in variables else []
+        dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
         return DrawnTracking(
             str(getattr(variables["tracked_number"], "key", "")),
-            tuple(str(name) for name in np.atleast_1d(variables["dof"][:])),
+            dofs,
             str(getattr(data, "frequency_unit", "rad/s")),
             tuple(tracks),
             optimum,
@@ -121,6 +123,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             kind == ["bound"],
             _tried(data) if optimum else np.empty((0, 2)),
             {str(one.key): str(getattr(one, "units", "")) for one in of_sweep},
+            asked_for(getattr(data, "output", ""), dofs),
         )
 
 
@@ -145,7 +148,7 @@ def _stays(variables: Any) -> str:
 
 
 def draw_tracked(drawn: DrawnTracking, dof: str | None = None, folds: bool = False) -> Figure:
-    """Folds: their frequencies with the window between them shaded; peaks: height and frequency."""
+    """Folds: their frequencies with the window between them shaded; peaks or onsets: height and frequency."""
     is_fold = [track.what == "fold" for track in drawn.tracks]
     if folds and not any(is_fold):
         raise PlotError("the file holds no folds that were tracked; run fcm respond with --track folds")
@@ -208,6 +211,10 @@ def _ends(track: DrawnTrack) -> tuple[float, float]:
 def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
     dof = None if dof is None else drawn.dofs[column_of(drawn.dofs, dof)]
     peaks = [one for one in drawn.tracks if one.what.startswith("peak of ")] or list(drawn.tracks)
+    onsets = not any(one.what.startswith("peak of ") for one in peaks)
+    if onsets:  # which are of contacts
+        heights_of = np.concatenate([one.amplitude for one in peaks])
+        dof = drawn.dofs[leading_column(drawn.dofs, dof, heights_of, drawn.asked)]
     if of_sweep := _colours_of_sweep(peaks):  # which take the colours, so that it is one degree of freedom
         dof = dof or peaks[0].what.removeprefix("peak of ")
     wanted = [one for one in peaks if dof is None or one.what == f"peak of {dof}"] or peaks
@@ -215,6 +222,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
+        unnamed = list(names)
         # thicker below thinner: peaks that are nearly equal would hide one another
         widths = {name: _WIDTH + _BELOW * k for k, name in enumerate(reversed(names))}
         colours = (
@@ -228,8 +236,8 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
             ends = height[track.trough != 1.0]
             heights += [] if ends.size == 0 else [float(ends.min()), float(ends.max())]
-            label = track.what if track.what in names else None  # once for all its curves
-            names = [one for one in names if one != label]
+            label = track.what if track.what in unnamed else None  # once for all its curves
+            unnamed = [one for one in unnamed if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
                 _line(axes, track, values, colours[id(track)], text, widths[track.what])
         tried = len(drawn.tried) > 0 and len(wanted) == len(peaks)  # of several peaks they are the greatest
@@ -239,12 +247,18 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
         one = of_one.pop() if len(of_one) == 1 else ""
         unit = unit_of(one, drawn.length) if one else drawn.length
-        height_label = with_unit(f"Peak amplitude of {one}" if one else "Peak amplitude", unit)
-        upper.set_ylabel(height_label, parse_math=False)
-        lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
+        height_called, frequency_called = "Peak amplitude", "Peak frequency"
+        if onsets:
+            height_called, frequency_called = "Amplitude", "Frequency"
+            kinds = names if len(names) == 1 else dict.fromkeys(name.partition(" of ")[0] for name in names)
+            title = f"at the onset of {' and '.join(kinds)}"
+            upper.set_title(title, loc="left", fontsize=8, parse_math=False)
+        named = f"{height_called} of {one}" if one else height_called
+        upper.set_ylabel(with_unit(named, unit), parse_math=False)
+        lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", frequency_called))
         if heights and has_decades(heights):
             logarithmic_axis(upper)
-        if len({track.what for track in wanted}) > 1:
+        if len(names) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
         _name_swept(figure, drawn, of_sweep)
         _name_lines(lower, wanted, tried)
