@@ -198,7 +198,8 @@ def test_marks_of_a_mode_are_named_and_resonances_are_said_to_be_estimates():
     one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, damping, error, ((4.0, 2.0, 9.06),))
     marks = ["greatest damping", "below: error by harmonics left out"]
     assert legend_of(draw_modes(DrawnModes("", "Hz", (one,)))) == [
-        "resonance with the scene's forces, an estimate as if the mode alone answered",
+        "resonance with the scene's forces, an estimate as if the mode alone answered:\n"
+        "damping puts it below the frequency of the mode",
         *marks,
     ]
     assert legend_of(draw_modes(DrawnModes("", "Hz", (replace(one, resonances=()),)))) == marks

@@ -41,7 +41,10 @@ _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
 _ERROR, _STEADY = "truncation_error", "steady_state"
 _LOST = "no steady state"  # what is dotted
 _PERCENT = 100.0
-ESTIMATE = "resonance with the scene's forces, an estimate as if the mode alone answered"
+ESTIMATE = (
+    "resonance with the scene's forces, an estimate as if the mode alone answered:\n"
+    "damping puts it below the frequency of the mode"
+)
 _GREATEST = "greatest damping"
 _DIAMOND: dict[str, Any] = {"marker": "D", "color": "black", "markersize": 4.0}
 _RING: dict[str, Any] = {"marker": "o", "markersize": 6, "markerfacecolor": "none", "markeredgewidth": 1.0}

@@ -301,8 +301,11 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     """A ring around the least peak of all, a thin line down to its frequency, and its values above.
 
     What is greatest at an end of the range of frequencies is no peak. At an end of what was swept it is no
-    minimum: a lower one may lie beyond, or between it and the next value.
+    minimum: a lower one may lie beyond, or between it and the next value. Over the level of the forces there
+    is none to choose.
     """
+    if key == EXCITED:
+        return
     at_end = np.zeros_like(known) if peaks.at_end is None else peaks.at_end[:, column]
     found = least_peak(peaks.amplitude[:, column], peaks.parameters[key], known, at_end)
     if found is None:
@@ -316,7 +319,7 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     what = "peak" if peaks.damping is None else "resonance"
     height = f"{y:.4g} {unit_of(peaks.dofs[column], peaks.length)}".rstrip()
     said = f"least {what} {height}{stays} at {where}"
-    if key not in (*_WHOLE, EXCITED) and found.at_end_of_sweep:
+    if key not in _WHOLE and found.at_end_of_sweep:
         (symbol,) = symbols([key])
         said += f"\nan end of the sweep of {symbol}: less may be beyond, or before the next value"
     panels[0].set_title(said, loc="right", fontsize=8, color=_MARK)
