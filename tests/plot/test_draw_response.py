@@ -9,7 +9,7 @@ from matplotlib.text import Annotation
 
 from fcm.plot import DrawnCurve, DrawnResponse, PlotError, draw_response, save
 from fcm.plot.measured import DrawnMeasured, FittedNumber
-from fcm.plot.points import DrawnPoints
+from fcm.plot.points import NEUTRAL, DrawnPoints
 
 FREQUENCY = np.linspace(0.7, 1.7, 201)
 
@@ -268,6 +268,10 @@ def test_the_area_holds_the_largest_error_of_the_table():
         "below: error by harmonics left out",
         "below: error by the table (greatest)",
     ]  # fmt: skip
+    stands = [line.get_color() for line in figure.legends[0].get_lines()]
+    assert stands == [NEUTRAL]  # it had the colour of the first curve
+    alone = draw_response(response(curves[0]))
+    assert alone.legends[0].get_lines()[0].get_color() == alone.axes[0].get_lines()[0].get_color()
 
 
 def test_the_area_is_not_drawn_between_branches():

@@ -55,7 +55,7 @@ def together(count: int) -> bool:
 def name_errors(
     figure: Figure,
     curves: Sequence[DrawnCurve],
-    colours: Sequence[str],
+    colour: str,
     width: float,
     notes: Mapping[str, Line2D],
 ) -> None:
@@ -66,7 +66,7 @@ def name_errors(
     names: dict[str, Line2D | Patch] = {**notes}
     one = together(len(curves))
     names["below: error by harmonics left out" + " (greatest)" * one] = Line2D(
-        [], [], color="black" if one else colours[0], linewidth=_WIDTH if one else width
+        [], [], color="black" if one else colour, linewidth=_WIDTH if one else width
     )
     if (_largest(curves, [curve.table_error for curve in curves])[1] > 0.0).any():
         of_all = " (greatest)" if len(curves) > 1 else ""

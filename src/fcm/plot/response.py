@@ -16,7 +16,7 @@ from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols
 from fcm.plot.measured import as_measured, draw_measured, name_measured
-from fcm.plot.points import DrawnPoints, draw_points, names_of_points
+from fcm.plot.points import NEUTRAL, DrawnPoints, draw_points, names_of_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, wide
 from fcm.plot.style import (
     DOTS,
@@ -106,11 +106,12 @@ def draw_response(
             draw_errors(below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        notes = of_blades | _notes(axes, curves, column, colours[0], width)
+        look = colours[0] if len(set(colours)) == 1 else NEUTRAL  # of what stands for all curves
+        notes = of_blades | _notes(axes, curves, column, look, width)
         if backbone is not None:
             notes[BACKBONE] = draw_backbone(axes, backbone, response, column, curves, colours)
         if below is not None:
-            name_errors(figure, curves, colours, width, notes)
+            name_errors(figure, curves, look, width, notes)
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
         # last: whether there is room at the peaks hangs on how high the axes have become
