@@ -53,6 +53,12 @@ def test_the_picture_has_the_references_own_error_in_view(file):
         low, high = axes.get_ylim()
         assert low < 1e-8 and 1e-3 < high
         assert any("error of the reference" in text.get_text() for text in axes.texts)
+    figure.draw_without_rendering()
+    for axes in figure.axes:  # no arrow lies over the name
+        (name,) = (one for one in axes.texts if one.get_text())
+        low = axes.get_window_extent().y0
+        line = axes.transData.transform((1.0, 1e-8))[1]
+        assert low <= name.get_window_extent().y0 and name.get_window_extent().y1 < line
     above, below = figure.axes
     assert len(above.texts) == len(below.texts) + 1  # the arrow of the exact motion's limit
     assert figure.get_size_inches()[0] <= 3.4

@@ -12,7 +12,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.read import opened, read
 from fcm.plot.reader_process import apart
-from fcm.plot.style import house_style, new_figure, plain_ticks
+from fcm.plot.style import LAYOUT, house_style, new_figure, plain_ticks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -150,11 +150,12 @@ def _draw_panel(axes: Axes, panel: AccuracyPanel) -> None:
     if panel.own_error:
         axes.axhline(panel.own_error, color="0.35", linestyle=":", linewidth=1.0)
         axes.annotate(
-            f"error of the reference, {_power(panel.own_error)}", (0.98, panel.own_error), (0, 2),
+            f"error of the reference, {_power(panel.own_error)}", (0.98, panel.own_error), (0, -2),
             xycoords=("axes fraction", "data"), textcoords="offset points",
-            ha="right", va="bottom", fontsize=7, color="0.35",
+            ha="right", va="top", fontsize=7, color="0.35",
         )  # fmt: skip
-        axes.set_ylim(bottom=panel.own_error / 2.0)
+        room = (axes.get_ylim()[1] / panel.own_error) ** LAYOUT.below_reference
+        axes.set_ylim(bottom=panel.own_error / max(room, 2.0))  # the text stands below, the arrows above
     plain_ticks(axes.xaxis, 300.0)
 
 

@@ -42,6 +42,7 @@ class Layout(Frozen):
     plane_alone: float = 1.4  # height of a picture of one panel, relative to that of a row of two
     band_opacity: float = 0.28  # of a band, so that those of several curves are seen through one another
     doubtful_opacity: float = 0.3  # of a stretch of a curve whose error is large
+    below_reference: float = 0.14  # decades below the error of a reference, where it is named, of those above
     doubtful_error: float = 0.2  # estimated error beyond which a curve is faded
     # of its frequency: a stretch whose error is not known, as far as a fold may be moved
     fold_width: float = 1e-2
