@@ -14,7 +14,7 @@ from fcm.cli.curves import as_table
 from fcm.harmonic_balance.system import System
 from fcm.plot.campbell import DrawnRing, draw_campbell, folded
 from fcm.response.request import ResponseError
-from fcm.scene import SceneError, scene_from_dict
+from fcm.scene import SceneError, load_scene, scene_from_dict
 from fcm.stability.options import StabilityOptions, StructureOptions
 from fcm.stability.ring_multipliers import stability_unknown
 
@@ -169,7 +169,8 @@ def test_sectors_that_nothing_joins_are_asked_about(coupled, contact, asked):
 def test_campbell_in_numbers():
     code, out, err = called("plot", "campbell", "bladed-disk", "--json")
     found = json.loads(out)
-    assert code == 0 and "stability is that of disturbances of the same travelling wave" in err
+    assert code == 0 and "stability" not in err  # a list of frequencies has none
+    assert any("disturbances of the same travelling wave" in one for one in load_scene("bladed-disk").notes)
     (order,) = found["engine_orders"]
     assert order["nodal_diameters"] == [0, 3, 6, 9, 12, 9, 6, 3, 0, 3, 6] and order["speeds"] == [60.0, 80.0]
     assert found["diameters"][2]["open"][0] == pytest.approx(189.3018526, rel=1e-9)

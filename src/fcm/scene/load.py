@@ -158,7 +158,7 @@ def scene_from_dict(
     fields = _read(top, files, _Reading(every_row, solved))
     mistakes.raise_if_any()
     try:
-        scene = _made(name, fields, notices)
+        scene = _made(name, fields, notices, solved)
     except MistuningError as error:
         mistakes.add(MISTUNING, str(error))
         mistakes.raise_if_any()
@@ -229,13 +229,13 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     }
 
 
-def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None) -> Scene:
+def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None, solved: bool) -> Scene:
     """The scene of what was read without a mistake, with its curves and all that is to be said of it."""
     draft: Draft = fields["draft"]
     modal, ring = modes_of(draft.parts, fields["frequency_unit"])
     scene = Scene(
         name=name,
-        tuned=_tuned(name, fields),
+        tuned=_tuned(name, fields, solved),
         modal=modal,
         ring=ring,
         contacts=tuple(map(contact_of, draft.parts["contact"])),
@@ -252,7 +252,7 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None) -> Sce
         notes=(
             *scene.notes,
             *_notes_of_modes(scene),
-            *note_of_stability(scene),
+            *(note_of_stability(scene) if solved else ()),
             *question_of_joints(scene),
             *note_of_harmonics(scene.forces),
             *note_of_start(scene),
@@ -290,7 +290,7 @@ def _notes_of_modes(scene: Scene) -> list[str]:
     return notes_of_modes(scene) if scene.ring is None else notes_of_diameters(scene)
 
 
-def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:
+def _tuned(name: str, fields: dict[str, Any], solved: bool) -> Scene | None:
     """The tuned ring beside a mistuned one, as a scene of one sector."""
     draft: Draft = fields["draft"]
     if not draft.parts.get("whole"):
@@ -299,7 +299,7 @@ def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:
     of_sector = Draft(whole["tuned"], tuned_sweep(whole["tuned"], draft.swept))
     nothing = {"notes": (), "read": (), "optimum": None, "fit": None}
     of_tuned = {"draft": of_sector, "reported": whole["reported"], "output": whole["output"]}
-    return _made(name, fields | nothing | of_tuned, None)
+    return _made(name, fields | nothing | of_tuned, None, solved)
 
 
 def _parts(
