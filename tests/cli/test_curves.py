@@ -369,7 +369,7 @@ def test_units_and_edges_reach_table_and_files(fcm, tmp_path, end, edge):
     run = fcm("respond", "s.toml", "-o", "s.nc", "--csv", "s.csv", "--method", "closed-form")
     assert run.code == 0 and "peak u [mm]" in run.out
     assert ("* at an end of the range" in run.out) == edge
-    assert "amplitude u [mm]" in (tmp_path / "s.csv").read_text().splitlines()[0]
+    assert "amplitude u [mm],phase u [rad]," in (tmp_path / "s.csv").read_text().splitlines()[0]
     with netCDF4.Dataset(tmp_path / "s.nc") as file:
         assert file["amplitude"].units == file["peak_amplitude"].units == "mm"
         assert file["spring_force"].units == "N"

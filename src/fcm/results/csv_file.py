@@ -82,7 +82,8 @@ def _columns(response: Response, dofs: Sequence[str]) -> list[str]:
         columns += ["modal_amplitude", "damping_ratio"]
     for dof in dofs:
         own = unit_of(dof, response.units[0])
-        units = {kind: f" [{own}]" if own and kind not in ("phase", *ERRORS) else "" for kind in kinds}
+        units = {kind: f" [{own}]" if own and kind not in ERRORS else "" for kind in kinds}
+        units["phase"] = " [rad]"
         columns += [f"{kind} {dof}{units[kind]}" for kind in kinds]
     columns += [f"regime {name}" for name in response.contacts]
     work = " ".join(reversed(response.units)) if all(response.units) else ""
