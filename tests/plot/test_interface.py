@@ -10,6 +10,7 @@ import pytest
 
 from fcm.plot import PlotError
 from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
+from fcm.plot.solutions import solutions_at
 
 from ..harmonic_balance.strips import strip
 from ..program import called
@@ -416,3 +417,15 @@ def test_the_list_has_units_and_places(file, tmp_path):
     for row in greatest_takers(read, top, 5):
         i = read.contacts.index(row[0])
         assert row[-1] == f"{2 * i}, {2 * i + 1}"
+
+
+def test_solutions_are_the_nearer_ends_of_all_pieces_that_pass_a_place_greatest_first():
+    along = np.array([1.0, 2.0, 3.0, 2.4, 1.6, 1.5, 2.6, np.nan, 5.0, np.nan, 2.0])
+    amplitude = np.array([1.0, 2.0, 9.0, 5.0, 3.0, 3.5, 4.0, np.nan, 1.0, np.nan, 2.0])
+    found = solutions_at(along, 2.1, amplitude)
+    assert [(one.point, str(one)) for one in found] == [(3, "1 of 3"), (6, "2 of 3"), (1, "3 of 3")]
+    assert solutions_at(along, 2.1, amplitude, 2) == found[1:2]
+    (alone,) = solutions_at(along, 4.8, amplitude)  # beside a gap
+    assert alone.point == 8 and str(alone) == ""
+    with pytest.raises(PlotError, match=r"--solution 2: the curve has 1 solution at 5$"):
+        solutions_at(along, 5.0, amplitude, 2)

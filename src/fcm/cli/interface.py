@@ -30,7 +30,8 @@ OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file'
 @draws_file("-contacts.png", page=True)
 @click.option(
     "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
-    help="The frequency, in the file's unit, or the level; several make a film strip, as do solutions.  "
+    help="The frequency, in the file's unit, or the level; several make a film strip. On a folded curve all "
+    "solutions there are drawn.  "
     "[default: of the greatest peak of the scene's output]",
 )  # fmt: skip
 @click.option(
