@@ -1,5 +1,6 @@
 """Curves of special points against ordinary runs at several values of the number, and against similarity."""
 
+import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -17,7 +18,7 @@ from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise
-from fcm.response.options import ResponseOptions
+from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.track import TrackRequest, track
 from fcm.results.output import write_netcdf
 from fcm.run import Execution
@@ -34,7 +35,9 @@ from fcm.tracking.peak_envelope import EnvelopeMinimum, PieceHeight
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 from ..interrupted import interrupted_beyond
+from ..oscillator import oscillator
 
+TEXT = oscillator("[response]\nfrequency = [0.8, 1.6]\n", damping=0.05)
 PRELOAD = "contact.shroud.n_0"
 
 
@@ -488,3 +491,29 @@ def test_where_a_fold_of_the_level_is_lost_tracked_curves_are_not_said_to_be_all
     (middle,) = {omega for _, omega in uncertain_at}
     assert middle == pytest.approx(1.20695, abs=1e-5)
     assert all(4.0 <= value <= 6.0 for value, _ in uncertain_at)
+
+
+def test_peaks_of_output_alone_are_tracked_where_it_is_given(scene):
+    """Peaks of all degrees of freedom were, of which some are not asked for and end early."""
+    asked = TrackRequest("peaks", PRELOAD, (4.0, 5.0))
+    every = track(scene, asked, harmonics=1).tracking.curves
+    asked_for = scene_from_dict(tomllib.loads(TEXT.replace("[response]", '[response]\noutput = ["v"]')))
+    some = track(asked_for, asked, harmonics=1)
+    assert {one.what for one in every} == {"peak of u", "peak of v"}
+    assert {one.what for one in some.tracking.curves} == {"peak of v"} and not some.left_out
+
+
+def test_peaks_of_output_are_tracked_though_other_degrees_of_freedom_are_many():
+    """Those of which modes move most were, and that was said to be chosen by output."""
+    count = OPTIMUM.max_dofs + 5
+    dofs = [f"{node}x" for node in range(count)]
+    shapes = [[1.0] * count, np.linspace(1.0, -2.0, count).tolist()]
+    modal = {"dofs": dofs, "frequency": [1.0, 10.0], "damping": 0.05, "shapes": shapes}
+    contact = {"name": "a", "tangential": "0x", "normal": "1x", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
+    force, response = [{"dof": "0x", "amplitude": 1.0}], {"frequency": [0.5, 2.5]}
+    data = {"modal": modal, "contact": [contact], "force": force, "response": response}
+    asked = TrackRequest("peaks", "contact.a.n_0", (4.0, 4.2))
+    leading = track(scene_from_dict(data), asked, harmonics=1)
+    assert "[response] output chooses" in leading.left_out[0]
+    chosen = track(scene_from_dict(data | {"response": response | {"output": ["7x"]}}), asked, harmonics=1)
+    assert {one.what for one in chosen.tracking.curves} == {"peak of 7x"} and not chosen.left_out

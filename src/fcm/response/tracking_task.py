@@ -127,11 +127,13 @@ class _SavedSteps:
 
 
 def conditions_of(scene: Scene, what: str) -> list[Condition]:
-    """Conditions that are tracked: for peaks, of every degree of freedom; for onsets, of every contact."""
+    """Conditions that are tracked: of peaks at what is asked for, of onsets at every contact."""
     if what == "folds":
         return [Condition(Kind.FOLD)]
     if what == "peaks":
-        return [Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if scene.reports(name)]
+        return [
+            Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if scene.asks_for(name)
+        ]
     assert what in ONSETS
     return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
 
