@@ -327,6 +327,36 @@ def test_no_peak_in_the_range_is_said(fcm, optimum):
     optimum.write_text(optimum.read_text().replace("[0.8, 1.6]", "[0.3, 0.4]"))
     done = fcm("respond", optimum, "--harmonics", "1")
     assert done.code == 2 and "no peak inside the range" in done.err
+@pytest.mark.parametrize(
+    ("frequency", "vary", "bounds", "said"),
+    [
+        (
+            1.0,
+            "modal.frequency.0",
+            "0, 2",
+            "at one end of modal.frequency.0 the structure has more rigid-body",
+        ),
+        (
+            0.0,
+            "modal.frequency.1",
+            "9, 11",
+            "modal.frequency.1 changes the rigid-body motions of the structure",
+        ),
+        (0.0, "contact.shroud.k_v", "0, 2", "at 0 contact.shroud.k_v changes the rigid-body motions"),
+    ],
+)
+def test_a_number_that_changes_rigid_body_motions_is_refused(fcm, scene, frequency, vary, bounds, said):
+    """They ended as a defect, after a while."""
+    text = scene.read_text().replace("frequency = [1.0, 10.0]", f"frequency = [{frequency}, 10.0]")
+    scene.write_text(f'{text}[optimum]\nvary = "{vary}"\nbounds = [[{bounds}]]\nminimise = "peak.u"\n')
+    done = fcm("respond", scene, "--harmonics", "1")
+    assert done.code == 2 and said in done.err and "optimum: bounds" in done.err
+    ends = bounds.split(", ")
+    track = ("--track", "peaks", "--over", vary, "--from", ends[0], "--to", ends[1])
+    done = fcm("respond", scene, "--harmonics", "1", *track)
+    assert done.code == 2 and said in done.err and done.out == ""
+
+
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from fcm.response.least_peak import Found, PeakTask, still, with_values
 from fcm.response.nearly_least import nearly_least
 from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
+from fcm.response.rigid_limits import rigid_fault
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.response.tracking_task import STATES
@@ -57,7 +58,8 @@ def optimise(
     Raises
     ------
     ResponseError
-        If nothing has a peak in the range, or what is to be least does not move.
+        If nothing has a peak in the range, what is to be least does not move, or a number changes the
+        rigid-body motions.
     KeyboardInterrupt
         If nothing is found then; else what was least so far is returned, without a response.
     """
@@ -66,6 +68,9 @@ def optimise(
     refuse_own_laws(scene, "an optimum")
     begin = time.perf_counter()
     numbers, free = _freed(scene, scene.optimum.vary)
+    for number, bounds in zip(numbers, scene.optimum.bounds, strict=True):
+        if fault := rigid_fault(free, number, bounds):
+            raise ResponseError(f"optimum: bounds {bounds[0]:g} to {bounds[1]:g}: {fault}")
     request = request_of(scene, harmonics, accuracy, options)
     tasks = [PeakTask(curve, numbers, request.accuracy, request.options) for curve in free.each_curve()]
     with execution.checkpoint() as checkpoint:

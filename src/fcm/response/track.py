@@ -18,6 +18,7 @@ from fcm.response.accuracy_shortfall import remedy
 from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
+from fcm.response.rigid_limits import rigid_fault
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.tracking_task import KINDS, STATES, TrackedScene, TrackingTask
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
@@ -38,7 +39,6 @@ from fcm.run import (
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import Number, number_of
 from fcm.scene.errors import counted
-from fcm.structure.linear import linear_of
 from fcm.tracking.onset_functions import KINDS as ONSETS
 
 WHAT = ("folds", "peaks", *ONSETS)
@@ -218,19 +218,8 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
         raise SpanError(both, "too narrow to follow a curve through", digits=17)
     if number.key == LEVEL and low <= 0.0:
         raise SpanError({0: low}, "the level must be positive: at 0 nothing moves")
-    rigid = [int((linear_of(curve).natural == 0.0).sum()) for curve in _at_ends(scene, number, span)]
-    if len(set(rigid)) > 1:
-        fault = (
-            f"at one end of {number.key} the structure has more rigid-body motions than at the other. "
-            "What is tracked does not go on from there; leave that end out"
-        )
+    if fault := rigid_fault(number.freed(scene), number, span):
         raise SpanError(both, fault)
-
-
-def _at_ends(scene: Scene, number: Number, span: tuple[float, float]) -> list[Scene]:
-    """Scenes of the first curve with the number at both ends of a span."""
-    first = number.freed(scene).each_curve()[0]
-    return [number.put(first, value) for value in span]
 
 
 def needed(

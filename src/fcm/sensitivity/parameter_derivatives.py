@@ -228,17 +228,26 @@ def contact_numbers(scene: Scene) -> FloatArray:
     return np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]).reshape(-1, 4)
 
 
+_OF_LAW = ("mu", "k_u", "n_0", "gap")  # numbers of contacts that the structure's arrays do not have
+
+
+def changes_rigid_bodies(linear: Linear, number: Number, value: float) -> bool:
+    """Whether a number at a value changes the rigid-body motions, so that rates by it are not known."""
+    address = number.addresses[0]
+    of_modes = address[0] == "modal" and "damping" not in address
+    of_contacts = address[0] == "contact" and address[-1] not in _OF_LAW and not value
+    return bool((linear.natural == 0.0).any()) and (of_modes or of_contacts)
+
+
 def _linear(
     system: System, number: Number, value: float, options: SensitivityOptions = SENSITIVITY
 ) -> Iterator[tuple[str, npt.NDArray[np.inexact]]]:
     """Derivatives of the arrays of the structure."""
     kind, field = number.addresses[0][0], number.addresses[0][-1]
     rigid = bool((system.linear.natural == 0.0).any())
-    if (kind == "contact" and field in ("mu", "k_u", "n_0", "gap")) or (field == "k_v" and not rigid):
+    if (kind == "contact" and field in _OF_LAW) or (field == "k_v" and not rigid):
         return
-    if rigid and (
-        (kind == "modal" and "damping" not in number.addresses[0]) or (kind == "contact" and not value)
-    ):
+    if changes_rigid_bodies(system.linear, number, value):
         raise ValueError(f"{number.key} changes the rigid-body motions of the structure")
     step = options.number if field == "phase" else options.number * (abs(value) or 1.0)
     around = {k: linear_of(number.put(system.scene, value + k * step)) for k in (-3, -2, -1, 1, 2, 3)}
