@@ -69,6 +69,19 @@ def test_without_areas_it_is_said_that_numbers_are_of_each_pair():
 
 
 def test_a_gap_is_that_of_each_pair():
+@pytest.mark.parametrize("other", [PAIRS, {"name": "shroud", "tangential": "40x", "normal": "40z"}])
+def test_two_contacts_of_one_name_are_refused_where_one_has_pairs(other):
+    """A sweep of contact.shroud.n_0 took the single one alone, unsaid."""
+    message = refused([PAIRS | NUMBERS, other | NUMBERS])
+    assert message.count("a name must be there once") == 1
+    assert 'contact: 2 contacts are named "shroud"' in message
+
+
+def test_a_name_with_a_star_is_refused():
+    message = refused([PAIRS | NUMBERS | {"name": "*"}])
+    assert 'contact[0] "*".name: "*" has a *, which stands for any letters in keys' in message
+
+
     gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
     contacts = read([PAIRS | gap | {"areas": [1.0, 2.0]}]).contacts
     assert [contact.n_0 for contact in contacts] == pytest.approx([-0.1 * 2 / 3, -0.1 * 4 / 3])

@@ -95,7 +95,7 @@ def checked_names(section: Section, names: object) -> tuple[str, ...] | None:
     for index, name in enumerate(names):
         if not isinstance(name, str):
             section.wrong(f"dofs[{index}]", f"must be a string, is {kind(name)}")
-        elif fault := unfit_name(name):
+        elif fault := unfit_name(name) or starred(name):
             section.wrong(f"dofs[{index}]", fault)
     words = [name for name in names if isinstance(name, str)]
     for name, group in same_names(words):
@@ -120,6 +120,18 @@ def unfit_name(name: str) -> str:
         if size > LIMITS.longest_name
         else ""
     )
+
+
+def starred(name: str) -> str:
+    """Fault of a name that keys could not tell from several names; empty if there is none.
+
+    >>> starred("tip*"), starred("tip")
+    ('"tip*" has a *, which stands for any letters in keys such as contact.*.n_0; write it without', '')
+    """
+    if "*" not in name:
+        return ""
+    means = "which stands for any letters in keys such as contact.*.n_0"
+    return f"{quoted(name)} has a *, {means}; write it without"
 
 
 def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:

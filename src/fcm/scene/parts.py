@@ -14,7 +14,7 @@ from fcm.scene.direction_lengths import GivenDirections, of_dofs, questions_of_l
 from fcm.scene.errors import nearest, quoted, shown
 from fcm.scene.files import Files
 from fcm.scene.keys import names
-from fcm.scene.names import Names, same_names, unfit_name
+from fcm.scene.names import Names, same_names, starred, unfit_name
 from fcm.scene.node_pairs import (
     SHARED,
     along,
@@ -45,7 +45,10 @@ def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
     given: list[GivenDirections] = []
     drafts = [draft for section in sections for draft in _contacts(section, dofs, files, given)]
     files.noted.extend(questions_of_lengths(given))
-    for name, group in same_names(draft["name"] for draft in drafts if draft["name"]):
+    tables = [section.data.get("name") for section in sections]
+    again = same_names(name for name in tables if isinstance(name, str) and name)
+    # the pairs of tables with one name have the same names, which is not said of each
+    for name, group in again or same_names(draft["name"] for draft in drafts if draft["name"]):
         written = "" if len(set(group)) == 1 else " (in other Unicode characters)"
         top.wrong(
             "contact", f"{len(group)} contacts are named {quoted(name)}{written}; a name must be there once"
@@ -63,7 +66,7 @@ def _contacts(
     name = section.text("name")
     if name:
         section.path += f" {quoted(name)}"
-    if isinstance(section.data.get("name"), str) and (fault := unfit_name(name)):
+    if isinstance(section.data.get("name"), str) and (fault := unfit_name(name) or starred(name)):
         section.wrong("name", fault)
     section.only(*names("contact"))
     if "nodes" not in section.data:
