@@ -145,8 +145,9 @@ def _at_level_1(curves: Sequence[Curve], names: list[str], dofs: list[str], leng
     return f"{title}:\n" + DofTable(names, shown, ["{}", "error"], [], rows).text(last=0)
 
 
-def _peak_heads(unit: str) -> list[str]:
-    return ["peak {}", f"at {unit}", "error"]
+def _peak_heads(over: str) -> list[str]:
+    """Heads of columns of peaks on curves over the frequency, by its unit, or over the level."""
+    return ["peak {}", f"at {over}", "error"]
 
 
 def _error(peak: Mapping[str, Any]) -> str:
@@ -158,9 +159,9 @@ def _error(peak: Mapping[str, Any]) -> str:
 
 
 def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
-    """Amplitude, frequency and error, with their marks."""
+    """Amplitude, frequency, or level on a curve over it, and error, with their marks."""
     marks = (_EDGE if peak.get("at_edge") else "") + (_ISOLATED if peak.get("on_isolated_branch") else "")
-    at = number(peak.get("frequency")) + marks
+    at = number(peak["level"] if "level" in peak else peak.get("frequency")) + marks
     return [number(peak.get("amplitude")) + _mark_of(peak), at, _error(peak)]
 
 
@@ -332,19 +333,19 @@ def _curves(
     from fcm.results.result import NOT_BEGUN
 
     curves: Sequence[Curve] = summary["curves"]
-    least = 0.0 if "level_folds" in curves[0] else resolution_of(summary)
+    over = "level" if "level_folds" in curves[0] else unit
+    least = 0.0 if over == "level" else resolution_of(summary)
     folds_of = {id(curve): _seen_folds(curve, dofs, least) for curve in curves}
     judged = [curve for curve in curves if curve.get("cause") != "interrupted"]
     ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in judged)]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
-    folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
     begun = [curve for curve in curves if curve.get("reason") != NOT_BEGUN]
     broken = [""] if any(not curve["complete"] for curve in begun) else []
     table = DofTable(
         names,
         [_with_unit(dof, length) for dof in dofs],
-        [*_peak_heads(unit), *([_RESIDUAL] if ranges_of else [])],
-        [*balanced, "points", "time [s]", folds, *broken],
+        [*_peak_heads(over), *([_RESIDUAL] if ranges_of else [])],
+        [*balanced, "points", "time [s]", f"folds at {over}", *broken],
         [
             _curve_row(curve, folds_of[id(curve)], dofs, ranges_of, bool(balanced), bool(broken))
             for curve in begun
@@ -362,8 +363,9 @@ def _curves(
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
         lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
-        beyond = "beyond it the curve may rise further. fcm plot modes SCENE lists the resonances"
-        lines.append(f"{_EDGE} at an end of the range: {beyond}")
+        beyond = "beyond it the curve may rise further"
+        helps = ". fcm plot modes SCENE lists the resonances" if over == unit else ""
+        lines.append(f"{_EDGE} at an end of the range: {beyond}{helps}")
     lower = _lower_peaks(curves, dofs)
     highest = [curve["peak"].get(dof) or {} for curve in curves for dof in dofs]
     if any(peak.get("on_isolated_branch") for peak in [*highest, *lower]):
@@ -403,7 +405,7 @@ def _curves(
         ]
         lines += [_OF_THERE] if any(there) else []
         if not all(there):
-            lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNKNOWN)
+            lines.append(_UNKNOWN if over == unit else _OF_LEVELS)
     return "\n".join(lines)
 
 

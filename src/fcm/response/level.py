@@ -256,7 +256,14 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
     of_curve = {
         "peaks": {
-            dof: Peak(float(amplitude[i, d]), omega, float(error[i, d]), at_top[d], residual[d])
+            dof: Peak(
+                float(amplitude[i, d]),
+                omega,
+                float(error[i, d]),
+                at_top[d],
+                residual[d],
+                level=float(level[i]),
+            )
             for d, (dof, i) in enumerate(zip(system.scene.modal.dofs, tops, strict=True))
         },
         "level_folds": folds.tolist(),

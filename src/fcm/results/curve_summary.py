@@ -163,13 +163,17 @@ def _peak(curve: Curve, peak: Peak, extract: CurveExtract, unit: str) -> dict[st
         "stable": None if np.isnan(peak.stable) else bool(peak.stable),
         "at_edge": at_edge(curve, peak, extract),
         "residual_change": peak.residual,
+        **({} if curve.level is None else {"level": peak.level}),
     }
 
 
 def at_edge(curve: Curve, peak: Peak, extract: CurveExtract) -> bool:
-    """Whether a peak is where the range ends, so that it is none of the curve's own."""
-    moves = peak.amplitude > 0.0
-    return bool(moves and curve.complete and curve.level is None and peak.frequency in extract.ends)
+    """Whether a peak is where the range of frequencies, or of levels, ends: it is none of the curve's own."""
+    if not (peak.amplitude > 0.0 and curve.complete):
+        return False
+    if curve.level is None:
+        return peak.frequency in extract.ends
+    return peak.level in (np.nanmin(curve.level), np.nanmax(curve.level))
 
 
 def _error_there(curve: Curve, d: int) -> dict[str, float]:
