@@ -76,6 +76,12 @@ def notes(data, **more):
         (("sweep", "force.1.phase"), [0.0, 45.0], ["if degrees are meant, write it in rad"]),
         (("sweep", "modal.damping"), [0.01, 5.0], ['sweep."modal.damping": is 5 right? It is 500 %']),
         (("sweep", "modal.damping"), {"from": 0.1, "to": 0.2, "count": 3}, []),
+        (
+            ("sweep", "modal.frequency.*"),
+            [1.0, 1.1],
+            ['sweep."modal.frequency.*": is one frequency for all 2 modes right?'],
+        ),
+        (("sweep", "modal.frequency.0"), [1.0, 1.1], []),
     ],
 )
 def test_of_modes(data, path, value, words):

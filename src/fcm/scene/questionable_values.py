@@ -25,7 +25,8 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large, and where units
     are given loss factors, too; no damping at all, factors of mistuning that are all small, coefficients of
-    friction above two, negative gaps, and angles of more than a turn that are given in rad.
+    friction above two, negative gaps, angles of more than a turn that are given in rad, and a sweep of one
+    frequency for all modes.
     """
     real = isinstance(top.data.get("units"), Mapping)
     found = [_of_ratio(*one, real) for one in _ratios(top, parts, swept)]
@@ -34,6 +35,7 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     found += _once(_of_gap, _of_contacts("gap", top, swept), min)
     found += _once(_of_angle, _angles(top, swept), _furthest)
     found += [_of_factors(values) for values in _factors(parts)]
+    found += [_of_one_frequency(one, parts) for one in swept]
     return [Question(one) for one in found if one]
 
 
@@ -149,6 +151,17 @@ def _of_factors(values: Sequence[float]) -> str:
     return (
         f"cyclic.mistuning.factors: is {shown(greatest)}, the greatest, right? Properties are multiplied by "
         "them: write 0.97 for 3 % less"
+    )
+
+
+def _of_one_frequency(one: SweptKey, parts: Parts) -> str:
+    frequency = parts["modal"].get("frequency")
+    count = 0 if frequency is None else len(frequency)
+    if count < 2 or ("modal", "frequency") not in one.addresses:
+        return ""
+    return (
+        f"{_of_sweep(one)}: is one frequency for all {count} modes right? Each is then the same: sweep "
+        'that of one mode, as "modal.frequency.0"'
     )
 
 
