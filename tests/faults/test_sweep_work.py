@@ -291,6 +291,20 @@ def test_records_are_appended_and_damage_is_passed_over(tmp_path):
     assert found() == [0, 1, 7]
 
 
+def test_a_file_of_which_nothing_can_be_read_is_kept_beside_and_said(program):
+    """It was said that no unfinished run is kept, and the file was removed in the end."""
+    kept = program.folder / "a.nc.unfinished"
+    with CheckpointFile(kept) as one:
+        one.append(bytes(range(32)), 0, [0.0] * 100)
+    damaged = kept.read_bytes()[:200]
+    kept.write_bytes(damaged)
+    done = program("respond", "one.toml", "-o", "a.nc", "--resume")
+    assert done.returncode == 0 and "no unfinished run is kept" not in done.err
+    assert "a.nc.unfinished: it is damaged: an unfinished run is there, and nothing of it can" in done.err
+    assert "moved to a.nc.unfinished.1, and this run begins anew" in done.err
+    assert (program.folder / "a.nc.unfinished.1").read_bytes() == damaged and not kept.exists()
+
+
 # Files that are not its own, forged, or cannot be written
 
 

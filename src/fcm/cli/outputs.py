@@ -56,7 +56,7 @@ class Outputs:
             with signals.undisturbed():  # a file that is made is one that is removed
                 self.checkpoint = held.enter_context(CheckpointFile(unfinished(anchor), resume))
             held.enter_context(alone(files[1:]))
-            if resume and not self.checkpoint.resumable:
+            if resume and not self.checkpoint.resumable and not self.checkpoint.set_aside:
                 self.messages.info(f"{plain(anchor)}: no unfinished run is kept: this one begins anew")
             remove_stale(real(anchor))
             try:

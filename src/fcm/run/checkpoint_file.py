@@ -63,14 +63,13 @@ class CheckpointFile:
     def __init__(self, path: Path, resume: bool = False, options: RunOptions = RUN) -> None:
         self.options = options
         self.path, self.failed, self.used, self.spent = path, False, False, False
+        self.set_aside = False  # whether what there was is beside it now
         self._marks = {_WRITTEN}  # of all that this run has worked on
         self._file = -1
         try:
             self._file = locked(path)
-            if os.fstat(self._file).st_size and (not resume or not self._known()):
-                self._empty(
-                    "without --resume it is not continued" if self._known() else "it is not of this fcm"
-                )
+            if os.fstat(self._file).st_size and (reason := self._not_continued(resume)):
+                self._empty(reason)
             self._sign()
         except OSError as error:
             self.close()
@@ -145,7 +144,7 @@ class CheckpointFile:
         try:
             size = os.fstat(file).st_size if stat.S_ISREG(os.fstat(file).st_mode) else 0
             marks = {record.fingerprint for record in whole(file, size, LENGTH)}
-            return size > LENGTH and os.pread(file, len(TITLE), 0) == TITLE and marks <= self._marks
+            return bool(marks) and os.pread(file, len(TITLE), 0) == TITLE and marks <= self._marks
         finally:
             os.close(file)
 
@@ -173,6 +172,19 @@ class CheckpointFile:
     def _known(self) -> bool:
         return os.pread(self._file, len(TITLE), 0) == TITLE
 
+    def _not_continued(self, resume: bool) -> str:
+        """Why what the file holds is not continued; empty if it is."""
+        if not self._known():
+            return "it is not of this fcm"
+        if self._damaged():
+            return "it is damaged: an unfinished run is there, and nothing of it can be read"
+        return "" if resume else "without --resume it is not continued"
+
+    def _damaged(self) -> bool:
+        """Whether something is there of which no record is whole."""
+        size = os.fstat(self._file).st_size
+        return size > LENGTH and next(iter(whole(self._file, size, LENGTH)), None) is None
+
     def _sign(self) -> None:
         """Name the process that works; nothing after it is touched."""
         text = TITLE + f"{os.getpid()} on {platform.node()[:16]}".encode("ascii", "replace")
@@ -180,14 +192,14 @@ class CheckpointFile:
 
     def _empty(self, reason: str) -> None:
         """Begin a new file; what the old one has goes aside, if it is anything."""
-        if self._known() and not self.resumable:
+        if self._known() and not self.resumable and not self._damaged():
             os.ftruncate(self._file, 0)
             return
         aside = _free(self.path, self.options.max_set_aside)
         self.path.rename(aside)
         warnings.warn(f"{self.path}: {reason}; moved to {aside.name}, and this run begins anew", stacklevel=3)
         os.close(self._file)
-        self._file = locked(self.path)
+        self._file, self.set_aside = locked(self.path), True
 
 
 class _Kept(Results):
