@@ -120,6 +120,11 @@ modes = 3
     assert found["notes"][0].startswith("structure: 3 modes of 40 degrees of freedom are kept")
 
 
+def test_resonances_of_modes_with_contacts_are_told_with_one_prefix(listed):
+    said = [line for line in listed(SCENE).err.splitlines() if "first resonances" in line]
+    assert len(said) == 1 and said[0].startswith("read: first resonances with all contacts open: ")
+
+
 def test_a_scene_with_mistakes_is_refused(listed):
     done = listed(SCENE.replace('dof = "v"', 'dof = "x"'))
     assert done.code == 2 and 'unknown degree of freedom "x"' in done.err

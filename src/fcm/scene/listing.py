@@ -339,7 +339,7 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     in_hertz = f"{low / (2.0 * np.pi):.6g} to {high / (2.0 * np.pi):.6g} Hz"
     said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
     if scene.ring is None and scene.contacts and not scene.of_matrices:  # of matrices it is a note
-        said += notes_of_modes(scene)
+        said += [one.removeprefix("structure: ") for one in notes_of_modes(scene)]
     if doubt := resonance_doubt(scene):
         said.append(doubt)
     return said
