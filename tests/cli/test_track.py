@@ -287,6 +287,10 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
         ([*FOLDS, "4", "--to", "5", "--sensitivity"], "--sensitivity is of no use with --track"),
         ([*FOLDS, "4", "--to", "5", "--peaks-only"], "--peaks-only is of no use with --track"),
         ([*FOLDS[:3], "modal.frequency.1", "--from", "0", "--to", "9"], "more rigid-body motions"),
+        (
+            [*FOLDS[:3], "force.u.amplitude", "--from", "-1", "--to", "4"],
+            "--from -1 --to 4: at 0 nothing moves by force.u.amplitude; leave 0 out",
+        ),
         ([*FOLDS[:3], "level", "--from", "0", "--to", "4"], "--from 0: the level must be positive"),
         (
             [*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"],
@@ -323,10 +327,6 @@ def test_an_optimum_excludes_what_is_for_numbers_already_chosen(fcm, optimum):
     assert "[[schedule]]" in fcm("respond", optimum).err
 
 
-def test_no_peak_in_the_range_is_said(fcm, optimum):
-    optimum.write_text(optimum.read_text().replace("[0.8, 1.6]", "[0.3, 0.4]"))
-    done = fcm("respond", optimum, "--harmonics", "1")
-    assert done.code == 2 and "no peak inside the range" in done.err
 @pytest.mark.parametrize(
     ("frequency", "vary", "bounds", "said"),
     [
@@ -357,6 +357,10 @@ def test_a_number_that_changes_rigid_body_motions_is_refused(fcm, scene, frequen
     assert done.code == 2 and said in done.err and done.out == ""
 
 
+def test_no_peak_in_the_range_is_said(fcm, optimum):
+    optimum.write_text(optimum.read_text().replace("[0.8, 1.6]", "[0.3, 0.4]"))
+    done = fcm("respond", optimum, "--harmonics", "1")
+    assert done.code == 2 and "no peak inside the range" in done.err
 
 
 @pytest.mark.parametrize(
@@ -378,6 +382,11 @@ def test_a_number_that_changes_rigid_body_motions_is_refused(fcm, scene, frequen
         (
             'vary = ["level", "level"]\nminimise = "peak.u"\nbounds = [[1, 2]]',
             ["the same number", "for each of"],
+        ),
+        ('vary = "level"\nminimise = "peak.u"\nbounds = [[0, 2]]', ["bounds of level: at 0 nothing moves"]),
+        (
+            'vary = "force.u.amplitude"\nminimise = "peak.u"',  # by default from 0
+            ["bounds of force.u.amplitude: at 0 nothing moves; leave 0 out"],
         ),
         ('vary = "level"\nminimise = ["peak.u", "peak.v", "greatest.u"]', ['names "u" twice']),
     ],

@@ -37,7 +37,7 @@ from fcm.run import (
     place_for,
 )
 from fcm.scene.address import LEVEL
-from fcm.scene.draft import Number, number_of
+from fcm.scene.draft import AT_REST, Number, number_of, only_force
 from fcm.scene.errors import counted
 from fcm.tracking.onset_functions import KINDS as ONSETS
 
@@ -217,7 +217,9 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     if high - low < INPUT_LIMITS.min_relative_width * max(abs(low), abs(high)):
         raise SpanError(both, "too narrow to follow a curve through", digits=17)
     if number.key == LEVEL and low <= 0.0:
-        raise SpanError({0: low}, "the level must be positive: at 0 nothing moves")
+        raise SpanError({0: low}, f"the level must be positive: {AT_REST}")
+    if low <= 0.0 <= high and scene.draft is not None and only_force(scene.draft.parts, number):
+        raise SpanError(both, f"{AT_REST} by {number.key}; leave 0 out")
     if fault := rigid_fault(number.freed(scene), number, span):
         raise SpanError(both, fault)
 

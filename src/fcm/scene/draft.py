@@ -184,11 +184,24 @@ def number_in(draft: Draft, key: str, path: str, mistakes: Mistakes) -> Number |
     return Number(key, addresses) if addresses else None
 
 
-def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
-    """Number for the level: all amplitudes of forces, and of the base's motion, in proportion."""
+AT_REST = "at 0 nothing moves"  # by a number that is the only force
+
+
+def only_force(parts: Parts, number: Number) -> bool:
+    """Whether nothing but a number moves the structure: it is the amplitude of all forces and of the base."""
+    return all(address in number.addresses for address, _ in _amplitudes(parts))
+
+
+def _amplitudes(parts: Parts) -> list[tuple[Address, float]]:
+    """Address and value of each amplitude of a force, and of the base's motion, that is not 0."""
     keys = (("force", "amplitude"), ("base", "acceleration"))
     found = [((kind, i, key), draft[key]) for kind, key in keys for i, draft in enumerate(parts[kind])]
-    found = [(address, weight) for address, weight in found if weight]
+    return [(address, value) for address, value in found if value]
+
+
+def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
+    """Number for the level: all amplitudes of forces, and of the base's motion, in proportion."""
+    found = _amplitudes(parts)
     if not found:
         mistakes.add(path, "no force has an amplitude that a level could multiply")
         return None

@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.model.scene import Aim, Optimum
 from fcm.scene.address import overlap
-from fcm.scene.draft import Draft, Number, number_in
+from fcm.scene.draft import AT_REST, Draft, Number, number_in, only_force
 from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.keys import names
 from fcm.scene.names import Names
@@ -32,6 +32,8 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
     numbers = varied_numbers(section, draft, "contact.shroud.n_0", LIMITS.chosen)
     aims = _aims(section, reported)
     bounds = _bounds(section, numbers, draft)
+    if not all(aim.ends for aim in aims):  # at 0 there is no peak, and the greatest amplitude is 0
+        _check_0(section, numbers, bounds, draft)
     if section.mistakes.count > before:
         return None
     return Optimum(tuple(number.key for number in numbers if number), tuple(bounds), tuple(aims))
@@ -122,6 +124,16 @@ def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> lis
     return [
         pair_of_bounds(section, number, pair) for number, pair in zip(numbers, pairs, strict=True) if number
     ]
+
+
+def _check_0(
+    section: Section, numbers: list[Number | None], bounds: list[tuple[float, float]], draft: Draft
+) -> None:
+    """Note the bounds with 0 of the amplitude of the only force."""
+    known = [number for number in numbers if number]
+    for number, (low, high) in zip(known, bounds, strict=False):  # none after a mistake
+        if low <= 0.0 <= high and only_force(draft.parts, number):
+            section.wrong("bounds", f"bounds of {number.key}: {AT_REST}; leave 0 out")
 
 
 def _said(value: object) -> str:
