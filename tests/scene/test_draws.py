@@ -79,6 +79,8 @@ REFUSED = [
         {"distribution": "lognrom", "count": 2},
         'no distribution "lognrom" in scipy.stats; did you mean "lognorm"?',
     ),
+    ({"distribution": "gauss", "count": 2}, 'distribution "gauss" in scipy.stats; did you mean "norm"?'),
+    ({"distribution": "Gaussian", "count": 2}, 'did you mean "norm"?'),
     ({"distribution": "rv_continuous", "count": 2}, "there is no distribution"),
     ({"distribution": 3, "count": 2}, "must be a string"),
     ({"distribution": "", "count": 2}, 'distribution: is empty; name one of scipy.stats, such as "lognorm"'),

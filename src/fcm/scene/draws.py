@@ -27,6 +27,7 @@ from fcm.scene.rules import ANY, POSITIVE, as_float
 from fcm.scene.section import Section
 
 FORMS = ("normal", "uniform", "distribution")
+OTHER_NAMES = {"gauss": "norm", "gaussian": "norm", "normal": "norm"}  # of distributions of scipy.stats
 
 
 Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
@@ -199,7 +200,8 @@ def _family(name: str, table: Section) -> _Family | None:
     found = getattr(stats, name, None) if name.isidentifier() else None
     if not isinstance(found, kinds):
         known = [word for word in dir(stats) if isinstance(getattr(stats, word), kinds)]
-        table.wrong("distribution", f"there is no distribution {quoted(name)} in scipy.stats", name, known)
+        meant = OTHER_NAMES.get(name.casefold(), name)
+        table.wrong("distribution", f"there is no distribution {quoted(name)} in scipy.stats", meant, known)
         return None
     shapes = tuple(word.strip() for word in (found.shapes or "").split(",") if word.strip())
     return _Family(shapes, isinstance(found, stats.rv_continuous), found.ppf)
