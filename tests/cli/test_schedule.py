@@ -52,6 +52,15 @@ def test_the_phases_follow_the_curves(fcm, both):
     assert "kept: 64 displacements of every cycle" in done.err
 
 
+def test_a_start_that_nothing_starts_from_is_said(fcm, scene):
+    text, said = scene.read_text(), "start: it decides nothing in this run: only --method exact, or a"
+    scene.write_text(text + "[start]\nfriction = [1.0]\n")
+    assert said in fcm("respond", scene, "--harmonics", 1).err
+    assert said not in fcm("respond", scene, "--method", "exact", "--at", 1.0).err
+    scene.write_text(text + SCHEDULE + "[start]\nfriction = [1.0]\n")
+    assert said not in fcm("respond", scene, "--harmonics", 1).err
+
+
 def test_a_start_beyond_what_a_contact_can_carry_is_said(fcm, scene):
     """The limit is 0.4 * 5, or 0.4 * 6.35 where the scene starts displaced along v; none at n_0 = 0."""
     text = scene.read_text()
