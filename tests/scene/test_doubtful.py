@@ -169,6 +169,10 @@ STEEL = {  # two modes, 50.3 and 87.2 Hz, as a program in N, m, kg writes it
     [
         ({}, ""),
         ({"mass": [[2e-3, 0.0], [0.0, 2e-3]]}, "31.6 times as low"),
+        (
+            {"mass": [[2e3, 0.0], [0.0, 2e3]]},
+            "stick; is the range as meant? If so, the range would hold modes if frequencies were 31.6",
+        ),
         ({"mass": [[2e3, 0.0], [0.0, 2e3]]}, "31.6 times as high"),
         ({"mass": [[772.0, 0.0], [0.0, 772.0]], "force": "lbf"}, "divide the mass by 386"),
         ({"mass": [[2e3, 0.0], [0.0, 2e3]], "force": "lbf"}, "are the units of the structure"),

@@ -141,7 +141,9 @@ def resonance_doubt(scene: Scene) -> str:
     places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
     if scene.contacts:
         places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
-    if not slip:
+    if slip and slip != _IN_HERTZ:
+        slip = f"is the range as meant? If so, {slip}"
+    elif not slip:
         slip = "are the units of the structure, of the contacts' stiffness and of the range those meant?"
     low, high = (f"{end / UNIT[unit]:.6g}" for end in ends)
     of = f", in which forces act from {low} to {high} {unit}" if ends != scene.frequency_range else ""
