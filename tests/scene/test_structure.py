@@ -89,6 +89,13 @@ def test_every_kind_of_file(tmp_path, write, ending):
     assert modal.dofs == ("1x", "2x", "3x") and modal.added == 0
 
 
+def test_a_row_of_numbers_in_a_file_is_a_diagonal_as_a_list_is(tmp_path):
+    np.savez(tmp_path / "M.npz", M=M.diagonal())
+    scipy.io.savemat(tmp_path / "M.mat", {"M": M.diagonal()[:, None]})
+    for name in ("M.npz", "M.mat"):
+        assert read(tmp_path, mass=name).modal.frequency == pytest.approx(EXACT, rel=1e-12)
+
+
 @pytest.mark.parametrize("kind", [">f8", "f2", "i2", "g"])
 @pytest.mark.parametrize("name", ["K.npz", "K.mat"])
 def test_numbers_of_every_kind(tmp_path, kind, name):

@@ -176,7 +176,7 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Labelled 
             return None
         try:
             found = read_matrix(value, files)
-            matrix, rows = found.matrix, found.rows
+            matrix, rows = _of_diagonal(found.matrix), found.rows
         except DataFileError as error:
             for fault in error.faults:
                 section.wrong(key, fault)
@@ -192,6 +192,12 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Labelled 
         )
         return None
     return Labelled(matrix, rows) if check_numbers(section, key, matrix) else None
+
+
+def _of_diagonal(matrix: Any) -> Any:
+    """A matrix of a file; a single row or column of it is a diagonal, as a list of numbers is in a scene."""
+    several = max(matrix.shape) > min(matrix.shape) == 1
+    return scipy.sparse.diags_array(matrix.toarray().ravel(), format="csc") if several else matrix
 
 
 def _from_rows(section: Section, key: str, value: Any) -> Any:
