@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.harmonic_balance.system import System
+from fcm.model.question import Question
 from fcm.scene import SceneError, scene_from_dict
 from fcm.scene.draft import number_of
 from fcm.sensitivity.parameter_derivatives import rates_of
@@ -68,7 +69,6 @@ def test_without_areas_it_is_said_that_numbers_are_of_each_pair():
     assert said.startswith('contacts "shroud" and "root": k_u, k_v and n_0 are those of each of 2 pairs.')
 
 
-def test_a_gap_is_that_of_each_pair():
 @pytest.mark.parametrize("other", [PAIRS, {"name": "shroud", "tangential": "40x", "normal": "40z"}])
 def test_two_contacts_of_one_name_are_refused_where_one_has_pairs(other):
     """A sweep of contact.shroud.n_0 took the single one alone, unsaid."""
@@ -82,6 +82,7 @@ def test_a_name_with_a_star_is_refused():
     assert 'contact[0] "*".name: "*" has a *, which stands for any letters in keys' in message
 
 
+def test_a_gap_is_that_of_each_pair():
     gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
     contacts = read([PAIRS | gap | {"areas": [1.0, 2.0]}]).contacts
     assert [contact.n_0 for contact in contacts] == pytest.approx([-0.1 * 2 / 3, -0.1 * 4 / 3])
@@ -107,6 +108,15 @@ def test_pairs_and_their_numbers_in_a_file(tmp_path):
     assert weights(one.normal) == {"40z": 1.0, "41z": -1.0} and weights(other.normal) == {"50z": 1.0}
     assert (one.n_0, other.n_0, one.mu, other.mu) == (15.0, -2.0, 0.1, 0.2)
     assert (one.k_u, other.k_u, other.k_v) == (0.25, 0.75, 1.5)
+
+
+def test_columns_of_a_file_of_pairs_in_capitals_and_others_that_are_left_out(tmp_path):
+    (tmp_path / "pairs.csv").write_text("Node,OTHER,n_0,Mu,colour,remark\n40,41,1,0.1,red,a\n50,,2,0.2,,b\n")
+    given = {key: value for key, value in (PAIRS | NUMBERS).items() if key not in ("n_0", "mu")}
+    scene = of_file(tmp_path, given | {"nodes": "pairs.csv"})
+    assert [(one.n_0, one.mu) for one in scene.contacts] == [(1.0, 0.1), (2.0, 0.2)]
+    (asked,) = (note for note in scene.notes if isinstance(note, Question))
+    assert 'are columns "colour", "remark" of "pairs.csv" to be left out?' in asked
 
 
 def test_nodes_that_other_programs_write_as_floats(tmp_path):
@@ -156,9 +166,10 @@ def test_preloads_in_a_file(tmp_path, text):
         ("node,other,n_0,mu\n40,41,1,-0.1\n", "nodes (mu): must"),
         ("node,other,n_0,mu,k_u\n40,41,1,0.1,1\n", 'k_u: is given here and as a column of "pairs.csv"'),
         (
-            "node,other,n_0,mu,pressure\n40,41,1,0.1,1\n",
-            'has the columns "pressure", which mean nothing here',
+            "node,other,n_0,mu,areas\n40,41,1,0.1,1\n",
+            '"pairs.csv" has a column "areas", of no meaning; did you mean "area"?',
         ),
+        ("node,other,preload,mu\n40,41,1,0.1\n", 'of no meaning; did you mean "n_0"?'),
         ("node,other,n_0,mu,area\n40,41,1,0.1,0\n", "its areas must be greater than 0"),
     ],
 )

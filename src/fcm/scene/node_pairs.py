@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 
 from fcm.model.interface import Interface
+from fcm.model.question import Question
 from fcm.model.scene import FloatArray
-from fcm.scene.errors import choices, counted, kind, quoted, several
+from fcm.scene.errors import choices, counted, kind, nearest, quoted, several
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.pair_file import COORDINATES, NODES, NUMBERS, PairTable, read_numbers_of_pairs, read_pair_table
 from fcm.scene.rules import ANY, POSITIVE, RULES
-from fcm.scene.section import Section, described
+from fcm.scene.section import SYNONYMS, Section, described
 
 Pair = tuple[str, ...]  # two nodes, or one that touches the ground
 EQUAL = "equal"  # in the place of areas that are all the same
@@ -67,13 +68,26 @@ def _of_file(section: Section, value: str, files: Files) -> PairTable:
     for name in given:
         key = "areas" if name == "area" else name
         section.wrong(key, f"is given here and as a column of {quoted(value)}; give it once")
-    if table.unused:
-        section.wrong(
-            "nodes",
-            f"{quoted(value)} has the columns {choices(table.unused)}, which mean nothing here; "
-            f"its columns may be {', '.join((*NODES, *NUMBERS, *COORDINATES))}",
-        )
-    return table
+    return _without_unused(section, value, table) if table.unused else table
+
+
+def _without_unused(section: Section, value: str, table: PairTable) -> PairTable:
+    """The pairs of a file that has columns of no meaning: one that may be misspelt is wrong, others are asked
+    about."""
+    known = (*NODES, *NUMBERS, *COORDINATES)
+    lacking = [name for name in (*NUMBERS, *COORDINATES) if name not in table.numbers]
+    for name in table.unused:
+        word = SYNONYMS.get(name.casefold(), name)
+        if word in known or nearest(word, lacking):
+            section.wrong("nodes", f"{quoted(value)} has a column {quoted(name)}, of no meaning", word, known)
+            return replace(table, unread=True)
+    one = len(table.unused) == 1
+    asked = (
+        f"{section.at('nodes')}: {'is column' if one else 'are columns'} {choices(table.unused)} of "
+        f"{quoted(value)} to be left out? Nothing is read from {'it' if one else 'them'}; what is read: "
+        f"{', '.join(known)}"
+    )
+    return replace(table, said=(*table.said, Question(asked)))
 
 
 def _listed(section: Section, value: Any) -> list[Pair]:

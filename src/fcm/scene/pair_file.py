@@ -54,7 +54,9 @@ def read_pair_table(path: Path) -> PairTable:
     lines = list(_lines(path))
     if not lines:
         raise DataFileError(f"{quoted(path.name)} is empty; its first line must name its columns: node,other")
-    header = [word.strip() for word in lines[0][1]]
+    written = [word.strip() for word in lines[0][1]]
+    known = {*NODES, *NUMBERS, *COORDINATES}
+    header = [lower if (lower := word.casefold()) in known else word for word in written]
     missing = [name for name in NODES if name not in header]
     twice = [name for name in dict.fromkeys(header) if header.count(name) > 1]
     if missing or twice:
