@@ -203,8 +203,7 @@ def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
     )
     assert (
         "it changes none of the greatest peaks. Lower peaks and other points may change, too. "
-        "At 3 points the motion may be one of many"
-        in both
+        "At 3 points the motion may be one of many" in both
     )
     known["peak"]["u"]["residual_change"] = 0.1
     changed = kept_friction({"curves": [known, unknown]} | run)

@@ -98,8 +98,8 @@ class ReinstatedContacts:
         end = self.point(last[0]), self.way(last[1]), last[2], sense * last[3]
         return checkpoint._replace(
             kept=Stored(points, end),
-            start=self.point(checkpoint.start),
-            heading=self._heading(checkpoint),
+            first=self.point(checkpoint.first),
+            initial_direction=self._initial_direction(checkpoint),
             **(stepper_state(stepper) | {"z": self.point(checkpoint.z)}),
         )
 
@@ -116,11 +116,11 @@ class ReinstatedContacts:
         )
         return stepper if same else None
 
-    def _heading(self, checkpoint: Checkpoint) -> FloatArray:
+    def _initial_direction(self, checkpoint: Checkpoint) -> FloatArray:
         """The direction at the start, in units of the scale there."""
-        self.before.evaluate_scale(checkpoint.start)
-        direction = checkpoint.heading * np.asarray(self.before.scale)
-        return _unit(self.now, self.point(checkpoint.start), self.way(direction))
+        self.before.evaluate_scale(checkpoint.first)
+        direction = checkpoint.initial_direction * np.asarray(self.before.scale)
+        return _unit(self.now, self.point(checkpoint.first), self.way(direction))
 
 
 def _each(change: Callable[[FloatArray], FloatArray], rows: FloatArray) -> FloatArray:

@@ -220,7 +220,7 @@ def _begins_at(saved: SavedPath, problem: OrbitProblem, start: FloatArray, forwa
         first, rise = saved.path.z[0], float(saved.path.direction[0, -1])
     else:
         assert saved.checkpoint is not None
-        first, rise = saved.checkpoint.start, float(saved.checkpoint.heading[-1])
+        first, rise = saved.checkpoint.first, float(saved.checkpoint.initial_direction[-1])
     problem.evaluate_scale(first)
     off = np.linalg.norm((first - start) / np.asarray(problem.scale))
     return bool(off < PATH.solution_tolerance) and (rise > 0.0) == forward
