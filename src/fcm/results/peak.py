@@ -22,7 +22,7 @@ class Peak(NamedTuple):
     )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
     frequency_error: float = np.nan  # estimated, relative, of the frequency; NaN where it is not known
     rounding: float = -1.0  # of the amplitude, relative; -1 where no contact is stiff
-    level: float = np.nan  # of the forces, on a curve over it
+    level: float = 1.0  # of the forces: 1 but on a curve over it
 
 
 def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
