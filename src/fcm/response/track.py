@@ -115,16 +115,17 @@ def track(
     begin = time.perf_counter()
     free = number.freed(scene)
     request = request_of(scene, harmonics, accuracy, options)
-    chosen_dofs = np.isin(free.modal.dofs, free.output)
-    tracked = free.at_attached_and(chosen_dofs) if free.output else with_master_dofs(free)
+    asked_for = np.array([free.asks_for(dof) for dof in free.modal.dofs])
+    reported = free.at_attached_and(asked_for) if free.output else free
+    tracked = with_master_dofs(reported)
     curves = tracked.each_curve()
     chosen = request.harmonics or needed(curves, number, span, request)
     place = execution.place or place_for(execution.processes if len(curves) > 1 else 1)
     response = Response.without_curves(tracked)
     response.tracking, response.method = Tracking(asked.over, what, span, chosen, []), "tracked"
     with execution.checkpoint() as checkpoint:
-        if what == "peaks" and not free.output:
-            response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
+        if what == "peaks":
+            response.left_out = _untracked(len(reported.modal.dofs), len(tracked.modal.dofs))
         task = TrackingTask(number, what, span, chosen, request.options)
         outcome = _swept(task, curves, checkpoint, place, execution.progress)
         for i, one in enumerate(curves):
