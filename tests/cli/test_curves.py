@@ -496,6 +496,19 @@ def test_harmonics_can_be_given_as_tables_have_them():
             harmonics(None, None, text)
 
 
+def test_the_error_of_a_peaks_frequency_is_told_with_its_degree_of_freedom():
+    """Where it is great, another peak of that one may be the greatest."""
+    peak = {
+        name: {"amplitude": 1.0, "error": 0.1, "frequency_error": off}
+        for name, off in (("u", 1e-3), ("v", 0.5))
+    }
+    one = {"points": 3, "harmonics": [1], "truncation_error": 0.1, "peak": peak}
+    summary = {"curves": [one], "seconds": 1.0, "method": "balance"}
+    assert cost_and_error(summary).endswith("; 5.0e-01 of the frequency of the greatest peak of v")
+    del peak["v"]
+    assert cost_and_error(summary).endswith("; 1.0e-03 of the frequency of the greatest peak")
+
+
 def test_an_error_of_which_nothing_is_told_is_not_said_to_be_none():
     """It was 0, that of a motion at rest, where levels of the forces begin; of no peak was it told."""
     peak = {"u": {"amplitude": 1.0, "error": None}}

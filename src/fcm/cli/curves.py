@@ -566,8 +566,12 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
                     of_all = f"{of_peaks} and {of_any}{_where(summary, harmonic)}"
             but = ", and of some peaks unknown" if unknown else ""
             errors.append(f"{of_all}, by the harmonics left out{but}{_known_of_modes(curves)}")
-        if places := [at for one in _peaks_of(curves, shown) if (at := one.get("frequency_error"))]:
-            errors.append(f"{max(places):.1e} of the frequencies of the greatest peaks")
+        if places := [
+            (at, dof) for dof, one in _peaks_of(curves, shown) if (at := one.get("frequency_error"))
+        ]:
+            off, dof = max(places)
+            of = f" of {dof}" if len(shown) > 1 else ""
+            errors.append(f"{off:.1e} of the frequency of the greatest peak{of}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
@@ -587,9 +591,9 @@ def of_table(summary: Mapping[str, Any]) -> str:
     return f"the table: solutions by it alone would be off by up to {table:.1e}; these points are not"
 
 
-def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[dict[str, Any]]:
-    """The greatest peaks of some degrees of freedom, where they are known."""
-    return [one for curve in curves for dof, one in curve["peak"].items() if one and dof in dofs]
+def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[tuple[str, dict[str, Any]]]:
+    """The greatest peaks of some degrees of freedom, with these, where they are known."""
+    return [(dof, one) for curve in curves for dof, one in curve["peak"].items() if one and dof in dofs]
 
 
 def _of_lower_peaks(summary: Mapping[str, Any]) -> str:
