@@ -5,6 +5,7 @@ import os
 import pickle
 import re
 import signal
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -611,25 +612,32 @@ def test_every_place_gives_the_same_and_loses_what_fails_alone(tmp_path, monkeyp
 ENDLESS = """
 import pathlib, time
 def endless(batch, progress):
+    begun = pathlib.Path(__file__).with_name("begun")
     if batch[0] == 0:
+        while batch[1] and not begun.exists():
+            time.sleep(0.01)
+        time.sleep(batch[1])
         return [0]
-    pathlib.Path(__file__).with_name("begun").touch()
+    begun.touch()
     while True:
         progress(0.5, "")
         time.sleep(0.01)
 """
 
 
-def test_processes_hand_over_what_is_finished_when_they_are_interrupted(tmp_path, monkeypatch):
+@pytest.mark.parametrize("late", [0.0, 0.3])
+def test_processes_hand_over_what_is_finished_when_they_are_interrupted(tmp_path, monkeypatch, late):
+    """What is finished only then, too; the progress of that would interrupt again."""
     (tmp_path / "endless_batch.py").write_text(ENDLESS)
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "endless_batch", raising=False)
     endless = importlib.import_module("endless_batch").endless
 
     def show(_share, _text):
         if (tmp_path / "begun").exists():
             raise KeyboardInterrupt
 
-    done = compute_batches(endless, [[0], [1], [2]], place_for(2), progress=show)
+    done = compute_batches(endless, [[0, late], [1], [2]], place_for(2), progress=show)
     assert done.interrupted and done.results == {0: [0]}
 
 

@@ -182,13 +182,19 @@ class _BatchRun:
             self.kept.save(*self.states.popleft())
 
     def _finish(self, number: int, results: list[Any]) -> None:
+        self._keep(number, results)
+        self.bar.finish(number)
+
+    def _keep(self, number: int, results: list[Any]) -> None:
         self.outcome.results[number] = results
         if not any(isinstance(one, Lost) for one in results):  # what is lost is tried again by the next run
             self.kept.add(number, results)
-        self.bar.finish(number)
 
     def _hand_over(self, place: Place) -> None:
-        """Ask everybody for what they have; whoever has no answer at once has none."""
+        """Ask everybody for what they have; whoever has no answer at once has none.
+
+        Progress, which may interrupt again, is not shown any more.
+        """
         place.stop()
         done, _ = wait(self.waiting, RUN.grace_time)
         self._keep_states()
@@ -197,7 +203,7 @@ class _BatchRun:
             with suppress(NotComputed, PlaceClosed):
                 found = _result(place, future)
             if found is not None and not found.interrupted:
-                self._finish(number, found.results)
+                self._keep(number, found.results)
             elif found is not None:
                 self.outcome.parts[number] = found.results
 
