@@ -210,7 +210,7 @@ def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
     assert "it may change a greatest peak by up to 10 % of it" in changed
     assert changed.count("computes how far the motions range") == 1 and changed.endswith("motions range")
     known["peak"]["u"]["residual_change"] = 0.0
-    assert one == residual_friction({"curves": [known]} | run)
+    assert one == residual_friction({"curves": [known]} | run) + ": --at F computes how far the motions range"
     assert other.endswith(maybe_not_unique({"curves": [unknown]} | run))
     assert all(text.count("a contact that never slips") == 1 for text in (both, one, other))
 

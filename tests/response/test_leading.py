@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from fcm.accuracy.refinement import unchecked_with_given_harmonics
+from fcm.harmonic_balance.system import System
+from fcm.response.master_dofs import of_all_dofs, with_master_dofs
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.response.track import TrackRequest, track
@@ -62,6 +65,15 @@ def test_peaks_among_many_are_those_of_the_linear_structure():
         top = minimize_scalar(answer, bounds=around, args=(d,), method="bounded", options={"xatol": 1e-8})
         assert peak.amplitude == pytest.approx(-top.fun, rel=1e-9)
         assert peak.frequency == pytest.approx(top.x, rel=1e-6)
+
+
+def test_errors_of_many_outputs_may_take_as_long_as_those_of_few():
+    """The budget is a part of the work of the response; of many outputs it was that of no work at all."""
+    scene = masses(["*"], 6, 2.0)
+    found = unchecked_with_given_harmonics(System(with_master_dofs(scene), (1, 2, 3)))
+    every = of_all_dofs(found, scene)
+    assert len(every.quantities[0].amplitude[0]) == COUNT > len(found.quantities[0].amplitude[0])
+    assert every.system.work.seconds == found.system.work.seconds > 0.0
 
 
 @pytest.mark.slow

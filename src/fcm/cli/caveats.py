@@ -383,9 +383,12 @@ def _not_searched(curve: Mapping[str, Any]) -> str:
 def kept_friction(summary: Mapping[str, Any]) -> str:
     """Caveat on the effect of residual friction that contacts keep which never slip; or ''."""
     of_peaks, elsewhere = residual_friction(summary), maybe_not_unique(summary)
-    if of_peaks and elsewhere:  # what tells how far motions range is said once, at the end
-        return f"{of_peaks.removesuffix(_tells_range(summary))}. {elsewhere[:1].upper()}{elsewhere[1:]}"
-    return of_peaks or (f"{_KEEPS}: {elsewhere}" if elsewhere else "")
+    if of_peaks and elsewhere:
+        return f"{of_peaks}. {elsewhere[:1].upper()}{elsewhere[1:]}"
+    if of_peaks:
+        how = _how(summary)
+        return f"{of_peaks}: {how} computes how far the motions range" if how else of_peaks
+    return f"{_KEEPS}: {elsewhere}" if elsewhere else ""
 
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
@@ -444,13 +447,7 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
         of_peaks = "it changes none of the greatest peaks"
     else:
         of_peaks = f"it may change a greatest peak by up to {share} of it, estimated"
-    return f"{_KEEPS}: {where}{of_peaks}. Lower peaks and other points may change, too{_tells_range(summary)}"
-
-
-def _tells_range(summary: Mapping[str, Any]) -> str:
-    """What computes how far motions range with residual friction; empty where nothing does."""
-    how = _how(summary)
-    return f": {how} computes how far the motions range" if how else ""
+    return f"{_KEEPS}: {where}{of_peaks}. Lower peaks and other points may change, too"
 
 
 def _how(summary: Mapping[str, Any]) -> str:

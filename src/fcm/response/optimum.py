@@ -16,7 +16,7 @@ from fcm.response.least_peak import Found, PeakTask, still, with_values
 from fcm.response.nearly_least import nearly_least
 from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
-from fcm.response.rigid_limits import rigid_fault
+from fcm.response.rigid_body_limits import rigid_fault
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.response.tracking_task import STATES

@@ -18,7 +18,7 @@ from fcm.response.accuracy_shortfall import remedy
 from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
-from fcm.response.rigid_limits import rigid_fault
+from fcm.response.rigid_body_limits import rigid_fault
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.tracking_task import KINDS, STATES, TrackedScene, TrackingTask
 from fcm.results.result import DEFECT, NOT_BEGUN, Response

@@ -1,6 +1,6 @@
 from fcm.stability.planar_sequence cimport PlanarSequence
 
-cdef class VariationalSteps:
+cdef class PlanarMonodromy:
     cdef public PlanarSequence sequence
     cdef readonly int contacts, stages, events, steps
     cdef readonly int[::1] state, fresh, held
@@ -20,8 +20,6 @@ cdef class VariationalSteps:
     cdef double start(self) except -1
     cdef bint propagate(self, double theta, double length, bint opens) except -1
     cdef int cheapest(self, double left) except -1
-
-cdef class PlanarMonodromy(VariationalSteps):
     cdef object poll, shapes, natural, damping, all_soft, moving, number, remembered, open
     cdef object k_u, springs, ratios, K_closed, seen_closed, soft_closed, seen, soft, push, g_before
     cdef double omega, coefficient_floor

@@ -75,12 +75,19 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @cython.cclass
-class VariationalSteps:
-    """Steps of disturbances through a sequence of states of contacts in a plane.
+class PlanarMonodromy:
+    """The monodromy of contacts in a plane: of those that never move nothing is followed.
 
-    `follow` a sequence: `matrix` is then the derivative of (q, q', memory) after a period by that before.
+    `follow` a sequence of states: `matrix` is then the derivative of (q, q', memory) after a period by that
+    before. Velocities are by the angle.
 
-    Velocities are by the angle.
+    Parameters
+    ----------
+    modes : PortModes
+        With three ports for each contact.
+    sequence : PlanarSequence
+    poll : callable, optional
+        Called at every event, which it may interrupt.
 
     Attributes
     ----------
@@ -93,7 +100,7 @@ class VariationalSteps:
         remembers at the beginning of the period.
     """
 
-    def __init__(self, sequence: PlanarSequence) -> None:
+    def __init__(self, modes: PortModes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
         options, counts = sequence.options, np.array(sequence.options.stages, dtype=np.intc)
         self.sequence, self.contacts, self.stages = sequence, sequence.contacts, int(counts.max())
         self.stage_counts, self.longest = counts, np.zeros(counts.size)
@@ -101,13 +108,15 @@ class VariationalSteps:
         self.min_factor, self.max_factor, self.safety = options.min_factor, options.max_factor, options.safety
         self.end_factor, self.event_tolerance = options.end_factor, options.event_tolerance
         self.max_retry_factor, self.min_gap = options.max_retry_factor, options.min_gap
+        self.max_disturbances, self.coefficient_floor = options.max_disturbances, options.coefficient_floor
         most = self.contacts * sequence.capacity
         self.angle = np.zeros(most)
         self.whose, self.which, self.order = np.zeros((3, most), dtype=np.intc)
         self.state, self.fresh, self.held = np.zeros((3, self.contacts), dtype=np.intc)
-        self.events = self.steps = self.first = 0
-        self.part = TWO_PI
-        self.filled = np.zeros((0, 0))
+        self.shapes, self.natural, self.damping = modes.near
+        self.all_soft, self.modes, self.poll = modes.flexibility, len(self.natural), poll
+        self.events = self.steps = self.first = self.slipping = self.columns = self.room = 0
+        self.arranged, self.part, self.filled = False, TWO_PI, np.zeros((0, 0))
 
     def matrix(self) -> FloatArray:
         """The monodromy matrix, (2 modes + memories, the same).
@@ -116,35 +125,6 @@ class VariationalSteps:
         """
         found: FloatArray = self.filled
         return found
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def begin(self, omega: cython.double) -> cython.bint:
-        """Set the frequency and the initial disturbances; false if these are too many."""
-        raise NotImplementedError
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def step(self, theta: cython.double, h: cython.double) -> cython.double:
-        """Take a step from an angle on; its error relative to a disturbance, infinity if singular."""
-        raise NotImplementedError
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def accept(self) -> cython.int:
-        """Take the end of the step for the present place of the disturbances."""
-        raise NotImplementedError
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
-        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
-        raise NotImplementedError
-
-    @cython.ccall
-    def disturbances(self) -> FloatArray:
-        """The present disturbances, rows (q, q', memory)."""
-        raise NotImplementedError
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -281,29 +261,6 @@ class VariationalSteps:
             if i == 0 or cost < least:
                 best, least = i, cost
         return best
-
-
-@cython.cclass
-class PlanarMonodromy(VariationalSteps):
-    """The monodromy of contacts in a plane: of those that never move nothing is followed.
-
-    Parameters
-    ----------
-    modes : PortModes
-        With three ports for each contact.
-    poll : callable, optional
-        Called at every event, which it may interrupt.
-    """
-
-    def __init__(self, modes: PortModes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
-        VariationalSteps.__init__(self, sequence)
-        self.poll, self.max_disturbances = poll, sequence.options.max_disturbances
-        self.coefficient_floor = sequence.options.coefficient_floor
-        self.shapes, self.natural, self.damping = modes.near
-        self.all_soft = modes.flexibility
-        self.modes = len(self.natural)
-        self.slipping = self.columns = self.room = 0
-        self.arranged = False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
