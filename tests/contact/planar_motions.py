@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm import planar_forces, planar_gradients
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINE
 
@@ -40,7 +41,7 @@ class Planar:
     def cycle(self):
         """The kernel's cycle."""
         contact, x = kernel(self)
-        contact.at(x, self.mu, self.k_u, self.k_v, self.n_0, gradient=False)
+        contact.at(x, ContactParameters(self.mu, self.k_u, self.k_v, self.n_0), gradient=False)
         return contact.cycle
 
     def sequence(self):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fcm import fourier_coefficients, normal_coefficients, periodic_forces, periodic_gradients
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.periodic.forces import PeriodicContact
 
 from . import periodic_march
@@ -118,7 +119,9 @@ def test_a_set_of_harmonics_is_as_all_with_zeros_between(inside, outside):
     for n_0 in (-0.5, 0.0, 0.7, 30.0):
         x, whole = rng.standard_normal(sparse.unknowns), np.zeros(full.unknowns)
         whole[columns] = x
-        assert sparse.at(x, 0.4, 2.0, 1.5, n_0) == full.at(whole, 0.4, 2.0, 1.5, n_0)
+        assert sparse.at(x, ContactParameters(0.4, 2.0, 1.5, n_0)) == full.at(
+            whole, ContactParameters(0.4, 2.0, 1.5, n_0)
+        )
         np.testing.assert_allclose(sparse.forces, np.array(full.forces)[rows], atol=1e-14)
         np.testing.assert_allclose(
             sparse.jacobian, np.array(full.jacobian)[np.ix_(rows, columns)], atol=1e-13

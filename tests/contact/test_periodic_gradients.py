@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fcm import periodic_gradients
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.periodic.forces import PeriodicContact
 
 from . import periodic_march
@@ -24,7 +25,7 @@ def sequence(case):
     count = case.u.size
     contact = PeriodicContact(list(range(1, count)), [])
     x = np.stack((case.u.real, case.u.imag, case.v.real, case.v.imag), axis=-1).ravel()
-    contact.at(np.delete(x, (1, 3)), *case.arguments()[2:])
+    contact.at(np.delete(x, (1, 3)), ContactParameters(*case.arguments()[2:]))
     cycle = contact.cycle
     return [(cycle.state[p], cycle.cause[p]) for p in range(cycle.pieces)]
 

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Measures
 from fcm.harmonic_balance.contact_law import LineLaw
@@ -25,7 +26,7 @@ def solve(case):
     """The contact with its Jacobian, and the measures of its cycle."""
     x = np.stack((case.u.real, case.u.imag, case.v.real, case.v.imag), axis=-1).ravel()
     contact = PeriodicContact(*2 * [list(range(1, case.u.size))])
-    contact.at(np.delete(x, (1, 3)), *case.arguments()[2:])
+    contact.at(np.delete(x, (1, 3)), ContactParameters(*case.arguments()[2:]))
     measures = Measures(contact.cycle)
     measures.take(case.k_u)
     return contact, measures
@@ -139,7 +140,7 @@ def test_another_extreme_of_a_limit_comes_to_hold_a_slider(side):
     bounds, margins = LineLaw(contact, SimpleNamespace(**law)), []
     for c in (1e-7, -1e-7):
         x = side * np.array([5.0, 0.0, c, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-        contact.at(x, *law.values())
+        contact.at(x, ContactParameters(**law))
         assert contact.forces[0] == pytest.approx(side * (0.5 * 4.0 - 1.0 - abs(c)), abs=1e-12)
         assert contact.jacobian[0, 2] == pytest.approx(-np.sign(c), abs=1e-6)
         bounds.evaluate_margins(x, 0)

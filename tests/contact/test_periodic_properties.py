@@ -8,6 +8,7 @@ import pytest
 
 import fcm
 from fcm import fourier_coefficients, hysteresis_loop, periodic_forces, periodic_loop
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.periodic.forces import PeriodicContact
 
 from ..program import python
@@ -210,8 +211,10 @@ def test_few_harmonics_among_many_are_as_alone_and_a_fundamental_takes_its_own_n
         x, law = rng.standard_normal(len(columns)), (0.5, 1.0, 1.3, rng.uniform(-1.0, 2.0))
         padded = np.zeros(2 + 4 * len(many))
         padded[columns] = x
-        among.at(rng.standard_normal(padded.size), *law)  # one that moves in all comes before
-        assert alone.at(x, *law) == among.at(padded, *law)
+        among.at(
+            rng.standard_normal(padded.size), ContactParameters(*law)
+        )  # one that moves in all comes before
+        assert alone.at(x, ContactParameters(*law)) == among.at(padded, ContactParameters(*law))
         slipped += bool(np.abs(alone.forces)[-4:].any())  # a harmonic that the motion has not
         np.testing.assert_allclose(among.forces, alone.forces, rtol=0.0, atol=1e-12)
         mine = np.asarray(among.jacobian)[:, columns]

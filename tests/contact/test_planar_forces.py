@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from fcm import periodic_forces, planar_forces, planar_gradients
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.plane.options import OPTIONS
 
 from ..scale import SCALE
@@ -54,7 +55,7 @@ def test_forces_of_the_kernel_as_a_balance_uses_it(i):
     """The same numbers, to the tolerance of its own options."""
     case, count = planar(POINTS[i]), len(POINTS[i]["f_x"])
     contact, x = kernel(case, count - 1, OPTIONS)
-    contact.at(x, case.mu, case.k_u, case.k_v, case.n_0, gradient=False)
+    contact.at(x, ContactParameters(case.mu, case.k_u, case.k_v, case.n_0), gradient=False)
     forces = np.array(contact.forces)
     found = np.vstack((forces[:3] + 0j, forces[3:].view(complex).reshape(-1, 3)))
     expected = np.column_stack([coefficients(POINTS[i][name]) for name in ("f_x", "f_y", "n")])
@@ -360,9 +361,9 @@ def test_few_harmonics_among_many_are_as_alone():
         np.array([0, 1, 0, 0.3j]), np.array([0, -0.5j, 0, 0.1]), np.array([0, 0.4, 0, 0.2]), n_0=0.7
     )
     contact, x = kernel(case)
-    contact.at(x, 0.5, 1.0, 1.0, 0.7)
+    contact.at(x, ContactParameters(0.5, 1.0, 1.0, 0.7))
     few = type(contact)([1, 3], [1, 2, 3])
-    few.at(np.delete(x, range(9, 15)), 0.5, 1.0, 1.0, 0.7)
+    few.at(np.delete(x, range(9, 15)), ContactParameters(0.5, 1.0, 1.0, 0.7))
     np.testing.assert_allclose(few.forces, contact.forces, rtol=0.0, atol=1e-12)
     mine = np.delete(np.asarray(contact.jacobian), range(9, 15), axis=1)
     np.testing.assert_allclose(few.jacobian, mine, rtol=0.0, atol=1e-10)

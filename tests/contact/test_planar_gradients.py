@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from fcm import periodic_gradients, planar_gradients
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, OPTIONS
 
@@ -23,7 +24,7 @@ def differences(contact, x, law, column, step):
     def forces(t):
         y = x.copy()
         y[column] += t
-        contact.at(y, *law, gradient=False)
+        contact.at(y, ContactParameters(*law), gradient=False)
         return np.array(contact.forces)
 
     rows = [(forces(step / 2**i) - forces(-step / 2**i)) / (2.0 * step / 2**i) for i in range(4)]
@@ -49,7 +50,7 @@ def test_against_differences(seed, nearly_straight):
         case = along_a_line(case, rng) if nearly_straight else case
         contact, x = kernel(case, case.u_x.size + 1)
         law = (case.mu, case.k_u, case.k_v, case.n_0)
-        contact.at(x, *law)
+        contact.at(x, ContactParameters(*law))
         J, size = np.array(contact.jacobian), max(case.k_u, case.k_v)
         contact.cycle.slider.tolerance = 1e-11
         for column in range(x.size):
@@ -69,7 +70,7 @@ def test_along_a_line_as_a_balance_uses_it():
         found, case = [], along_a_line(case, rng)
         for options in (OPTIONS, FINEST):
             contact, x = kernel(case, options=options)
-            contact.at(x, case.mu, case.k_u, case.k_v, case.n_0)
+            contact.at(x, ContactParameters(case.mu, case.k_u, case.k_v, case.n_0))
             found.append(np.array(contact.jacobian))
         assert np.abs(found[0] - found[1]).max() <= 1e-6 * max(case.k_u, case.k_v), case
 
@@ -82,7 +83,7 @@ def test_across_a_line_from_closing_to_opening():
     assert case.sequence() == "PS"
     contact, x = kernel(case)
     law = (case.mu, case.k_u, case.k_v, case.n_0)
-    contact.at(x, *law)
+    contact.at(x, ContactParameters(*law))
     J = np.array(contact.jacobian)
     for column in range(x.size):
         found, error = differences(contact, x, law, column, 1e-2)
@@ -100,7 +101,7 @@ def test_motions_far_smaller_than_the_load_allows(small, k_v, options):
     for n_0, phase in itertools.product((0.0, 0.3, -0.3), (0.3, 1.0, 2.0, 4.0)):
         x = np.array([0, 0, 0, 1, 0, 0.4 * np.sin(1), -0.4 * np.cos(1), 0, 0]) * small
         x[7:] = np.cos(phase), np.sin(phase)
-        contact.at(x, *law, k_v * n_0)
+        contact.at(x, ContactParameters(*law, k_v * n_0))
         J = np.array(contact.jacobian)
         assert [contact.cycle.slider.state[p] for p in range(contact.cycle.slider.pieces)] == [0, 1, 2]
         for column in (7, 8):
@@ -117,9 +118,9 @@ def test_load_that_is_small_beside_the_motion(small):
     case = Planar(u_x, u_y, small * v, 0.5, 1.0, 1.0, small)
     contact, x = kernel(case)
     law = (case.mu, case.k_u, case.k_v, case.n_0)
-    contact.at(x, *law, gradient=False)
+    contact.at(x, ContactParameters(*law), gradient=False)
     panels = contact.cycle.slider.panels
-    contact.at(x, *law)
+    contact.at(x, ContactParameters(*law))
     assert contact.cycle.slider.panels < 1.2 * panels
     J = np.array(contact.jacobian)
     contact.cycle.slider.tolerance = 1e-11
@@ -195,7 +196,7 @@ def test_shape_and_a_motion_that_is_open_or_stuck():
 def test_a_slider_at_rest_that_two_discs_hold_in_a_kernel_that_has_not_slipped(x):
     x, law = np.array(x), (0.4, 1.0, 1.0, 2.0)
     contact = PlanarContact([1], [1])
-    contact.at(x, *law)
+    contact.at(x, ContactParameters(*law))
     assert contact.cycle.resting.held == 2
     J = np.array(contact.jacobian)
     assert np.abs(J[:2, 3:7]).max() > 0.1
@@ -203,7 +204,7 @@ def test_a_slider_at_rest_that_two_discs_hold_in_a_kernel_that_has_not_slipped(x
         found, _ = differences(contact, x, law, column, 1e-7)
         assert np.abs(J[:, column] - found).max() <= 1e-6
     # and no disc is missed
-    contact.at(x, *law)
+    contact.at(x, ContactParameters(*law))
     theta, force = np.linspace(0.0, 2.0 * np.pi, 20001), np.array(contact.forces)
     u_x, u_y, v = (x[i + 3 + i] * np.cos(theta) - x[i + 4 + i] * np.sin(theta) for i in range(3))
     held = np.hypot(u_x + force[0], u_y + force[1]) - 0.4 * (2.0 + v)

@@ -13,6 +13,7 @@ import matplotlib as mpl
 import numpy as np
 
 import fcm
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import PlanarOptions
 from fcm.plot.loop import STATES
@@ -266,7 +267,7 @@ def sampled_slip(figure):
             tolerance=1.0, panel_length=2.0 * length, last_change=1e-8
         )  # no panel is longer
         contact = PlanarContact([1], [1], options=options)
-        contact.at(np.array([0, 0, 0, 1.0, 0, 0, -0.7, 1.0, 0]), *LAW.values(), gradient=False)
+        contact.at(np.array([0, 0, 0, 1.0, 0, 0, -0.7, 1.0, 0]), ContactParameters(**LAW), gradient=False)
         errors.append(abs(np.array(contact.forces)[3:7].view(complex) - best).max())
     for name, x, y, colour in (
         ("radial return", counts, sampled, ORANGE),

@@ -1,17 +1,14 @@
 from fcm.contact.closed_form cimport CoefficientLaw
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.forces cimport PeriodicContact
 from fcm.contact.periodic.margins cimport Margins, Measures
 
 cdef int KINDS
 
-cdef class Law:
+cdef class Law(ContactParameters):
     cdef public int width
     cdef public int directions
     cdef public int margins
-    cdef public double mu
-    cdef public double k_u
-    cdef public double k_v
-    cdef public double n_0
     cdef public bint nonlinear
     cdef public double[::1] force
     cdef public double[:, ::1] tangent

@@ -27,12 +27,14 @@ from fcm.model.scene import Contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK
     from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.closed_form import PI
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK
     from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
     from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
@@ -47,7 +49,7 @@ NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass
-class Law:
+class Law(ContactParameters):
     """A contact with so many directions, whose forces may have more harmonics than its motion.
 
     Attributes
@@ -72,7 +74,7 @@ class Law:
         self, width: cython.int, directions: cython.int, margins: cython.int, contact: Contact
     ) -> None:
         self.width, self.directions, self.margins = width, directions, margins
-        self.mu, self.k_u, self.k_v, self.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
+        ContactParameters.__init__(self, contact.mu, contact.k_u, contact.k_v, contact.n_0)
         self.nonlinear = False
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
@@ -213,14 +215,14 @@ class LineLaw(KernelLaw):
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
-        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
+        self.kernel.evaluate(x, first, self, tangent)
         self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour, x, first)
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
+        self.bounds.find(x, first, self)
         return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
@@ -251,7 +253,7 @@ class LineLaw(KernelLaw):
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         if self.measures is None:
             self.measures = Measures(self.kernel.cycle)
-        self.kernel.cycle.take(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0)
+        self.kernel.cycle.take(x, first, self)
         self.pieces = self.kernel.cycle.pieces
         self.measures.bear(self.k_u)
         self.contact_loads[0] = max(self.measures.greatest_load, 0.0)

@@ -38,14 +38,14 @@ class PlanarLaw(KernelLaw):
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """Compute the forces, and their tangent if that is wanted."""
-        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
+        self.kernel.evaluate(x, first, self, tangent)
         self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour, x, first)
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
+        self.bounds.find(x, first, self)
         return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
@@ -56,7 +56,7 @@ class PlanarLaw(KernelLaw):
         if kind != SLIPS:
             return NAN
         own: cython.double[::1] = x[first : first + self.width]
-        grown: cython.double = self.bounds.overlap(own, self.mu, self.k_u, self.k_v, self.n_0, False)
+        grown: cython.double = self.bounds.overlap(own, self, False)
         return grown if self.bounds.resting.brief() else NAN
 
     @cython.ccall
@@ -86,7 +86,7 @@ class PlanarLaw(KernelLaw):
     @cython.exceptval(-1, check=False)
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         self.forces(x, first, False)
-        self.measures.bear(self.mu, self.k_u)
+        self.measures.bear(self)
         self.pieces = self.measures.pieces
         self.contact_loads[0], self.contact_loads[1] = (
             self.measures.greatest_load,

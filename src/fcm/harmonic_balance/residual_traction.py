@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.continuation.corrector import Newton
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_law import Law, LineLaw
@@ -101,7 +102,7 @@ class FixedTractionContact(Law):
 
     def mean_from(self, block: FloatArray, start: FloatArray) -> FloatArray | None:
         """Mean friction force of a contact that began at a place; None where it slips or opens."""
-        self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0, *start.tolist())
+        self.kernel.at(block, ContactParameters(self.mu, self.k_u, self.k_v, self.n_0, *start.tolist()))
         force, spring = np.array(self.kernel.forces), (self.springs * block)[self.directions :]
         off = np.abs(force[self.directions :] - spring).max()
         return force[: start.size] if off <= TRACTION.stick_tolerance * np.abs(spring).max() else None
@@ -115,7 +116,7 @@ class _FixedTractionBalance:
         self.balance: Balance = system.new_balance()
         self.free = system.exact_laws(system.harmonics)
         each = zip(system.scene.contacts, self.free, strict=True)
-        self.laws = [FixedTractionContact(contact, law) for contact, law in each]  # type: ignore[arg-type]
+        self.laws = [FixedTractionContact(contact, law) for contact, law in each]
         self.fix(np.zeros(0, dtype=np.intp), np.zeros((0, 0)))
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)

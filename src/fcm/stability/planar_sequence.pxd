@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.plane.forces cimport PlanarContact
 
 cdef class PlanarSequence:
@@ -6,6 +7,7 @@ cdef class PlanarSequence:
     cdef readonly object options
     cdef double invisible
     cdef PlanarContact kernel
+    cdef ContactParameters parameters
     cdef readonly double[:, ::1] contact, begin, record
     cdef readonly int[::1] count, first
     cdef readonly int[:, ::1] state

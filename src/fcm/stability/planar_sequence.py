@@ -16,6 +16,7 @@ from fcm.contact.plane.radau import radau
 from fcm.stability.options import STABILITY, PlanarStabilityOptions
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import SEPARATION, STICK, join_states
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import UNSOLVED
@@ -24,6 +25,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.slider import SLIP
     from cython.cimports.fcm.stability.state_sequence import FREE
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.cycle import SEPARATION, STICK, join_states
     from fcm.contact.periodic.motion import TWO_PI, UNKNOWN
     from fcm.contact.plane.cycle import UNSOLVED
@@ -67,6 +69,7 @@ class PlanarSequence:
         numbers = [int(h) for h in harmonics]
         self.options, self.invisible = options, OPTIONS.min_state_length
         self.contact, self.contacts = np.ascontiguousarray(contact), contact.shape[0]
+        self.parameters = ContactParameters()
         self.kernel = PlanarContact(numbers, [1], options.initial_panels)
         self.width, self.capacity = 3 + 6 * len(numbers), self.kernel.cycle.slider.capacity
         self.count = np.zeros(self.contacts, dtype=np.intc)
@@ -100,20 +103,19 @@ class PlanarSequence:
         """Find the cycle of one contact."""
         i: cython.int
         k: cython.int
-        mu: cython.double = self.contact[c, 0]
-        k_u: cython.double = self.contact[c, 1]
-        k_v: cython.double = self.contact[c, 2]
-        n_0: cython.double = self.contact[c, 3]
         first: cython.Py_ssize_t = c * self.width
-        kind: cython.int = self.kernel.evaluate(x, first, mu, k_u, k_v, n_0, 0.0, 0.0, False)
+        given: ContactParameters = self.parameters
+        given.take_row(self.contact, c)
+        kind: cython.int = self.kernel.evaluate(x, first, given, False)
         if kind in (UNKNOWN, UNSOLVED):
             return False
         if self.kernel.cycle.slider.panels > self.kernel.cycle.slider.most_panels:
             harmonics = np.asarray(self.kernel.motion.number).tolist()
             self.kernel = PlanarContact(harmonics, [1], 2 * self.kernel.cycle.slider.panels)
             return self.look(x, c)
-        ratio: cython.double = mu * k_v / k_u if k_u > 0.0 else 0.0
-        self.mean[c] = mu * (n_0 + k_v * x[first + 2]) / k_u if k_u > 0.0 else 0.0
+        ratio: cython.double = given.mu * given.k_v / given.k_u if given.k_u > 0.0 else 0.0
+        load: cython.double = given.n_0 + given.k_v * x[first + 2]
+        self.mean[c] = given.mu * load / given.k_u if given.k_u > 0.0 else 0.0
         for k in range(self.order.shape[0]):
             for i in range(3):
                 by: cython.double = ratio if i == 2 else 1.0

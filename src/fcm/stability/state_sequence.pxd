@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport LineMotion
 
@@ -18,6 +19,7 @@ cdef class BalancedSequence(StateSequence):
     cdef readonly int width, moving, held
     cdef public bint yielding
     cdef readonly double[:, ::1] contact
+    cdef ContactParameters parameters
     cpdef bint find_events(self, double[::1] x) except -1
     cdef bint contact_cycle(self, double[::1] x, int c) noexcept
     cdef bint opens(self) noexcept

@@ -16,9 +16,11 @@ from cython.cimports.libc.math import fabs
 from fcm.contact.kernels import periodic_contact
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
     from cython.cimports.fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
     from fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
 
@@ -112,7 +114,7 @@ class BalancedSequence(StateSequence):
 
     def __init__(self, contact: npt.NDArray[np.float64], harmonics: list[int]) -> None:
         self.width = 2 + 4 * len(harmonics)
-        self.contact = np.ascontiguousarray(contact)
+        self.contact, self.parameters = np.ascontiguousarray(contact), ContactParameters()
         kernel = periodic_contact(tuple(harmonics), tuple(harmonics))
         self.motion, self.cycle = kernel.motion, kernel.cycle
         contacts = contact.shape[0]
@@ -141,12 +143,9 @@ class BalancedSequence(StateSequence):
         e: cython.int
         kind: cython.int
         state: cython.int
-        mu: cython.double = self.contact[c, 0]
-        k_u: cython.double = self.contact[c, 1]
-        rubs: cython.bint = mu > 0.0 and k_u > 0.0
-        first: cython.Py_ssize_t = c * self.width
-        kind = self.motion.load(x, first, mu, k_u, self.contact[c, 2], self.contact[c, 3])
-        kind = self.cycle.solve(kind, -k_u * x[first] / self.motion.scale)
+        self.parameters.take_row(self.contact, c)
+        rubs: cython.bint = self.parameters.mu > 0.0 and self.parameters.k_u > 0.0
+        kind = self.cycle.take(x, c * self.width, self.parameters)
         self.remembers[c] = 0
         if kind == UNKNOWN:
             return False

@@ -147,8 +147,7 @@ def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ..
     Those that hold the place which all miss least do so with weights by which their directions vanish, and
     with the same weights the distances change; the place may move, and makes no difference.
     """
-    numbers, block = (law.mu, law.k_u, law.k_v, law.n_0), np.ascontiguousarray(x)
-    grown = law.bounds.overlap(block, *numbers, kind == START)
+    grown = law.bounds.overlap(np.ascontiguousarray(x), law, kind == START)
     resting, motion = law.bounds.resting, law.bounds.motion
     if kind == START:
         angles, place = np.array([resting.angle]), -np.array([motion.mean_x, motion.mean_y])

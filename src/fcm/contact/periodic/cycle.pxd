@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.motion cimport ZeroCrossings, CycleEvents
 
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
@@ -22,10 +23,11 @@ cdef class LineCycle(Slider):
     cdef readonly double overlap, greatest_lower, least_upper
     cdef readonly int behaviour, kind
     cdef readonly double start
-    cdef double[::1] numbers, law
+    cdef double[::1] numbers
+    cdef ContactParameters contact
     cdef int[::1] order
-    cdef int take(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0, double start) noexcept nogil
-    cdef bint known(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0, double start) noexcept nogil
+    cdef int take(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
+    cdef bint known(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef int solve(self, int behaviour, double start) noexcept nogil
     cdef bint far_inside(self, double start) noexcept nogil
     cdef void sort_cuts(self) noexcept nogil

@@ -19,6 +19,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.motion import (
         BOTTOM,
         CLOSED,
@@ -41,6 +42,7 @@ if cython.compiled:
         ZeroCrossings,
     )
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.motion import (
         BOTTOM,
         CLOSED,
@@ -187,23 +189,24 @@ class Slider(CycleEvents):
         low: float = self.motion.first + j * self.motion.step
         value: float
         slope: float
-        begin: float
         while low > self.span_begin:
             value, slope = self.motion.at[row, node] - self.w, self.motion.at[row + 1, node]
             if low < theta:
                 if value * side < 0.0:
-                    begin = self.crossings.root(row, self.w, low, value, slope, theta, g, d)
-                    return begin
+                    break
                 if value != 0.0:
                     theta, g, d = low, value, slope
             j -= 1
             node = node - 1 if node > 0 else self.motion.nodes - 1
             low = self.motion.first + j * self.motion.step
-        value = (self.lower[self.span] if side > 0 else self.upper[self.span]) - self.w
-        slope = self.lower_rate[self.span] if side > 0 else self.upper_rate[self.span]
-        if value * side > -self.crossings.noise:
-            value = 0.0  # the limit lets go of the slider here, and comes back
-        begin = self.crossings.root(row, self.w, self.span_begin, value, slope, theta, g, d)
+        else:
+            low = self.span_begin
+            value = (self.lower[self.span] if side > 0 else self.upper[self.span]) - self.w
+            slope = self.lower_rate[self.span] if side > 0 else self.upper_rate[self.span]
+            if value * side > -self.crossings.noise:
+                value = 0.0  # the limit lets go of the slider here, and comes back
+        self.crossings.begin_at(low, value, slope)
+        begin: float = self.crossings.root(row, self.w, theta, g, d)
         return begin
 
 
@@ -228,49 +231,29 @@ class LineCycle(Slider):
         self.overlap = self.greatest_lower = self.least_upper = 0.0
         self.behaviour = self.kind = UNKNOWN
         self.start = 0.0
-        self.numbers, self.law = np.zeros(2 + 4 * motion.count), np.zeros(5)
+        self.numbers, self.contact = np.zeros(2 + 4 * motion.count), ContactParameters()
 
-    def take(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start: float,
-    ) -> cython.int:
+    def take(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
         """Solves the cycle of the motion x[first:], see `solve`; does nothing for the motion taken last."""
-        if self.known(x, first, mu, k_u, k_v, n_0, start):
+        if self.known(x, first, contact):
             return self.kind
         i: cython.Py_ssize_t
-        self.behaviour = self.motion.load(x, first, mu, k_u, k_v, n_0)
-        if self.behaviour == UNKNOWN or not isfinite(start):
+        self.behaviour = self.motion.load(x, first, contact)
+        if self.behaviour == UNKNOWN or not isfinite(contact.start_x):
             self.kind = self.solve(UNKNOWN, 0.0)
             return self.kind
-        self.start = k_u * (start - x[first]) / self.motion.scale
+        self.start = contact.k_u * (contact.start_x - x[first]) / self.motion.scale
         self.kind = self.solve(self.behaviour, self.start)
         for i in range(self.numbers.shape[0]):
             self.numbers[i] = x[first + i]
-        self.law[0], self.law[1], self.law[2], self.law[3], self.law[4] = mu, k_u, k_v, n_0, start
+        self.contact.take(contact)
         self.motion.taken = True
         return self.kind
 
-    def known(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start: float,
-    ) -> bool:
-        """Whether the motion, parameters and start equal those taken last."""
+    def known(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> bool:
+        """Whether motion and parameters equal those taken last."""
         i: cython.Py_ssize_t
-        if not (self.motion.taken and self.law[0] == mu and self.law[1] == k_u and self.law[2] == k_v):
-            return False
-        if not (self.law[3] == n_0 and self.law[4] == start):
+        if not (self.motion.taken and self.contact.equals(contact)):
             return False
         for i in range(self.numbers.shape[0]):  # noqa: SIM110 - a loop in C
             if self.numbers[i] != x[first + i]:

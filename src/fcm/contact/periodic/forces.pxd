@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport LineMotion
 
@@ -46,18 +47,8 @@ cdef class PeriodicContact:
     cdef readonly double[::1] forces
     cdef readonly double[:, ::1] jacobian
 
-    cdef int evaluate(
-        self,
-        double[::1] x,
-        Py_ssize_t first,
-        double mu,
-        double k_u,
-        double k_v,
-        double n_0,
-        double start,
-        bint gradient,
-    ) noexcept nogil
+    cdef int evaluate(self, double[::1] x, Py_ssize_t first, ContactParameters contact, bint gradient) noexcept nogil
     cdef void stick(self) noexcept nogil
     cdef void press(self) noexcept nogil
     cdef void slip(self) noexcept nogil
-    cdef void rescale(self, double mu, double k_u, double k_v, bint gradient) noexcept nogil
+    cdef void rescale(self, ContactParameters contact, bint gradient) noexcept nogil

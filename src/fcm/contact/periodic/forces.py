@@ -20,6 +20,7 @@ from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from cython.cimports.fcm.contact.periodic.motion import (
         CLOSED,
@@ -33,6 +34,7 @@ if cython.compiled:
     )
 else:
     from fcm.contact.closed_form import NAN, PI
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from fcm.contact.periodic.motion import CLOSED, FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, LineMotion
 
@@ -401,9 +403,9 @@ class PeriodicContact:
 
         from cython.cimports.fcm.contact.periodic.forces import PeriodicContact
 
-        contact: PeriodicContact                  # PeriodicContact([1, 2, 3, 9], [1, 2, 3, 9, 10])
-        contact.evaluate(x, first, mu, k_u, k_v, n_0, 0.0, True)
-        stiffness = contact.jacobian[2, 2]        # d Re F_1 / d Re U_1
+        kernel: PeriodicContact                   # PeriodicContact([1, 2, 3, 9], [1, 2, 3, 9, 10])
+        kernel.evaluate(x, first, contact, True)  # ContactParameters(mu, k_u, k_v, n_0)
+        stiffness = kernel.jacobian[2, 2]         # d Re F_1 / d Re U_1
 
     Each thread needs one of its own.
     """
@@ -418,18 +420,9 @@ class PeriodicContact:
         self.forces, self.jacobian = np.zeros(self.equations), self.derivatives.jacobian
         self.kind = UNKNOWN
 
-    def at(
-        self,
-        x: cython.double[::1],
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start: float = 0.0,
-        gradient: bool = True,
-    ) -> int:
+    def at(self, x: cython.double[::1], contact: ContactParameters, gradient: bool = True) -> int:
         """Calls `evaluate` from Python."""
-        kind: int = self.evaluate(x, 0, mu, k_u, k_v, n_0, start, gradient)
+        kind: int = self.evaluate(x, 0, contact, gradient)
         return kind
 
     def all(
@@ -447,12 +440,11 @@ class PeriodicContact:
         i: cython.Py_ssize_t
         j: cython.int
         k: cython.int
+        contact: ContactParameters = ContactParameters()
         with cython.nogil:
             for i in range(x.shape[0]):
-                self.evaluate(
-                    x[i], 0, float(parameters[i, 0]), float(parameters[i, 1]), float(parameters[i, 2]),
-                    float(parameters[i, 3]), float(parameters[i, 4]), gradient,
-                )  # fmt: skip
+                contact.take_row(parameters, i)
+                self.evaluate(x[i], 0, contact, gradient)
                 for j in range(self.equations):
                     forces[i, j] = self.forces[j]
                     if gradient:
@@ -460,30 +452,16 @@ class PeriodicContact:
                             jacobians[i, j, k] = self.jacobian[j, k]
 
     def evaluate(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start: float,
-        gradient: bool,
+        self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters, gradient: bool
     ) -> cython.int:
         """Evaluates the motion x[first:]: `forces`, and if wanted their derivatives in `jacobian`.
-
-        Parameters
-        ----------
-        start
-            The displacement u at which the contact began unstressed, usually 0. The slider of a contact that
-            never slips rests there, unless the limits hold it elsewhere.
 
         Returns
         -------
         int
             OPEN, STUCK, MIXED; or UNKNOWN where a number is not finite, and then so are the results.
         """
-        self.kind = self.cycle.take(x, first, mu, k_u, k_v, n_0, start)
+        self.kind = self.cycle.take(x, first, contact)
         nothing: float = NAN if self.kind == UNKNOWN else 0.0
         i: cython.int
         for i in range(self.equations):
@@ -500,7 +478,7 @@ class PeriodicContact:
             elif self.kind == MIXED:
                 self.derivatives.slip()
         if self.kind == STUCK or self.kind == MIXED:
-            self.rescale(mu, k_u, k_v, gradient)
+            self.rescale(contact, gradient)
         return self.kind
 
     def stick(self) -> None:
@@ -559,7 +537,7 @@ class PeriodicContact:
         if not opens:
             self.press()
 
-    def rescale(self, mu: float, k_u: float, k_v: float, gradient: bool) -> None:
+    def rescale(self, contact: ContactParameters, gradient: bool) -> None:
         """Scales the dimensionless forces and derivatives to the units of the arguments."""
         i: cython.int
         part: cython.int
@@ -572,5 +550,5 @@ class PeriodicContact:
                 self.forces[row + part] *= self.motion.scale
                 self.forces[row + step + part] *= self.motion.load_scale
                 if gradient:
-                    self.derivatives.rescale(row + part, k_u, mu * k_v)
-                    self.derivatives.rescale(row + step + part, 0.0, k_v)
+                    self.derivatives.rescale(row + part, contact.k_u, contact.mu * contact.k_v)
+                    self.derivatives.rescale(row + step + part, 0.0, contact.k_v)

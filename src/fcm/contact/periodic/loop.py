@@ -7,6 +7,7 @@ from dataclasses import field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import one_motion
@@ -104,7 +105,7 @@ def periodic_loop(
     contact, x, parameters = one_motion(u, v, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
     if not (np.isfinite(x).all() and np.isfinite(parameters).all()):
         raise ValueError("all coefficients and parameters must be finite numbers")
-    contact.at(x, *parameters)
+    contact.at(x, ContactParameters(*parameters.tolist()))
     measures = Measures(contact.cycle)
     measures.take(k_u)
     length = contact.motion.scale / k_u if k_u > 0.0 else 0.0

@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport ZeroCrossings, LineMotion
 
@@ -15,7 +16,7 @@ cdef class RegimeMargins:
 
 cdef class Margins(RegimeMargins):
     cdef readonly LineCycle cycle
-    cdef void find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
+    cdef void find(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void slips(self, int kind, int behaviour, double start) noexcept nogil
     cdef void holders(self, int extreme, int kind, double[::1] limit, double side) noexcept nogil
 

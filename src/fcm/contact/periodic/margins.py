@@ -23,6 +23,7 @@ from cython.cimports.libc.math import cos, fabs, sin
 from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import (
         NEGATIVE,
         POSITIVE,
@@ -52,6 +53,7 @@ if cython.compiled:
         ZeroCrossings,
     )
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from fcm.contact.periodic.motion import (
         BOTTOM,
@@ -134,16 +136,14 @@ class Margins(RegimeMargins):
         RegimeMargins.__init__(self, cycle.motion, 2 * cycle.motion.highest + 2)
         self.cycle = cycle
 
-    def find(
-        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
-    ) -> None:
+    def find(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> None:
         """Computes the margins of the motion x[first:] of a contact; see `PeriodicContact`."""
-        kind: cython.int = self.cycle.take(x, first, mu, k_u, k_v, n_0, 0.0)
+        kind: cython.int = self.cycle.take(x, first, contact)
         self.count = 0
         if self.cycle.behaviour == UNKNOWN:
             return
         self.loads(self.cycle.behaviour)
-        if mu * k_u > 0.0 and kind != OPEN:
+        if contact.mu * contact.k_u > 0.0 and kind != OPEN:
             self.slips(kind, self.cycle.behaviour, self.cycle.start)
 
     def slips(self, kind: cython.int, behaviour: cython.int, start: float) -> None:

@@ -1,3 +1,5 @@
+from fcm.contact.contact_kernel cimport ContactParameters
+
 cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH, OPEN, CLOSED, MIXED, UNKNOWN
 cdef double EPSILON, LEAST, TWO_PI, FIRST_NODE
 
@@ -17,7 +19,7 @@ cdef class LineMotion(Nodes):
     cdef readonly double[::1] order, mean, load_bound, limit_bound
     cdef readonly double[:, ::1] re, im, at
     cdef bint taken, sampled
-    cdef int load(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
+    cdef int load(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
     cdef int behaviour(self) noexcept nogil
     cdef void bound(self) noexcept nogil
@@ -48,7 +50,8 @@ cdef class ZeroCrossings:
     cdef void interval(self, int j) noexcept nogil
     cdef bint proved(self, double length, double g_0, double d_0, double g_1, double d_1) noexcept nogil
     cdef void note(self, double theta, double value, double slope) noexcept nogil
-    cdef double root(self, int row, double level, double low, double g_low, double d_low, double high, double g_high, double d_high) noexcept nogil
+    cdef void begin_at(self, double theta, double value, double slope) noexcept nogil
+    cdef double root(self, int row, double level, double high, double g_high, double d_high) noexcept nogil
 
 cdef double _cubic(double g_0, double d_0, double g_1, double d_1) noexcept nogil
 cdef double _last_root(double c_0, double c_1, double c_2) noexcept nogil

@@ -23,8 +23,10 @@ from cython.cimports.libc.math import atan2, ceil, cos, fabs, floor, hypot, isfi
 from fcm.contact.options import PERIODIC, PeriodicOptions
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.cubic import powers, slope_bounds, value_bounds
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.cubic import powers, slope_bounds, value_bounds
 
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
@@ -112,10 +114,12 @@ class LineMotion(Nodes):
         self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
         self.at = np.zeros((REACH, self.many))
 
-    def load(
-        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
-    ) -> cython.int:
-        """Takes a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
+    def load(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
+        """Takes a motion x[first:]; OPEN, CLOSED or MIXED, UNKNOWN where a number is not finite."""
+        mu: float = contact.mu
+        k_u: float = contact.k_u
+        k_v: float = contact.k_v
+        n_0: float = contact.n_0
         self.taken = self.sampled = False
         self.moving = 0
         k: cython.int
@@ -401,28 +405,25 @@ class ZeroCrossings:
         sign: cython.int = 1 if value > 0.0 else -1
         kind: cython.int = self.rising if sign > 0 else self.falling
         if sign == -self.sign and kind >= 0 and self.count < self.capacity:  # which all zeros have
-            self.angle[self.count] = self.root(
-                self.row, 0.0, self.last, self.last_value, self.last_slope, theta, value, slope
-            )
+            self.angle[self.count] = self.root(self.row, 0.0, theta, value, slope)
             self.kind[self.count] = kind
             self.count += 1
-        self.sign, self.last, self.last_value, self.last_slope = sign, theta, value, slope
+        self.sign = sign
+        self.begin_at(theta, value, slope)
 
-    def root(
-        self,
-        row: cython.int,
-        level: float,
-        low: float,
-        g_low: float,
-        d_low: float,
-        high: float,
-        g_high: float,
-        d_high: float,
-    ) -> float:
-        """Angle at which a row takes a value, between angles on either side: Halley's method, bracketed.
+    def begin_at(self, theta: float, value: float, slope: float) -> None:
+        """Makes a point the last one of the walk."""
+        self.last, self.last_value, self.last_slope = theta, value, slope
 
-        g_low, g_high: row minus level there; not zero, but the first where the row turns in between.
+    def root(self, row: cython.int, level: float, high: float, g_high: float, d_high: float) -> float:
+        """Angle at which a row takes a value, from the last point on: Halley's method, bracketed.
+
+        g_high, d_high: row minus level, not zero, and its slope at an angle beyond. So are the value and
+        slope of the last point, but that may be zero where the row turns in between.
         """
+        low: float = self.last
+        g_low: float = self.last_value
+        d_low: float = self.last_slope
         up: bool = g_high > 0.0
         length: float = high - low
         # near an end where it turns, the sign of the row is that of a rounding error

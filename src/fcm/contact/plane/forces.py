@@ -11,12 +11,14 @@ from cython.cimports.libc.math import hypot
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from cython.cimports.fcm.contact.plane.panel import LOAD, REACH, SCAN, STAGES, PlaneMotion, X, Y
 else:
     from fcm.contact.closed_form import NAN, PI
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
@@ -61,19 +63,9 @@ class PlanarContact:
         self.forces, self.jacobian = np.zeros(self.equations), self.derivatives.jacobian
         self.kind = UNKNOWN
 
-    def at(
-        self,
-        x: cython.double[::1],
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start_x: float = 0.0,
-        start_y: float = 0.0,
-        gradient: bool = True,
-    ) -> int:
+    def at(self, x: cython.double[::1], contact: ContactParameters, gradient: bool = True) -> int:
         """Calls `evaluate` from Python."""
-        kind: int = self.evaluate(x, 0, mu, k_u, k_v, n_0, start_x, start_y, gradient)
+        kind: int = self.evaluate(x, 0, contact, gradient)
         return kind
 
     def all(
@@ -94,12 +86,11 @@ class PlanarContact:
         j: cython.int
         k: cython.int
         unsolved: cython.Py_ssize_t = -1
+        contact: ContactParameters = ContactParameters()
         with cython.nogil:
             for i in range(x.shape[0]):
-                if self.evaluate(
-                    x[i], 0, float(parameters[i, 0]), float(parameters[i, 1]), float(parameters[i, 2]),
-                    float(parameters[i, 3]), float(parameters[i, 4]), float(parameters[i, 5]), gradient,
-                ) == UNSOLVED:  # fmt: skip
+                contact.take_row(parameters, i)
+                if self.evaluate(x[i], 0, contact, gradient) == UNSOLVED:
                     unsolved = i
                 for j in range(self.equations):
                     forces[i, j] = self.forces[j]
@@ -110,24 +101,9 @@ class PlanarContact:
         return found
 
     def evaluate(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start_x: float,
-        start_y: float,
-        gradient: bool,
+        self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters, gradient: bool
     ) -> cython.int:
         """Evaluates the motion x[first:]: `forces`, and if wanted their derivatives in `jacobian`.
-
-        Parameters
-        ----------
-        start_x, start_y
-            The displacement at which the contact began unstressed, usually 0. The slider of a contact that
-            never slips rests there, or at the nearest place that all slip limits allow.
 
         Returns
         -------
@@ -135,11 +111,14 @@ class PlanarContact:
             OPEN, STUCK, MIXED; UNKNOWN where a number is not finite, and then so are the results; or UNSOLVED
             where no steady cycle was found, and then they are not finite either.
         """
-        behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        behaviour: cython.int = self.motion.load(x, first, contact)
         if behaviour != UNKNOWN and gradient:
             self.motion.moving = self.motion.count
-        s_x: float = k_u * start_x / self.motion.scale - self.motion.mean_x if behaviour != UNKNOWN else NAN
-        s_y: float = k_u * start_y / self.motion.scale - self.motion.mean_y if behaviour != UNKNOWN else NAN
+        s_x: float = NAN
+        s_y: float = NAN
+        if behaviour != UNKNOWN:
+            s_x = contact.k_u * contact.start_x / self.motion.scale - self.motion.mean_x
+            s_y = contact.k_u * contact.start_y / self.motion.scale - self.motion.mean_y
         if not s_x - s_x == s_y - s_y == 0.0:
             behaviour = UNKNOWN
         if gradient:
@@ -160,7 +139,7 @@ class PlanarContact:
                 self.derivatives.settle(self.cycle.behaviour == CLOSED)
                 self.derivatives.direct()
         if self.kind == STUCK or self.kind == MIXED:
-            self.rescale(mu, k_u, k_v, gradient)
+            self.rescale(contact, gradient)
         elif gradient:
             self.derivatives.fill(nothing)
         return self.kind
@@ -326,7 +305,7 @@ class PlanarContact:
                 self.jacobian[0, j] = det * (b * x - e_y * self.derivatives.turn[j])
                 self.jacobian[1, j] = det * (e_x * self.derivatives.turn[j] - a * x)
 
-    def rescale(self, mu: float, k_u: float, k_v: float, gradient: bool) -> None:
+    def rescale(self, contact: ContactParameters, gradient: bool) -> None:
         """Scales the dimensionless forces and derivatives to the units of the arguments."""
         i: cython.int
         p: cython.int
@@ -340,4 +319,4 @@ class PlanarContact:
                 self.forces[row + step + p] *= self.motion.scale
                 self.forces[row + 2 * step + p] *= self.motion.load_scale
         if gradient:
-            self.derivatives.rescale(k_u, mu * k_v, k_v)
+            self.derivatives.rescale(contact.k_u, contact.mu * contact.k_v, contact.k_v)

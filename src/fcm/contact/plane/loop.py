@@ -7,6 +7,7 @@ from dataclasses import field, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.periodic.cycle import join_states
 from fcm.contact.pieces import LoadedPieces, waves_at, within_turn
@@ -166,10 +167,9 @@ def planar_loop(
 def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> PlanarContact:
     """The kernel with the steady cycle solved and all its panels recorded."""
     most = LOOP.recorded_panels
-    mu, k_u, k_v, n_0, *start = parameters.tolist()
     while True:
         contact = PlanarContact(harmonics, harmonics, most, FINEST)
-        contact.at(x, mu, k_u, k_v, n_0, start[0], start[1], False)
+        contact.at(x, ContactParameters(*parameters.tolist()), False)
         if np.isnan(contact.forces).any():
             raise RuntimeError("no steady cycle of the motion was found")
         if contact.cycle.slider.panels <= most:

@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.margins cimport RegimeMargins
 from fcm.contact.periodic.motion cimport ZeroCrossings
 from fcm.contact.plane.cycle cimport PlanarCycle
@@ -9,8 +10,8 @@ cdef class PlanarMargins(RegimeMargins):
     cdef readonly PlaneMotion motion
     cdef readonly PlanarCycle cycle
     cdef readonly Resting resting
-    cdef void hold(self, double[::1] x, double mu, double k_u, double k_v, double n_0, bint start) noexcept nogil
-    cdef int find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
+    cdef void hold(self, double[::1] x, ContactParameters contact, bint start) noexcept nogil
+    cdef int find(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void rests(self, double s_x, double s_y) noexcept nogil
     cdef double other(self) noexcept nogil
     cdef double weaker(self, double s_x, double s_y) noexcept nogil
@@ -27,7 +28,7 @@ cdef class PlanarMeasures:
     cdef readonly int pieces
     cdef readonly int[::1] state
     cdef int[::1] piece
-    cdef void bear(self, double mu, double k_u) noexcept nogil
+    cdef void bear(self, ContactParameters contact) noexcept nogil
     cdef void loads(self) noexcept nogil
     cdef void friction(self) noexcept nogil
     cdef double top(self, int p, double low, double high, double before) noexcept nogil

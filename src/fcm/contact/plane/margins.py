@@ -20,6 +20,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import join_states
     from cython.cimports.fcm.contact.periodic.margins import (
         GREATEST_LOAD,
@@ -41,6 +42,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.resting import FAR
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.cycle import join_states
     from fcm.contact.periodic.margins import GREATEST_LOAD, PAST, SLIPS, RegimeMargins, greatest_load
     from fcm.contact.periodic.motion import CLOSED, LOAD_RATE, MIXED, OPEN, UNKNOWN, ZeroCrossings
@@ -64,11 +66,9 @@ class PlanarMargins(RegimeMargins):
         self.steps = cycle.motion.options.samples_per_radian
         self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
 
-    def find(
-        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
-    ) -> cython.int:
+    def find(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
         """Computes the margins of the motion x[first:] of a contact; see `PlanarContact`."""
-        behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        behaviour: cython.int = self.motion.load(x, first, contact)
         self.count = 0
         if behaviour == UNKNOWN:
             return UNKNOWN
@@ -78,7 +78,7 @@ class PlanarMargins(RegimeMargins):
         if behaviour == MIXED:
             self.normal.sample()
         self.loads(behaviour)
-        if not mu * k_u > 0.0 or kind in (OPEN, UNKNOWN):
+        if not contact.mu * contact.k_u > 0.0 or kind in (OPEN, UNKNOWN):
             return kind
         if kind == STUCK:
             self.rests(s_x, s_y)
@@ -94,23 +94,19 @@ class PlanarMargins(RegimeMargins):
             self.pushes()
         return kind
 
-    def overlap(
-        self, x: cython.double[::1], mu: float, k_u: float, k_v: float, n_0: float, start: bool
-    ) -> float:
+    def overlap(self, x: cython.double[::1], contact: ContactParameters, start: bool) -> float:
         """How far all discs of a motion x must grow to share a place [force]; see `resting`.
 
         With `start` the discs must contain the place where the slider began.
         """
-        self.hold(x, mu, k_u, k_v, n_0, start)
+        self.hold(x, contact, start)
         reach: float = self.resting.beyond if start else self.resting.overlap
         grown: float = reach * self.motion.scale
         return grown
 
-    def hold(
-        self, x: cython.double[::1], mu: float, k_u: float, k_v: float, n_0: float, start: cython.bint
-    ) -> None:
+    def hold(self, x: cython.double[::1], contact: ContactParameters, start: cython.bint) -> None:
         """Lets `resting` examine a motion."""
-        self.motion.load(x, 0, mu, k_u, k_v, n_0)
+        self.motion.load(x, 0, contact)
         self.resting.sampled = False
         if start:
             self.resting.sample()
@@ -237,10 +233,10 @@ class PlanarMeasures:
         self.pieces, most = 0, cycle.slider.capacity + 1
         self.state, self.piece = np.zeros(most, dtype=np.intc), np.zeros(most, dtype=np.intc)
 
-    def bear(self, mu: float, k_u: float) -> None:
+    def bear(self, contact: ContactParameters) -> None:
         """Computes all attributes of the present cycle."""
-        rubs: cython.bint = mu * k_u > 0.0
-        length: float = self.motion.scale / k_u if k_u > 0.0 else 0.0
+        rubs: cython.bint = contact.mu * contact.k_u > 0.0
+        length: float = self.motion.scale / contact.k_u if contact.k_u > 0.0 else 0.0
         self.greatest_friction = self.dissipation = self.slip_path = 0.0
         self.states(rubs)
         self.loads()

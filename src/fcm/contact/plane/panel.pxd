@@ -1,3 +1,4 @@
+from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.motion cimport LineMotion
 
 cdef extern from *:
@@ -83,7 +84,7 @@ cdef class PlaneMotion:
     cdef readonly double[:, ::1] re, im, cos, sin, value, node_cos, node_sin
     cdef double node[64]
     cdef double[::1] line
-    cdef int load(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
+    cdef int load(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
     cdef void bound(self) noexcept nogil
     cdef bint rubs(self) noexcept nogil
@@ -245,7 +246,9 @@ cdef class Panel:
     cdef double b[8]
     cdef double r[8]
     cdef (double, double) gone(self, double part) noexcept nogil
-    cdef bint solve(self, double theta, double length, double left, double e_x, double e_y, double rate, double bend) noexcept nogil
+    cdef double start_rate, start_bend
+    cdef void begin(self, double theta, double e_x, double e_y, double rate, double bend) noexcept nogil
+    cdef bint solve(self, double length, double left) noexcept nogil
     cdef bint newton(self, double slope, double bend) noexcept nogil
     cdef bint improve(self, bint wanted) noexcept nogil
     cdef void residual(self) noexcept nogil

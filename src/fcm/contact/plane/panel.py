@@ -36,6 +36,7 @@ from fcm.contact.plane.options import PlanarOptions
 from fcm.contact.plane.radau import radau
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
     from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
     from cython.cimports.fcm.contact.plane.panel import (
         apply_eight,
@@ -45,6 +46,7 @@ if cython.compiled:
         turn_of_eight,
     )
 else:
+    from fcm.contact.contact_kernel import ContactParameters
     from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
     from fcm.contact.plane.radau import STAGES
 
@@ -105,10 +107,12 @@ class PlaneMotion:
             self.node = np.zeros(8 * stages)
         self.moving = 0
 
-    def load(
-        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
-    ) -> cython.int:
-        """Takes a contact and returns OPEN, CLOSED or MIXED; UNKNOWN where a number is not finite."""
+    def load(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
+        """Takes a motion x[first:]; OPEN, CLOSED or MIXED, UNKNOWN where a number is not finite."""
+        mu: float = contact.mu
+        k_u: float = contact.k_u
+        k_v: float = contact.k_v
+        n_0: float = contact.n_0
         k: cython.int
         p: cython.int
         i: cython.Py_ssize_t = first + 3
@@ -143,7 +147,7 @@ class PlaneMotion:
         self.mean[REACH] = self.ratio * self.mean[LOAD]
         self.fill(x, first + 3, k_u, k_v)
         self.bound()
-        return self.normal.load(self.line, 0, 1.0, 0.0, k_v, n_0)
+        return self.normal.load(self.line, 0, contact)
 
     def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: float, k_v: float) -> None:
         """Fills the coefficients of all rows."""
@@ -262,8 +266,8 @@ class Panel:
 
     Attributes
     ----------
-    theta, length, start_x, start_y
-        The angle [rad] at which it begins, how long it is, and the direction there.
+    theta, length, start_x, start_y, start_rate, start_bend
+        The angle [rad] at which it begins, how long it is, the direction, alpha' and alpha'' there.
     left, fade
         0 if its nodes are Radau's in the angle. Else how far from its beginning the contact opens [rad], and
         the part by which the root of what is left falls: they are in that root. The direction is drawn to
@@ -303,7 +307,8 @@ class Panel:
         )  # fmt: skip
         self.tangent, self.push = np.zeros((2, STAGES + 1))
         self.change, self.rate, self.e_x, self.e_y, self.along = np.zeros((5, STAGES))
-        self.theta = self.length = self.start_x = self.start_y = self.noise = self.left = self.fade = 0.0
+        self.theta = self.length = self.noise = self.left = self.fade = 0.0
+        self.start_x = self.start_y = self.start_rate = self.start_bend = 0.0
         self.speed = np.zeros(STAGES)
         if not cython.compiled:
             self.inverse, self.columns = np.zeros((2, STAGES * STAGES))
@@ -316,20 +321,27 @@ class Panel:
             for j in range(STAGES):
                 self.columns[STAGES * j + i] = self.slopes[i + 1, j + 1]
 
-    def solve(
-        self, theta: float, length: float, left: float, e_x: float, e_y: float, rate: float, bend: float
-    ) -> bool:
-        """Solves a panel from a direction on, with predicted alpha' and alpha''; False if it is too long."""
+    def begin(self, theta: float, e_x: float, e_y: float, rate: float, bend: float) -> None:
+        """Begins at an angle in a direction, which is predicted to change by alpha' and alpha''."""
+        self.theta, self.start_x, self.start_y = theta, e_x, e_y
+        self.start_rate, self.start_bend = rate, bend
+
+    def solve(self, length: float, left: float) -> bool:
+        """Solves a panel of a length from where it begins; False if it is too long."""
         i: cython.int
         gone: float
-        self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
+        rate: float = self.start_rate
+        bend: float = self.start_bend
+        e_x: float = self.start_x
+        e_y: float = self.start_y
+        self.length = length
         self.driven = False
         self.left = left if length < left else 0.0
         self.fade = 1.0 - sqrt(1.0 - length / left) if length < left else 0.0
         self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
         for i in range(STAGES):
             gone, self.speed[i] = self.gone(self.node[i + 1])
-            self.at[i] = theta + gone
+            self.at[i] = self.theta + gone
             self.fall[i] = 1.0 - gone / left if self.fade > 0.0 else 1.0
         self.motion.place_nodes(self.at)
         if not cython.compiled or not face_eight(

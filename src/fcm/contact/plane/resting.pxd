@@ -34,9 +34,10 @@ cdef class Resting:
     cdef double outside(self, double theta) noexcept nogil
     cdef void refine(self, double theta) noexcept nogil
     cdef void exchange(self, bint near, double s_x, double s_y) noexcept nogil
-    cdef void attempt(self, bint near, double s_x, double s_y, int i, int j) noexcept nogil
+    cdef void attempt(self, int i, int j) noexcept nogil
     cdef bint fits(self, double x, double y, double t) noexcept nogil
-    cdef void consider(self, bint near, double s_x, double s_y, double x, double y, double t, int i, int j) noexcept nogil
+    cdef void consider(self, double x, double y, double t) noexcept nogil
     cdef void keep(self, int i) noexcept nogil
-    cdef double best
-    cdef int best_i, best_j
+    cdef bint near
+    cdef double s_x, s_y, best
+    cdef int i, j, best_i, best_j

@@ -67,7 +67,8 @@ class Resting:
         self.node_cos, self.node_sin = np.cos(angle), np.sin(angle)
         self.at, self.gap = np.zeros((3, self.nodes)), np.zeros(self.nodes)
         self.basis = np.zeros((4, 4))
-        self.held = self.best_i = self.best_j = 0
+        self.held = self.i = self.j = self.best_i = self.best_j = 0
+        self.near, self.s_x, self.s_y = False, 0.0, 0.0
         self.w_x = self.w_y = self.overlap = self.beyond = self.angle = 0.0
         self.square, self.stack = np.zeros(self.nodes), np.empty((self.max_halvings + 2, 4))
         self.x = self.y = self.t = self.best = 0.0
@@ -432,7 +433,11 @@ class Resting:
             self.beyond, self.angle = gap, theta
 
     def exchange(self, near: bool, s_x: float, s_y: float) -> None:
-        """Adds the disc missed most to those that hold the place, and finds the best place again."""
+        """Adds the disc missed most to those that hold the place, and finds the best place again.
+
+        The best is the one nearest to a start if `near`, else the one that the discs miss least.
+        """
+        self.near, self.s_x, self.s_y = near, s_x, s_y
         i: cython.int
         j: cython.int
         n: cython.int = self.held
@@ -441,12 +446,12 @@ class Resting:
             self.basis[n, i] = self.motion.value[SCAN, i]
         self.basis[n, 3] = self.angle
         self.found, self.best = False, FAR
-        self.attempt(near, s_x, s_y, -1, -1)
+        self.attempt(-1, -1)
         for i in range(n):
-            self.attempt(near, s_x, s_y, i, -1)
+            self.attempt(i, -1)
             for j in range(i):
                 if not near:
-                    self.attempt(near, s_x, s_y, i, j)
+                    self.attempt(i, j)
         if not self.found:
             return
         i, j = self.best_i, self.best_j
@@ -467,8 +472,9 @@ class Resting:
             self.basis[self.held, p] = self.basis[i, p]
         self.held += 1
 
-    def attempt(self, near: bool, s_x: float, s_y: float, i: cython.int, j: cython.int) -> None:
+    def attempt(self, i: cython.int, j: cython.int) -> None:
         """Tries the places on the circle of the new disc, and on circles i and j unless these are -1."""
+        self.i, self.j = i, j
         n: cython.int = self.held
         r: float = self.basis[n, 2]
         x: float
@@ -477,34 +483,30 @@ class Resting:
         t: float
         u: float
         if i < 0:
-            if not near:
-                self.consider(near, s_x, s_y, self.basis[n, 0], self.basis[n, 1], -r, i, j)
+            if not self.near:
+                self.consider(self.basis[n, 0], self.basis[n, 1], -r)
                 return
-            x, y = s_x - self.basis[n, 0], s_y - self.basis[n, 1]
+            x, y = self.s_x - self.basis[n, 0], self.s_y - self.basis[n, 1]
             d = hypot(x, y)
             d = r / d if d > 0.0 else 0.0
-            self.consider(near, s_x, s_y, self.basis[n, 0] + d * x, self.basis[n, 1] + d * y, 0.0, i, j)
+            self.consider(self.basis[n, 0] + d * x, self.basis[n, 1] + d * y, 0.0)
             return
         x, y = self.basis[i, 0] - self.basis[n, 0], self.basis[i, 1] - self.basis[n, 1]
         d = hypot(x, y)
         if not d > 0.0:
             return
-        if j < 0 and not near:
+        if j < 0 and not self.near:
             t = 0.5 * (d - r - self.basis[i, 2])
             u = (r + t) / d
-            self.consider(near, s_x, s_y, self.basis[n, 0] + u * x, self.basis[n, 1] + u * y, t, i, j)
+            self.consider(self.basis[n, 0] + u * x, self.basis[n, 1] + u * y, t)
             return
         if j < 0:
             # where both circles meet: along the line of the centres, and to both sides
             t = 0.5 * (d + (r - self.basis[i, 2]) * (r + self.basis[i, 2]) / d)
             u = sqrt(max((r - t) * (r + t), 0.0))
             t, u = t / d, u / d
-            self.consider(
-                near, s_x, s_y, self.basis[n, 0] + t * x - u * y, self.basis[n, 1] + t * y + u * x, 0.0, i, j
-            )
-            self.consider(
-                near, s_x, s_y, self.basis[n, 0] + t * x + u * y, self.basis[n, 1] + t * y - u * x, 0.0, i, j
-            )
+            self.consider(self.basis[n, 0] + t * x - u * y, self.basis[n, 1] + t * y + u * x, 0.0)
+            self.consider(self.basis[n, 0] + t * x + u * y, self.basis[n, 1] + t * y - u * x, 0.0)
             return
         # three circles that grow by t: W = p + q t from the new centre, from differences of their squares
         x_2: float = self.basis[j, 0] - self.basis[n, 0]
@@ -527,23 +529,17 @@ class Resting:
         root = -(b + root) if b >= 0.0 else root - b
         if a != 0.0:
             t = root / a
-            self.consider(
-                near, s_x, s_y, self.basis[n, 0] + p_x + q_x * t, self.basis[n, 1] + p_y + q_y * t, t, i, j
-            )
+            self.consider(self.basis[n, 0] + p_x + q_x * t, self.basis[n, 1] + p_y + q_y * t, t)
         if root != 0.0:
             t = c / root
-            self.consider(
-                near, s_x, s_y, self.basis[n, 0] + p_x + q_x * t, self.basis[n, 1] + p_y + q_y * t, t, i, j
-            )
+            self.consider(self.basis[n, 0] + p_x + q_x * t, self.basis[n, 1] + p_y + q_y * t, t)
 
-    def consider(
-        self, near: bool, s_x: float, s_y: float, x: float, y: float, t: float, i: cython.int, j: cython.int
-    ) -> None:
-        """Keeps a place if it misses none of the known discs and is the best so far."""
-        value: float = hypot(x - s_x, y - s_y) if near else t
+    def consider(self, x: float, y: float, t: float) -> None:
+        """Keeps a place if it misses none of the known discs, grown by t, and is the best so far."""
+        value: float = hypot(x - self.s_x, y - self.s_y) if self.near else t
         if value < self.best and self.fits(x, y, t):
             self.best, self.found = value, True
-            self.best_i, self.best_j = i, j
+            self.best_i, self.best_j = self.i, self.j
             self.x, self.y, self.t = x, y, t
 
     def fits(self, x: float, y: float, t: float) -> bool:

@@ -237,11 +237,10 @@ class Slider:
                 length = min(length, min(self.deepest, 1.0 - part * part) * left)
             elif length > 0.6 * left and (length < left or (opens and r <= nothing)):
                 length = 0.6 * left  # nor from closing to opening at once: turns matter between alone
+            self.panel.begin(self.theta, self.e_x, self.e_y, rate, bend)
             for tries in range(200):  # noqa: B007
                 rest = 1e300
-                if self.panel.solve(
-                    self.theta, length, left if graded else 0.0, self.e_x, self.e_y, rate, bend
-                ):
+                if self.panel.solve(length, left if graded else 0.0):
                     rest = self.panel.rest()
                     rest *= max(
                         max(r, self.motion.value[STAGES, 2]) / self.motion.reach,
@@ -267,9 +266,7 @@ class Slider:
             if part <= 1.0:
                 part, _ = self.panel.gone(part)
                 if part > self.shortest:
-                    if not self.panel.solve(
-                        self.theta, part, left if graded else 0.0, self.e_x, self.e_y, rate, bend
-                    ):
+                    if not self.panel.solve(part, left if graded else 0.0):
                         self.next_length = 0.5 * part
                         continue
                     self.accept(True)
