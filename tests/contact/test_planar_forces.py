@@ -43,7 +43,7 @@ def test_forces_and_work_of_random_motions(i):
         assert np.abs(part - coefficients(point[name])).max() <= 1e-11 * case.size
     cycle = case.cycle()
     assert (cycle.kind == STUCK) == point["stuck"]
-    work = cycle.slider.sums.work * cycle.motion.scale**2 / case.k_u
+    work = cycle.slider.integrals.work * cycle.motion.scale**2 / case.k_u
     if cycle.kind == MIXED:
         assert work == pytest.approx(point["work"], rel=1e-10)
     else:
@@ -89,7 +89,7 @@ def test_a_circle_under_constant_load(share):
 
 def test_the_work_of_a_circle():
     case = Planar(np.array([0, 1]), np.array([0, -1j]), np.zeros(1), 1.0, n_0=0.6)
-    sums = case.cycle().slider.sums
+    sums = case.cycle().slider.integrals
     assert sums.work == pytest.approx(2.0 * np.pi * 0.6 * 0.8, rel=1e-13)
     assert sums.path == pytest.approx(2.0 * np.pi * 0.8, rel=1e-13)
 
@@ -187,7 +187,10 @@ def test_friction_takes_energy_and_no_more_than_the_load_allows():
         assert work >= -1e-10 * case.size**2 / case.k_u
         cycle = case.cycle()
         scale = cycle.motion.scale**2 / case.k_u
-        assert work == pytest.approx(cycle.slider.sums.work * scale, abs=1e-9 * scale) or cycle.kind != MIXED
+        assert (
+            work == pytest.approx(cycle.slider.integrals.work * scale, abs=1e-9 * scale)
+            or cycle.kind != MIXED
+        )
         # the forces, summed: their series converge as h**-2
         theta = np.linspace(0.0, 2.0 * np.pi, 101)
         wave = np.exp(1j * np.multiply.outer(theta, np.arange(f_x.size)))

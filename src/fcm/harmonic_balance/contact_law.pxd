@@ -1,7 +1,7 @@
 from fcm.contact.closed_form cimport CoefficientLaw
-from fcm.contact.contact_kernel cimport ContactParameters
-from fcm.contact.periodic.forces cimport PeriodicContact
-from fcm.contact.periodic.margins cimport Margins, Measures
+from fcm.contact.contact_kernel cimport ContactKernel, ContactParameters
+from fcm.contact.periodic.cycle cimport LineCycle
+from fcm.contact.periodic.margins cimport Measures, RegimeMargins
 
 cdef int KINDS
 
@@ -27,15 +27,12 @@ cdef class Law(ContactParameters):
     cpdef int cycle(self, double[::1] x, Py_ssize_t first) except -1
 
 cdef class KernelLaw(Law):
+    cdef public ContactKernel kernel
+    cdef public RegimeMargins bounds
     cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1
-    cdef void take_forces(
-        self, double[::1] forces, int kind, int behaviour, double[::1] x, Py_ssize_t first
-    ) noexcept
-    cdef int take_margins(self, int count, int[::1] kind, double[::1] value, double[::1] angle) except -1
 
 cdef class LineLaw(KernelLaw):
-    cdef public PeriodicContact kernel
-    cdef public Margins bounds
+    cdef LineCycle steady
     cdef Measures measures
 
 cdef class SingleHarmonicLaw(Law):

@@ -13,31 +13,35 @@ is a closed form (section 4 of the paper).
 
 from __future__ import annotations
 
-from typing import Any
-
 import cython
 import numpy as np
 from cython.cimports.libc.math import atan2, hypot, sqrt
 
 from fcm.contact.closed_form import CoefficientLaw
 from fcm.contact.periodic.forces import PeriodicContact
-from fcm.contact.periodic.margins import Margins, Measures
+from fcm.contact.periodic.margins import Margins, Measures, RegimeMargins
 from fcm.harmonic_balance import options
 from fcm.model.scene import Contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK
+    from cython.cimports.fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        STUCK,
+        ContactKernel,
+        ContactParameters,
+    )
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
     from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.closed_form import PI
-    from fcm.contact.contact_kernel import ContactParameters
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK
+    from fcm.contact.contact_kernel import CLOSED, MIXED, STUCK, ContactKernel, ContactParameters
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
     from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
+    from fcm.contact.periodic.motion import TWO_PI
     from fcm.continuation.problem import NONE
 
 
@@ -131,10 +135,16 @@ class Law(ContactParameters):
 
 @cython.cclass
 class KernelLaw(Law):
-    """A law with the forces of a kernel, exact for a motion of any harmonics; contacts may share it."""
+    """A law with the forces of a kernel, exact for a motion of any harmonics.
 
-    def __init__(self, kernel: Any, directions: cython.int, margins: cython.int, contact: Contact) -> None:
-        Law.__init__(self, kernel.unknowns, directions, margins, contact)
+    The kernel is a workspace that contacts may share; the tangent is its array.
+    """
+
+    def __init__(
+        self, kernel: ContactKernel, directions: cython.int, bounds: RegimeMargins, contact: Contact
+    ) -> None:
+        Law.__init__(self, kernel.unknowns, directions, bounds.most, contact)
+        self.kernel, self.bounds = kernel, bounds
         self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
 
     @cython.ccall
@@ -150,48 +160,37 @@ class KernelLaw(Law):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """Compute the forces, and their tangent if that is wanted."""
-        return 0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def take_forces(
-        self,
-        forces: cython.double[::1],
-        kind: cython.int,
-        behaviour: cython.int,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-    ) -> cython.void:
-        """Take the forces of the kernel, less the preload that the structure at rest balances; kind is that
-        of its cycle, behaviour that of its load.
+        """Compute the forces, less the preload that the structure at rest balances, and their tangent if that
+        is wanted.
 
         Where the contact never opens, the difference of mean load and preload would have their rounding.
         That may be more than all that a small motion makes of the mean force.
         """
         i: cython.Py_ssize_t
         normal: cython.int = self.directions - 1
+        self.kernel.evaluate(x, first, self, tangent)
         for i in range(self.force.shape[0]):
-            self.force[i] = forces[i]
+            self.force[i] = self.kernel.forces[i]
+        closed: cython.bint = self.kernel.behaviour == CLOSED
         # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
-        smooth: cython.bint = behaviour == CLOSED and not self.mu * self.k_u > 0.0
-        self.nonlinear = kind == MIXED and not smooth
-        if kind == STUCK or behaviour == CLOSED:
+        smooth: cython.bint = closed and not self.mu * self.k_u > 0.0
+        self.nonlinear = self.kernel.kind == MIXED and not smooth
+        if self.kernel.kind == STUCK or closed:
             self.force[normal] = self.k_v * x[first + normal] + min(self.n_0, 0.0)
         else:
             self.force[normal] -= max(self.n_0, 0.0)
+        return 0
 
-    @cython.cfunc
+    @cython.ccall
     @cython.exceptval(-1, check=False)
-    def take_margins(
-        self, count: cython.int, kind: cython.int[::1], value: cython.double[::1], angle: cython.double[::1]
-    ) -> cython.int:
-        """Take the margins that a kernel has found; the others are absent."""
+    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        """Fill the margins that `bounds` finds; the others are absent."""
         i: cython.Py_ssize_t
+        self.bounds.find(x, first, self)
         for i in range(self.margins):
-            self.kind[i] = kind[i] if i < count else NONE
-        self.margin[:] = value
-        self.angle[:] = angle
+            self.kind[i] = self.bounds.kind[i] if i < self.bounds.count else NONE
+        self.margin[:] = self.bounds.value
+        self.angle[:] = self.bounds.angle
         return 0
 
 
@@ -202,28 +201,12 @@ def kind_of(law: Law, i: int, contact: int) -> int:
 
 @cython.cclass
 class LineLaw(KernelLaw):
-    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
-    is."""
+    """The law of a contact on a line."""
 
     def __init__(self, kernel: PeriodicContact, contact: Contact) -> None:
-        self.kernel, self.bounds = kernel, Margins(kernel.cycle)
-        KernelLaw.__init__(self, kernel, 2, self.bounds.most, contact)
-        self.state = kernel.cycle.state
+        KernelLaw.__init__(self, kernel, 2, Margins(kernel.cycle), contact)
+        self.steady, self.state = kernel.cycle, kernel.cycle.state
         self.measures: Measures | None = None  # made when it is asked for
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """Compute the forces, and their tangent if that is wanted."""
-        self.kernel.evaluate(x, first, self, tangent)
-        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour, x, first)
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.bounds.find(x, first, self)
-        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -232,11 +215,11 @@ class LineLaw(KernelLaw):
         stick: cython.double = 0.0
         closed: cython.double = 0.0
         pushed: cython.double = 0.0
-        for p in range(self.kernel.cycle.pieces):
-            state: cython.int = self.kernel.cycle.state[p]
-            last: cython.bint = p + 1 == self.kernel.cycle.pieces
-            end: cython.double = self.kernel.cycle.begin[0] if last else self.kernel.cycle.begin[p + 1]
-            length: cython.double = end - self.kernel.cycle.begin[p]
+        for p in range(self.steady.pieces):
+            state: cython.int = self.steady.state[p]
+            last: cython.bint = p + 1 == self.steady.pieces
+            end: cython.double = self.steady.begin[0] if last else self.steady.begin[p + 1]
+            length: cython.double = end - self.steady.begin[p]
             while length < 0.0 or (last and length <= 0.0):
                 length += TWO_PI
             length /= TWO_PI
@@ -252,9 +235,9 @@ class LineLaw(KernelLaw):
     @cython.exceptval(-1, check=False)
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         if self.measures is None:
-            self.measures = Measures(self.kernel.cycle)
-        self.kernel.cycle.take(x, first, self)
-        self.pieces = self.kernel.cycle.pieces
+            self.measures = Measures(self.steady)
+        self.steady.take(x, first, self)
+        self.pieces = self.steady.pieces
         self.measures.bear(self.k_u)
         self.contact_loads[0] = max(self.measures.greatest_load, 0.0)
         self.contact_loads[1], self.contact_loads[2] = (

@@ -1,8 +1,8 @@
-from fcm.contact.plane.forces cimport PlanarContact
+from fcm.contact.plane.integrals cimport PlanarIntegrals
 from fcm.contact.plane.margins cimport PlanarMargins, PlanarMeasures
 from fcm.harmonic_balance.contact_law cimport KernelLaw
 
 cdef class PlanarLaw(KernelLaw):
-    cdef public PlanarContact kernel
-    cdef public PlanarMargins bounds
+    cdef readonly PlanarMargins discs
+    cdef PlanarIntegrals integrals
     cdef PlanarMeasures measures

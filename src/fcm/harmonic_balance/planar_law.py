@@ -10,14 +10,14 @@ from fcm.harmonic_balance.contact_law import KernelLaw
 from fcm.model.scene import Contact
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.contact_kernel import MIXED, STUCK
     from cython.cimports.fcm.contact.periodic.margins import SLIPS
-    from cython.cimports.fcm.contact.periodic.motion import MIXED, TWO_PI
-    from cython.cimports.fcm.contact.plane.cycle import STUCK
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
 else:
+    from fcm.contact.contact_kernel import MIXED, STUCK
     from fcm.contact.periodic.margins import SLIPS
-    from fcm.contact.periodic.motion import MIXED, TWO_PI
-    from fcm.contact.plane.cycle import STUCK
+    from fcm.contact.periodic.motion import TWO_PI
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
 
 NAN = cython.declare(cython.double, float("nan"))
@@ -25,28 +25,13 @@ NAN = cython.declare(cython.double, float("nan"))
 
 @cython.cclass
 class PlanarLaw(KernelLaw):
-    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
-    is."""
+    """The law of a contact in a plane."""
 
     def __init__(self, kernel: PlanarContact, contact: Contact) -> None:
-        self.kernel, self.bounds = kernel, PlanarMargins(kernel.cycle)
-        KernelLaw.__init__(self, kernel, 3, self.bounds.most, contact)
-        self.measures = PlanarMeasures(kernel.cycle)
+        self.discs = PlanarMargins(kernel.cycle)
+        KernelLaw.__init__(self, kernel, 3, self.discs, contact)
+        self.integrals, self.measures = kernel.integrals, PlanarMeasures(kernel.cycle)
         self.state = self.measures.state
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """Compute the forces, and their tangent if that is wanted."""
-        self.kernel.evaluate(x, first, self, tangent)
-        self.take_forces(self.kernel.forces, self.kernel.kind, self.kernel.cycle.behaviour, x, first)
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.bounds.find(x, first, self)
-        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
@@ -56,15 +41,14 @@ class PlanarLaw(KernelLaw):
         if kind != SLIPS:
             return NAN
         own: cython.double[::1] = x[first : first + self.width]
-        grown: cython.double = self.bounds.overlap(own, self, False)
-        return grown if self.bounds.resting.brief() else NAN
+        grown: cython.double = self.discs.overlap(own, self, False)
+        return grown if self.discs.resting.brief() else NAN
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def compute_resistance(self) -> cython.int:
         """The resistance along a direction is k_u while it sticks; mu k_v, by the normal displacement, while
         it slips."""
-        sums = self.kernel.sums
         rubs: cython.bint = self.mu * self.k_u > 0.0
         stick: cython.double = 0.0
         closed: cython.double = 0.0
@@ -73,10 +57,13 @@ class PlanarLaw(KernelLaw):
         if self.kernel.kind == STUCK:
             stick = closed = 1.0
         elif self.kernel.kind == MIXED:
-            closed = sums.cos_sum[CONTACT, 0] / TWO_PI
+            closed = self.integrals.cos_sum[CONTACT, 0] / TWO_PI
             if rubs:
-                stick = sums.cos_sum[STICKS, 0] / TWO_PI
-                x, y = sums.cos_sum[SLIPS_X, 0] / TWO_PI, sums.cos_sum[SLIPS_Y, 0] / TWO_PI
+                stick = self.integrals.cos_sum[STICKS, 0] / TWO_PI
+                x, y = (
+                    self.integrals.cos_sum[SLIPS_X, 0] / TWO_PI,
+                    self.integrals.cos_sum[SLIPS_Y, 0] / TWO_PI,
+                )
         self.resistance[0, 0] = self.resistance[1, 1] = stick * self.k_u if rubs else 0.0
         self.resistance[0, 2], self.resistance[1, 2] = x * self.mu * self.k_v, y * self.mu * self.k_v
         self.resistance[2, 2] = closed * self.k_v

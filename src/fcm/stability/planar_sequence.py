@@ -16,19 +16,17 @@ from fcm.contact.plane.radau import radau
 from fcm.stability.options import STABILITY, PlanarStabilityOptions
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
+    from cython.cimports.fcm.contact.contact_kernel import UNKNOWN, UNSOLVED, ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import SEPARATION, STICK, join_states
-    from cython.cimports.fcm.contact.periodic.motion import TWO_PI, UNKNOWN
-    from cython.cimports.fcm.contact.plane.cycle import UNSOLVED
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.contact.plane.forces import PlanarContact
     from cython.cimports.fcm.contact.plane.panel import STAGES
     from cython.cimports.fcm.contact.plane.slider import SLIP
     from cython.cimports.fcm.stability.state_sequence import FREE
 else:
-    from fcm.contact.contact_kernel import ContactParameters
+    from fcm.contact.contact_kernel import UNKNOWN, UNSOLVED, ContactParameters
     from fcm.contact.periodic.cycle import SEPARATION, STICK, join_states
-    from fcm.contact.periodic.motion import TWO_PI, UNKNOWN
-    from fcm.contact.plane.cycle import UNSOLVED
+    from fcm.contact.periodic.motion import TWO_PI
     from fcm.contact.plane.forces import PlanarContact
     from fcm.contact.plane.radau import STAGES
     from fcm.contact.plane.slider import SLIP

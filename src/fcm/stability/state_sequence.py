@@ -16,13 +16,13 @@ from cython.cimports.libc.math import fabs
 from fcm.contact.kernels import periodic_contact
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
-    from cython.cimports.fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
+    from cython.cimports.fcm.contact.contact_kernel import OPEN, STUCK, UNKNOWN, ContactParameters
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
 else:
-    from fcm.contact.contact_kernel import ContactParameters
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
-    from fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
+    from fcm.contact.contact_kernel import OPEN, STUCK, UNKNOWN, ContactParameters
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.motion import TWO_PI
 
 
 FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside those of a cycle

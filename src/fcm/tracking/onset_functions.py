@@ -147,8 +147,8 @@ def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ..
     Those that hold the place which all miss least do so with weights by which their directions vanish, and
     with the same weights the distances change; the place may move, and makes no difference.
     """
-    grown = law.bounds.overlap(np.ascontiguousarray(x), law, kind == START)
-    resting, motion = law.bounds.resting, law.bounds.motion
+    grown = law.discs.overlap(np.ascontiguousarray(x), law, kind == START)
+    resting, motion = law.discs.resting, law.discs.motion
     if kind == START:
         angles, place = np.array([resting.angle]), -np.array([motion.mean_x, motion.mean_y])
     else:

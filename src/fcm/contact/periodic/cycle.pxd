@@ -1,11 +1,11 @@
 from fcm.contact.contact_kernel cimport ContactParameters
 from fcm.contact.periodic.motion cimport ZeroCrossings, CycleEvents
 
-cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
+cdef int STICK, POSITIVE, NEGATIVE, SEPARATION
 
 cpdef int join_states(int[::1] state, int[::1] piece, int count) noexcept nogil
 
-cdef class Slider(CycleEvents):
+cdef class LineCycle(CycleEvents):
     cdef readonly ZeroCrossings crossings
     cdef readonly int pieces
     cdef readonly int[::1] state, event, cause
@@ -19,13 +19,11 @@ cdef class Slider(CycleEvents):
     cdef void slip(self, int side, int end, double theta) noexcept nogil
     cdef double slip_begin(self, int side, int end, double theta) noexcept nogil
 
-cdef class LineCycle(Slider):
-    cdef readonly double overlap, greatest_lower, least_upper
+    cdef readonly double overlap, greatest_lower, least_upper, start
     cdef readonly int behaviour, kind
-    cdef readonly double start
     cdef double[::1] numbers
-    cdef ContactParameters contact
     cdef int[::1] order
+    cdef ContactParameters contact
     cdef int take(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef bint known(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef int solve(self, int behaviour, double start) noexcept nogil

@@ -6,7 +6,7 @@ slider and let go again. So the law there is one clip,
 
     w_end = max(lower, min(w_start, upper)),
 
-and at most one slip, which lasts until the end of the span (`Slider`). While the contact is open, w follows
+and at most one slip, which lasts until the end of the span (`advance`). While the contact is open, w follows
 u. The steady cycle is known from its start on: at a closing w = u; without one, the greatest top pins w if it
 is above the least bottom, and else w never moves (`LineCycle`). A rounding error can shift an event, but
 never choose a wrong sequence by more than that error.
@@ -19,22 +19,25 @@ import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
+    from cython.cimports.fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        OPEN,
+        STUCK,
+        UNKNOWN,
+        ContactParameters,
+    )
     from cython.cimports.fcm.contact.periodic.motion import (
         BOTTOM,
-        CLOSED,
         CLOSES,
         LOAD,
         LOWER,
         LOWER_RATE,
         MEETS,
-        MIXED,
-        OPEN,
         OPENS,
         REACH,
         TOP,
         TWO_PI,
-        UNKNOWN,
         UPPER,
         UPPER_RATE,
         CycleEvents,
@@ -42,22 +45,18 @@ if cython.compiled:
         ZeroCrossings,
     )
 else:
-    from fcm.contact.contact_kernel import ContactParameters
+    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, ContactParameters
     from fcm.contact.periodic.motion import (
         BOTTOM,
-        CLOSED,
         CLOSES,
         LOAD,
         LOWER,
         LOWER_RATE,
         MEETS,
-        MIXED,
-        OPEN,
         OPENS,
         REACH,
         TOP,
         TWO_PI,
-        UNKNOWN,
         UPPER,
         UPPER_RATE,
         CycleEvents,
@@ -95,8 +94,8 @@ def join_states(state: cython.int[::1], piece: cython.int[::1], count: cython.in
 
 
 @cython.cclass
-class Slider(CycleEvents):
-    """The pieces of a cycle in order, up to `pieces`, and the slider at the beginning of the present span.
+class LineCycle(CycleEvents):
+    """A steady cycle of a contact on a line: its pieces in order, up to `pieces`.
 
     Attributes
     ----------
@@ -113,112 +112,6 @@ class Slider(CycleEvents):
     w, slipping, span, span_begin, span_cause
         Of the present span: the slider, the side of a slip that goes on into it (0: it rests), the event and
         the angle at which it begins, and what brought the slider to rest.
-    """
-
-    def __init__(self, motion: LineMotion) -> None:
-        crossings = ZeroCrossings(motion)
-        size = 2 * crossings.capacity + 4
-        CycleEvents.__init__(self, motion, size)
-        self.crossings = crossings
-        self.state, self.event = np.zeros(size, dtype=np.intc), np.zeros(size, dtype=np.intc)
-        self.cause = np.zeros(size, dtype=np.intc)
-        self.begin, self.rest = np.zeros(size), np.zeros(size)
-        self.pieces = self.slipping = self.span = self.span_cause = 0
-        self.span_begin = self.w = 0.0
-
-    def add(self, state: cython.int, event: cython.int, theta: float, rest: float, cause: cython.int) -> None:
-        """Appends a piece, unless the last one has the same state."""
-        i: cython.int = self.pieces
-        if i > 0 and self.state[i - 1] == state:
-            return
-        self.state[i], self.event[i], self.begin[i] = state, event, theta
-        self.rest[i], self.cause[i] = rest, cause
-        self.pieces += 1
-
-    def close(self) -> None:
-        """Sets the slider where the contact closes, and whether it slips at once, (20) to (22)."""
-        self.w, self.span_cause, self.slipping = self.moved[self.span], SEPARATION, 0
-        if self.pushes(POSITIVE):
-            self.slipping = POSITIVE
-        elif self.pushes(NEGATIVE):
-            self.slipping = NEGATIVE
-
-    def pushes(self, side: cython.int) -> bool:
-        """Whether a limit that has met the slider goes on to push it, by more than rounding."""
-        if side == 0:
-            return False
-        rate: float = self.lower_rate[self.span] if side > 0 else -self.upper_rate[self.span]
-        rounding: float = self.crossings.noise
-        return rate > rounding
-
-    def advance(self, end: cython.int, theta: float, kind: cython.int) -> None:
-        """Passes one span, up to a cut at which the contact is closed or opens."""
-        if kind == OPENS:
-            self.lower[end] = self.upper[end] = self.moved[end]
-        self.margin[end] = self.w - self.upper[end] if kind == BOTTOM else self.lower[end] - self.w
-        w: float = max(self.lower[end], min(self.w, self.upper[end]))
-        side: cython.int = POSITIVE if w > self.w else NEGATIVE if w < self.w else 0
-        if side == 0 or side != self.slipping:
-            self.add(STICK, self.span, self.span_begin, self.w, self.span_cause)
-        if side != 0:
-            self.slip(side, end, theta)
-        if side != 0:
-            self.span_cause = side
-        self.w, self.span, self.span_begin = w, end, theta
-        self.slipping = side if kind != (TOP if side > 0 else BOTTOM) and self.pushes(side) else 0
-
-    def slip(self, side: cython.int, end: cython.int, theta: float) -> None:
-        """Appends the slip at the end of a span, from the angle at which it begins."""
-        begin: float
-        if side == self.slipping:
-            self.add(side, self.span, self.span_begin, 0.0, 0)
-        else:
-            begin = self.slip_begin(side, end, theta)
-            self.add(side, self.place(begin, MEETS), begin, 0.0, 0)
-
-    def slip_begin(self, side: cython.int, end: cython.int, theta: float) -> float:
-        """Angle at which the pushing limit meets the resting slider.
-
-        Before, the limit may have receded from it.
-        """
-        row: cython.int = LOWER if side > 0 else UPPER
-        g: float = (self.lower[end] if side > 0 else self.upper[end]) - self.w
-        d: float = self.lower_rate[end] if side > 0 else self.upper_rate[end]
-        j: cython.int = self.motion.node_before(theta)
-        node: cython.int = j % self.motion.nodes
-        low: float = self.motion.first + j * self.motion.step
-        value: float
-        slope: float
-        while low > self.span_begin:
-            value, slope = self.motion.at[row, node] - self.w, self.motion.at[row + 1, node]
-            if low < theta:
-                if value * side < 0.0:
-                    break
-                if value != 0.0:
-                    theta, g, d = low, value, slope
-            j -= 1
-            node = node - 1 if node > 0 else self.motion.nodes - 1
-            low = self.motion.first + j * self.motion.step
-        else:
-            low = self.span_begin
-            value = (self.lower[self.span] if side > 0 else self.upper[self.span]) - self.w
-            slope = self.lower_rate[self.span] if side > 0 else self.upper_rate[self.span]
-            if value * side > -self.crossings.noise:
-                value = 0.0  # the limit lets go of the slider here, and comes back
-        self.crossings.begin_at(low, value, slope)
-        begin: float = self.crossings.root(row, self.w, theta, g, d)
-        return begin
-
-
-STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN: MIXED is any other
-
-
-@cython.cclass
-class LineCycle(Slider):
-    """A steady cycle of a contact on a line; its pieces are those of `Slider`.
-
-    Attributes
-    ----------
     behaviour, kind, start
         Of the motion taken last: as of `LineMotion.load` and `solve`, and the start as `solve` has it.
     greatest_lower, least_upper, overlap
@@ -226,11 +119,17 @@ class LineCycle(Slider):
     """
 
     def __init__(self, motion: LineMotion) -> None:
-        Slider.__init__(self, motion)
-        self.order = np.zeros(self.crossings.capacity, dtype=np.intc)
+        crossings = ZeroCrossings(motion)
+        size = 2 * crossings.capacity + 4
+        CycleEvents.__init__(self, motion, size)
+        self.crossings, self.order = crossings, np.zeros(crossings.capacity, dtype=np.intc)
+        self.state, self.event = np.zeros(size, dtype=np.intc), np.zeros(size, dtype=np.intc)
+        self.cause = np.zeros(size, dtype=np.intc)
+        self.begin, self.rest = np.zeros(size), np.zeros(size)
+        self.pieces = self.slipping = self.span = self.span_cause = 0
+        self.span_begin = self.w = self.start = 0.0
         self.overlap = self.greatest_lower = self.least_upper = 0.0
         self.behaviour = self.kind = UNKNOWN
-        self.start = 0.0
         self.numbers, self.contact = np.zeros(2 + 4 * motion.count), ContactParameters()
 
     def take(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
@@ -377,3 +276,86 @@ class LineCycle(Slider):
             if kind == OPENS:
                 opened = True
                 self.add(SEPARATION, self.span, theta, 0.0, 0)
+
+    def add(self, state: cython.int, event: cython.int, theta: float, rest: float, cause: cython.int) -> None:
+        """Appends a piece, unless the last one has the same state."""
+        i: cython.int = self.pieces
+        if i > 0 and self.state[i - 1] == state:
+            return
+        self.state[i], self.event[i], self.begin[i] = state, event, theta
+        self.rest[i], self.cause[i] = rest, cause
+        self.pieces += 1
+
+    def close(self) -> None:
+        """Sets the slider where the contact closes, and whether it slips at once, (20) to (22)."""
+        self.w, self.span_cause, self.slipping = self.moved[self.span], SEPARATION, 0
+        if self.pushes(POSITIVE):
+            self.slipping = POSITIVE
+        elif self.pushes(NEGATIVE):
+            self.slipping = NEGATIVE
+
+    def pushes(self, side: cython.int) -> bool:
+        """Whether a limit that has met the slider goes on to push it, by more than rounding."""
+        if side == 0:
+            return False
+        rate: float = self.lower_rate[self.span] if side > 0 else -self.upper_rate[self.span]
+        rounding: float = self.crossings.noise
+        return rate > rounding
+
+    def advance(self, end: cython.int, theta: float, kind: cython.int) -> None:
+        """Passes one span, up to a cut at which the contact is closed or opens."""
+        if kind == OPENS:
+            self.lower[end] = self.upper[end] = self.moved[end]
+        self.margin[end] = self.w - self.upper[end] if kind == BOTTOM else self.lower[end] - self.w
+        w: float = max(self.lower[end], min(self.w, self.upper[end]))
+        side: cython.int = POSITIVE if w > self.w else NEGATIVE if w < self.w else 0
+        if side == 0 or side != self.slipping:
+            self.add(STICK, self.span, self.span_begin, self.w, self.span_cause)
+        if side != 0:
+            self.slip(side, end, theta)
+        if side != 0:
+            self.span_cause = side
+        self.w, self.span, self.span_begin = w, end, theta
+        self.slipping = side if kind != (TOP if side > 0 else BOTTOM) and self.pushes(side) else 0
+
+    def slip(self, side: cython.int, end: cython.int, theta: float) -> None:
+        """Appends the slip at the end of a span, from the angle at which it begins."""
+        begin: float
+        if side == self.slipping:
+            self.add(side, self.span, self.span_begin, 0.0, 0)
+        else:
+            begin = self.slip_begin(side, end, theta)
+            self.add(side, self.place(begin, MEETS), begin, 0.0, 0)
+
+    def slip_begin(self, side: cython.int, end: cython.int, theta: float) -> float:
+        """Angle at which the pushing limit meets the resting slider.
+
+        Before, the limit may have receded from it.
+        """
+        row: cython.int = LOWER if side > 0 else UPPER
+        g: float = (self.lower[end] if side > 0 else self.upper[end]) - self.w
+        d: float = self.lower_rate[end] if side > 0 else self.upper_rate[end]
+        j: cython.int = self.motion.node_before(theta)
+        node: cython.int = j % self.motion.nodes
+        low: float = self.motion.first + j * self.motion.step
+        value: float
+        slope: float
+        while low > self.span_begin:
+            value, slope = self.motion.at[row, node] - self.w, self.motion.at[row + 1, node]
+            if low < theta:
+                if value * side < 0.0:
+                    break
+                if value != 0.0:
+                    theta, g, d = low, value, slope
+            j -= 1
+            node = node - 1 if node > 0 else self.motion.nodes - 1
+            low = self.motion.first + j * self.motion.step
+        else:
+            low = self.span_begin
+            value = (self.lower[self.span] if side > 0 else self.upper[self.span]) - self.w
+            slope = self.lower_rate[self.span] if side > 0 else self.upper_rate[self.span]
+            if value * side > -self.crossings.noise:
+                value = 0.0  # the limit lets go of the slider here, and comes back
+        self.crossings.begin_at(low, value, slope)
+        begin: float = self.crossings.root(row, self.w, theta, g, d)
+        return begin

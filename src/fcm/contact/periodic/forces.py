@@ -3,11 +3,11 @@
 Over each piece of the cycle the forces are trigonometric polynomials. So all that is needed are the integrals
 of exp(-i m theta) over the pieces in which the contact sticks, slips (with the sign of the force) and is
 closed. Short sticks are integrated by Gauss's rule instead, from differences since their start: the closed
-form would be a difference of nearly equal numbers (`Integrals`).
+form would be a difference of nearly equal numbers (`LineIntegrals`).
 
 The derivatives are by the coefficients of the motion. The forces are continuous, so the instants of the
 events do not enter; the place where the slider came to rest does. Where an event grazes, a derivative is that
-of the side on which it does not occur (`Derivatives`). What other kernels call: see `PeriodicContact`.
+of the side on which it does not occur (`LineDerivatives`). What other kernels call: see `PeriodicContact`.
 """
 
 from __future__ import annotations
@@ -20,23 +20,32 @@ from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
-    from cython.cimports.fcm.contact.periodic.motion import (
+    from cython.cimports.fcm.contact.contact_kernel import (
         CLOSED,
-        FORCE,
-        LOAD,
         MIXED,
-        REACH,
-        TWO_PI,
+        STUCK,
         UNKNOWN,
-        LineMotion,
+        ContactKernel,
+        ContactParameters,
+        ForceDerivatives,
+        FourierIntegrals,
     )
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, LineCycle
+    from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, REACH, TWO_PI, LineMotion
 else:
     from fcm.contact.closed_form import NAN, PI
-    from fcm.contact.contact_kernel import ContactParameters
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
-    from fcm.contact.periodic.motion import CLOSED, FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, LineMotion
+    from fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        STUCK,
+        UNKNOWN,
+        ContactKernel,
+        ContactParameters,
+        ForceDerivatives,
+        FourierIntegrals,
+    )
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, LineCycle
+    from fcm.contact.periodic.motion import FORCE, LOAD, REACH, TWO_PI, LineMotion
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
@@ -50,21 +59,16 @@ _GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 
 
 @cython.cclass
-class Integrals:
-    """Sums over the pieces of a cycle: integrals of each set of pieces, and of the forces' harmonics."""
+class LineIntegrals(FourierIntegrals):
+    """Integrals over the sets of pieces of a cycle; total_re, total_im (h,): of the force in sticks."""
 
     def __init__(self, cycle: LineCycle, most: int) -> None:
+        FourierIntegrals.__init__(self, cycle.motion, most, 4)
         self.cycle = cycle
-        self.motion = cycle.motion
-        self.most = most
-        self.highest = most + self.motion.highest
-        self.cos_sum, self.sin_sum = np.zeros((2, 4, self.highest + 1))
-        self.power_cos, self.power_sin = np.ones((3, self.highest + 1)), np.zeros((3, self.highest + 1))
         self.stick_re, self.stick_im = np.zeros((2, self.most + 1))
         self.grow_re, self.grow_im = np.zeros((2, self.highest + 1))
         self.total_re, self.total_im = np.zeros((2, self.most + 1))
         self.points, self.weights = _GAUSS
-        self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
 
     def integrate(self) -> None:
         """Sums the integrals of exp(-i m theta) over the pieces, and the forces of short sticks."""
@@ -72,9 +76,7 @@ class Integrals:
         p: cython.int
         last: cython.int = self.cycle.pieces - 1
         e: cython.int = self.cycle.event[0]
-        for m in range(self.highest + 1):
-            for p in range(4):
-                self.cos_sum[p, m] = self.sin_sum[p, m] = 0.0
+        self.clear()
         for m in range(self.most + 1):
             self.total_re[m] = self.total_im[m] = 0.0
         self.powers(0, self.cycle.event_cos[e], self.cycle.event_sin[e])
@@ -84,13 +86,12 @@ class Integrals:
         for p in range(last + 1):
             if p < last:
                 e = self.cycle.event[p + 1]
-                self.powers(end, self.cycle.event_cos[e], self.cycle.event_sin[e])
                 length = self.cycle.begin[p + 1] - self.cycle.begin[p]
             else:
                 end = 2
                 e = self.cycle.event[0]
-                self.powers(end, self.cycle.event_cos[e], self.cycle.event_sin[e])
                 length = self.cycle.begin[0] + TWO_PI - self.cycle.begin[p]
+            self.powers(end, self.cycle.event_cos[e], self.cycle.event_sin[e])
             if self.cycle.state[p] != SEPARATION:
                 self.piece(p, begin, end, max(length, 0.0))
             begin, end = end, begin
@@ -100,46 +101,19 @@ class Integrals:
         m: cython.int
         state: cython.int = self.cycle.state[p]
         w: float = self.cycle.rest[p]
-        sign: float = 0.0
-        long: float = 0.0
-        c: float = length
-        s: float = 0.0
-        if state == STICK:
-            if length * self.highest > SHORT:
-                long = 1.0
-            else:
-                self.short_stick(p, begin, length)
-        else:
-            sign = 1.0 if state == POSITIVE else -1.0
-        for m in range(self.highest + 1):
-            if m > 0:
-                c = (self.power_sin[end, m] - self.power_sin[begin, m]) * self.reciprocal[m]
-                s = (self.power_cos[begin, m] - self.power_cos[end, m]) * self.reciprocal[m]
-            self.cos_sum[CONTACT, m] += c
-            self.sin_sum[CONTACT, m] += s
-            if state != STICK:
-                self.cos_sum[SIGNED_SLIPS, m] += sign * c
-                self.sin_sum[SIGNED_SLIPS, m] += sign * s
-                continue
-            self.cos_sum[STICKS, m] += c
-            self.sin_sum[STICKS, m] += s
-            self.cos_sum[LONG, m] += long * c
-            self.sin_sum[LONG, m] += long * s
-            if m <= self.most:
-                self.total_re[m] -= long * w * c
-                self.total_im[m] += long * w * s
-
-    def powers(self, into: cython.int, c_1: float, s_1: float) -> None:
-        """Fills cos(m theta) and sin(m theta) for all m."""
-        m: cython.int
-        c: float = 1.0
-        s: float = 0.0
-        turned: float
-        for m in range(1, self.highest + 1):
-            turned = c * c_1 - s * s_1
-            s = s * c_1 + c * s_1
-            c = turned
-            self.power_cos[into, m], self.power_sin[into, m] = c, s
+        self.add(CONTACT, begin, end, length, 1.0)
+        if state != STICK:
+            self.add(SIGNED_SLIPS, begin, end, length, 1.0 if state == POSITIVE else -1.0)
+            return
+        self.add(STICKS, begin, end, length, 1.0)
+        if length * self.highest <= SHORT:
+            self.short_stick(p, begin, length)
+            return
+        self.add(LONG, begin, end, length, 1.0)
+        self.total_re[0] -= w * length
+        for m in range(1, self.most + 1):
+            self.total_re[m] -= w * ((self.power_sin[end, m] - self.power_sin[begin, m]) * self.reciprocal[m])
+            self.total_im[m] += w * ((self.power_cos[begin, m] - self.power_cos[end, m]) * self.reciprocal[m])
 
     def short_stick(self, p: cython.int, begin: cython.int, length: float) -> None:
         """Adds the integrals of f exp(-i h theta) over a short stick, from f at its beginning."""
@@ -191,58 +165,18 @@ class Integrals:
             a = next_a
             self.grow_re[m], self.grow_im[m] = a, b
 
-    def product(self, h: cython.int, which: cython.int, row: cython.int) -> None:
-        """Adds to the totals of h the integral of a row times exp(-i h theta) over a set of pieces."""
-        k: cython.int
-        d: cython.int
-        p: cython.int
-        a: float
-        b: float
-        c: float
-        s: float
-        re: float = self.motion.mean[row] * self.cos_sum[which, h]
-        im: float = -self.motion.mean[row] * self.sin_sum[which, h]
-        for k in range(self.motion.moving):
-            d, p = h - self.motion.number[k], h + self.motion.number[k]
-            a, b = 0.5 * self.motion.re[row, k], 0.5 * self.motion.im[row, k]
-            if d >= 0:
-                c, s = self.cos_sum[which, d], self.sin_sum[which, d]
-            else:
-                c, s = self.cos_sum[which, -d], -self.sin_sum[which, -d]
-            re += a * (c + self.cos_sum[which, p]) + b * (s - self.sin_sum[which, p])
-            im += b * (c - self.cos_sum[which, p]) - a * (s + self.sin_sum[which, p])
-        self.total_re[h] += re
-        self.total_im[h] += im
-
 
 @cython.cclass
-class Derivatives:
-    """Builds `jacobian` (force, unknown), in the order of `PeriodicContact`.
+class LineDerivatives(ForceDerivatives):
+    """Derivatives of the forces on a line; `memory` (unknown,) is those of one place of rest."""
 
-    `memory` is the derivatives of one place of rest.
-    """
-
-    def __init__(self, integrals: Integrals, outputs: list[int]) -> None:
-        self.integrals, self.cycle, self.motion = integrals, integrals.cycle, integrals.motion
-        self.output = np.array(outputs, dtype=np.intc)
-        self.outputs = len(outputs)
-        self.unknowns = 2 + 4 * self.motion.count
-        self.jacobian = np.zeros((2 + 4 * self.outputs, self.unknowns))
-        self.memory = np.zeros(self.unknowns)
-
-    def fill(self, value: float) -> None:
-        """Sets all derivatives to one value."""
-        i: cython.Py_ssize_t
-        j: cython.int
-        for i in range(2 + 4 * self.outputs):
-            for j in range(self.unknowns):
-                self.jacobian[i, j] = value
+    def __init__(self, integrals: LineIntegrals, outputs: list[int]) -> None:
+        ForceDerivatives.__init__(self, integrals, outputs)
+        self.cycle, self.memory = integrals.cycle, np.zeros(self.unknowns)
 
     def stick(self) -> None:
         """Sets the derivatives of a contact that never slips."""
         i: cython.int
-        k: cython.int
-        part: cython.int
         self.jacobian[1, 1] = 1.0
         if self.cycle.cause[0] == 0:
             self.jacobian[0, 0] = 1.0
@@ -250,66 +184,20 @@ class Derivatives:
             self.gradient(0)
             for i in range(self.unknowns):
                 self.jacobian[0, i] = -self.memory[i]
-        for k in range(self.motion.count):
-            for i in range(self.outputs):
-                if self.output[i] == self.motion.number[k]:
-                    for part in range(4):
-                        self.jacobian[2 + 4 * i + part, 2 + 4 * k + part] = 1.0
+        self.stick_waves()
 
     def slip(self) -> None:
-        """Sets the derivatives of a contact that slips or opens."""
+        """Adds the derivatives of a contact that slips or opens."""
         i: cython.int
-        h: cython.int
-        step: cython.int
-        row: cython.Py_ssize_t
-        factor: float
-        for i in range(-1, self.outputs):
-            h = self.output[i] if i >= 0 else 0
-            row = 2 + 4 * i if i >= 0 else 0
-            step = 2 if i >= 0 else 1
-            factor = 1.0 / PI if i >= 0 else 0.5 / PI
-            self.block(row, 0, step, h, STICKS, factor)
-            self.block(row, 1, step, h, SIGNED_SLIPS, factor)
-            self.block(row + step, 1, step, h, CONTACT, factor)
-        self.remember_all()
-
-    def block(
-        self,
-        row: cython.Py_ssize_t,
-        of_load: cython.int,
-        rows: cython.int,
-        h: cython.int,
-        which: cython.int,
-        factor: float,
-    ) -> None:
-        """Sets the derivatives of one harmonic of a force, in `rows` rows, by all unknowns of u or of v."""
-        k: cython.int
-        d: cython.int
         p: cython.int
-        c: float
-        s: float
-        cos_p: float
-        sin_p: float
-        column: cython.Py_ssize_t
-        if of_load:
-            self.jacobian[row, 1] = factor * self.integrals.cos_sum[which, h]
-            if rows > 1:
-                self.jacobian[row + 1, 1] = -factor * self.integrals.sin_sum[which, h]
-        factor *= 0.5
-        for k in range(self.motion.count):
-            d, p = h - self.motion.number[k], h + self.motion.number[k]
-            column = 2 + 4 * k + 2 * of_load
-            if d >= 0:
-                c, s = factor * self.integrals.cos_sum[which, d], factor * self.integrals.sin_sum[which, d]
-            else:
-                c, s = factor * self.integrals.cos_sum[which, -d], -factor * self.integrals.sin_sum[which, -d]
-            cos_p = factor * self.integrals.cos_sum[which, p]
-            sin_p = factor * self.integrals.sin_sum[which, p]
-            self.jacobian[row, column] = c + cos_p
-            self.jacobian[row, column + 1] = s - sin_p
-            if rows > 1:
-                self.jacobian[row + 1, column] = -s - sin_p
-                self.jacobian[row + 1, column + 1] = c - cos_p
+        for i in range(-1, self.outputs):
+            self.add_product(i, 0, STICKS, 0)
+            self.add_product(i, 0, SIGNED_SLIPS, 1)
+            self.add_product(i, 1, CONTACT, 1)
+        for p in range(self.cycle.pieces):
+            if self.cycle.state[p] == STICK:
+                self.gradient(p)
+                self.remember(p)
 
     def gradient(self, p: cython.int) -> None:
         """Fills `memory`: derivatives of the slider's resting place in piece p, but for the mean of u.
@@ -335,14 +223,6 @@ class Derivatives:
             s: float = self.integrals.power_sin[0, self.motion.number[k]]
             self.memory[2 + 4 * k], self.memory[3 + 4 * k] = c, -s
             self.memory[4 + 4 * k], self.memory[5 + 4 * k] = along * c, -along * s
-
-    def remember_all(self) -> None:
-        """Subtracts from the force derivatives what the resting places of all sticks contribute."""
-        p: cython.int
-        for p in range(self.cycle.pieces):
-            if self.cycle.state[p] == STICK:
-                self.gradient(p)
-                self.remember(p)
 
     def remember(self, p: cython.int) -> None:
         """Subtracts the contribution of one stick; `gradient` has left the powers of its start."""
@@ -370,21 +250,10 @@ class Derivatives:
                 self.jacobian[row, j] -= re * self.memory[j]
                 self.jacobian[row + 1, j] -= im * self.memory[j]
 
-    def rescale(self, row: cython.int, by_motion: float, by_load: float) -> None:
-        """Scales the derivatives of one number by u and by v."""
-        k: cython.int
-        self.jacobian[row, 0] *= by_motion
-        self.jacobian[row, 1] *= by_load
-        for k in range(2, self.unknowns, 4):
-            self.jacobian[row, k] *= by_motion
-            self.jacobian[row, k + 1] *= by_motion
-            self.jacobian[row, k + 2] *= by_load
-            self.jacobian[row, k + 3] *= by_load
-
 
 @cython.cclass
-class PeriodicContact:
-    """Kernel of contacts with given harmonics of their motion and forces, evaluated one after the other.
+class PeriodicContact(ContactKernel):
+    """Kernel of contacts on a line.
 
     Parameters
     ----------
@@ -398,74 +267,28 @@ class PeriodicContact:
         mean u, mean v, then for each harmonic h:  Re U_h, Im U_h, Re V_h, Im V_h
         mean f, mean n, then for each harmonic h:  Re F_h, Im F_h, Re N_h, Im N_h
 
-    with x(theta) = Re sum X_h exp(i h theta). Other kernels call `evaluate`, which needs no lock, and read
-    `forces` and `jacobian`:
+    Another kernel has the stiffness d Re F_1 / d Re U_1 by
 
         from cython.cimports.fcm.contact.periodic.forces import PeriodicContact
 
         kernel: PeriodicContact                   # PeriodicContact([1, 2, 3, 9], [1, 2, 3, 9, 10])
         kernel.evaluate(x, first, contact, True)  # ContactParameters(mu, k_u, k_v, n_0)
-        stiffness = kernel.jacobian[2, 2]         # d Re F_1 / d Re U_1
-
-    Each thread needs one of its own.
+        stiffness = kernel.jacobian[2, 2]
     """
 
     def __init__(self, harmonics: list[int], outputs: list[int]) -> None:
-        self.motion = LineMotion(harmonics)
-        self.cycle = LineCycle(self.motion)
-        self.integrals = Integrals(self.cycle, max(outputs, default=0))
-        self.derivatives = Derivatives(self.integrals, outputs)
-        self.output, self.outputs = np.array(outputs, dtype=np.intc), len(outputs)
-        self.unknowns, self.equations = 2 + 4 * self.motion.count, 2 + 4 * self.outputs
-        self.forces, self.jacobian = np.zeros(self.equations), self.derivatives.jacobian
-        self.kind = UNKNOWN
-
-    def at(self, x: cython.double[::1], contact: ContactParameters, gradient: bool = True) -> int:
-        """Calls `evaluate` from Python."""
-        kind: int = self.evaluate(x, 0, contact, gradient)
-        return kind
-
-    def all(
-        self,
-        x: cython.double[:, ::1],
-        parameters: cython.double[:, ::1],
-        forces: cython.double[:, ::1],
-        jacobians: cython.double[:, :, ::1],
-    ) -> None:
-        """Fills `forces` (point, equation) of motions (point, unknown), each with mu, k_u, k_v, n_0, start.
-
-        `jacobians` (point, equation, unknown) is filled as well, unless it has no points.
-        """
-        gradient: cython.bint = jacobians.shape[0] > 0
-        i: cython.Py_ssize_t
-        j: cython.int
-        k: cython.int
-        contact: ContactParameters = ContactParameters()
-        with cython.nogil:
-            for i in range(x.shape[0]):
-                contact.take_row(parameters, i)
-                self.evaluate(x[i], 0, contact, gradient)
-                for j in range(self.equations):
-                    forces[i, j] = self.forces[j]
-                    if gradient:
-                        for k in range(self.unknowns):
-                            jacobians[i, j, k] = self.jacobian[j, k]
+        self.cycle = LineCycle(LineMotion(harmonics))
+        self.integrals = LineIntegrals(self.cycle, max(outputs, default=0))
+        self.derivatives = LineDerivatives(self.integrals, outputs)
+        ContactKernel.__init__(self, self.derivatives)
 
     def evaluate(
         self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters, gradient: bool
     ) -> cython.int:
-        """Evaluates the motion x[first:]: `forces`, and if wanted their derivatives in `jacobian`.
-
-        Returns
-        -------
-        int
-            OPEN, STUCK, MIXED; or UNKNOWN where a number is not finite, and then so are the results.
-        """
         self.kind = self.cycle.take(x, first, contact)
+        self.behaviour = self.cycle.behaviour
         nothing: float = NAN if self.kind == UNKNOWN else 0.0
-        i: cython.int
-        for i in range(self.equations):
-            self.forces[i] = nothing
+        self.clear(nothing)
         if self.kind == STUCK:
             self.stick()
         elif self.kind == MIXED:
@@ -478,7 +301,9 @@ class PeriodicContact:
             elif self.kind == MIXED:
                 self.derivatives.slip()
         if self.kind == STUCK or self.kind == MIXED:
-            self.rescale(contact, gradient)
+            self.rescale()
+            if gradient:
+                self.derivatives.rescale(contact)
         return self.kind
 
     def stick(self) -> None:
@@ -486,69 +311,32 @@ class PeriodicContact:
 
         Its slider rests at the start, or at the extreme of the limit that holds it.
         """
-        i: cython.int
-        k: cython.int
-        row: cython.Py_ssize_t
         self.forces[0] = -self.cycle.rest[0]
-        for k in range(self.motion.count):
-            for i in range(self.outputs):
-                if self.output[i] == self.motion.number[k]:
-                    row = 2 + 4 * i
-                    self.forces[row] = self.motion.re[FORCE, k]
-                    self.forces[row + 1] = self.motion.im[FORCE, k]
-        self.press()
-
-    def press(self) -> None:
-        """Sets the normal forces of a contact that never opens: those of its motion."""
-        i: cython.int
-        k: cython.int
-        row: cython.Py_ssize_t
-        self.forces[1] = self.motion.mean[LOAD]
-        for k in range(self.motion.count):
-            for i in range(self.outputs):
-                if self.output[i] == self.motion.number[k]:
-                    row = 4 + 4 * i
-                    self.forces[row] = self.motion.re[LOAD, k]
-                    self.forces[row + 1] = self.motion.im[LOAD, k]
+        self.take_waves(0, FORCE)
+        self.press(LOAD)
 
     def slip(self) -> None:
         """Sets the forces from their integrals; those of short sticks are in the totals already."""
         i: cython.int
         h: cython.int
         row: cython.Py_ssize_t
-        opens: cython.bint = self.cycle.behaviour != CLOSED
+        opens: cython.bint = self.behaviour != CLOSED
         for i in range(-1, self.outputs):
             h = self.output[i] if i >= 0 else 0
             self.integrals.product(h, LONG, FORCE)
+            re: float = self.integrals.total_re[h] + self.integrals.re
+            im: float = self.integrals.total_im[h] + self.integrals.im
             self.integrals.product(h, SIGNED_SLIPS, REACH)
-            friction_re: float = self.integrals.total_re[h]
-            friction_im: float = self.integrals.total_im[h]
-            self.integrals.total_re[h] = self.integrals.total_im[h] = 0.0
+            re, im = re + self.integrals.re, im + self.integrals.im
+            self.integrals.re = self.integrals.im = 0.0
             if opens:
                 self.integrals.product(h, CONTACT, LOAD)
             if i < 0:
-                self.forces[0] = 0.5 / PI * friction_re
-                self.forces[1] = 0.5 / PI * self.integrals.total_re[h]
+                self.forces[0], self.forces[1] = 0.5 / PI * re, 0.5 / PI * self.integrals.re
             else:
                 row = 2 + 4 * i
-                self.forces[row], self.forces[row + 1] = friction_re / PI, friction_im / PI
-                self.forces[row + 2] = self.integrals.total_re[h] / PI
-                self.forces[row + 3] = self.integrals.total_im[h] / PI
+                self.forces[row], self.forces[row + 1] = re / PI, im / PI
+                self.forces[row + 2] = self.integrals.re / PI
+                self.forces[row + 3] = self.integrals.im / PI
         if not opens:
-            self.press()
-
-    def rescale(self, contact: ContactParameters, gradient: bool) -> None:
-        """Scales the dimensionless forces and derivatives to the units of the arguments."""
-        i: cython.int
-        part: cython.int
-        row: cython.int
-        step: cython.int
-        for i in range(-1, self.outputs):
-            row = 2 + 4 * i if i >= 0 else 0
-            step = 2 if i >= 0 else 1
-            for part in range(step):
-                self.forces[row + part] *= self.motion.scale
-                self.forces[row + step + part] *= self.motion.load_scale
-                if gradient:
-                    self.derivatives.rescale(row + part, contact.k_u, contact.mu * contact.k_v)
-                    self.derivatives.rescale(row + step + part, 0.0, contact.k_v)
+            self.press(LOAD)

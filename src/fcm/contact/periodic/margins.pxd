@@ -11,12 +11,12 @@ cdef class RegimeMargins:
     cdef readonly int most, count
     cdef readonly double[::1] value, angle
     cdef readonly int[::1] kind
+    cdef void find(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void note(self, int kind, double angle, double value) noexcept nogil
     cdef void loads(self, int behaviour) noexcept nogil
 
 cdef class Margins(RegimeMargins):
     cdef readonly LineCycle cycle
-    cdef void find(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void slips(self, int kind, int behaviour, double start) noexcept nogil
     cdef void holders(self, int extreme, int kind, double[::1] limit, double side) noexcept nogil
 

@@ -23,53 +23,45 @@ from cython.cimports.libc.math import cos, fabs, sin
 from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
-    from cython.cimports.fcm.contact.periodic.cycle import (
-        NEGATIVE,
-        POSITIVE,
-        SEPARATION,
-        STICK,
+    from cython.cimports.fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        OPEN,
         STUCK,
-        LineCycle,
+        UNKNOWN,
+        ContactParameters,
     )
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, LineCycle
     from cython.cimports.fcm.contact.periodic.motion import (
         BOTTOM,
-        CLOSED,
         FORCE,
         FORCE_RATE,
         LOAD,
         LOAD_RATE,
         LOWER,
         LOWER_RATE,
-        MIXED,
-        OPEN,
         REACH,
         TOP,
         TWO_PI,
-        UNKNOWN,
         UPPER,
         UPPER_RATE,
         LineMotion,
         ZeroCrossings,
     )
 else:
-    from fcm.contact.contact_kernel import ContactParameters
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, LineCycle
+    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, ContactParameters
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, LineCycle
     from fcm.contact.periodic.motion import (
         BOTTOM,
-        CLOSED,
         FORCE,
         FORCE_RATE,
         LOAD,
         LOAD_RATE,
         LOWER,
         LOWER_RATE,
-        MIXED,
-        OPEN,
         REACH,
         TOP,
         TWO_PI,
-        UNKNOWN,
         UPPER,
         UPPER_RATE,
         LineMotion,
@@ -101,6 +93,9 @@ class RegimeMargins:
         self.most, self.count = FIXED + self.crossings.capacity + of_slips, 0
         self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
         self.kind = np.zeros(self.most, dtype=np.intc)
+
+    def find(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> None:
+        """Computes the margins of the motion x[first:] of a contact; see `ContactKernel`."""
 
     def note(self, kind: cython.int, angle: float, value: float) -> None:
         """Appends a margin, if there is room for it."""
@@ -137,7 +132,6 @@ class Margins(RegimeMargins):
         self.cycle = cycle
 
     def find(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> None:
-        """Computes the margins of the motion x[first:] of a contact; see `PeriodicContact`."""
         kind: cython.int = self.cycle.take(x, first, contact)
         self.count = 0
         if self.cycle.behaviour == UNKNOWN:

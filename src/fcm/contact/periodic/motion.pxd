@@ -1,26 +1,19 @@
-from fcm.contact.contact_kernel cimport ContactParameters
+from fcm.contact.contact_kernel cimport ContactParameters, HarmonicMotion
 
-cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH, OPEN, CLOSED, MIXED, UNKNOWN
-cdef double EPSILON, LEAST, TWO_PI, FIRST_NODE
+cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH
+cdef double EPSILON, TWO_PI, FIRST_NODE
 
-cdef class Nodes:
-    cdef readonly int highest, nodes
+cdef class LineMotion(HarmonicMotion):
+    cdef readonly int nodes
     cdef readonly bint alone
     cdef readonly double step, first
-    cdef readonly double[:, ::1] node_cos, node_sin
+    cdef readonly double[::1] load_bound, limit_bound
+    cdef readonly double[:, ::1] node_cos, node_sin, at
     cdef int few, many, before
-    cdef bint fundamental
+    cdef bint fundamental, taken, sampled
     cdef void take_nodes(self, int moving) noexcept nogil
-
-cdef class LineMotion(Nodes):
-    cdef readonly int count, moving
-    cdef readonly double scale, load_scale, ratio, preload
-    cdef readonly int[::1] number
-    cdef readonly double[::1] order, mean, load_bound, limit_bound
-    cdef readonly double[:, ::1] re, im, at
-    cdef bint taken, sampled
     cdef int load(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
-    cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
+    cdef void fill(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef int behaviour(self) noexcept nogil
     cdef void bound(self) noexcept nogil
     cdef void sample(self) noexcept nogil

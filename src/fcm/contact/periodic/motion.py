@@ -18,47 +18,28 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
-from cython.cimports.libc.math import atan2, ceil, cos, fabs, floor, hypot, isfinite, sin, sqrt
+from cython.cimports.libc.math import atan2, ceil, cos, fabs, floor, hypot, sin, sqrt
 
 from fcm.contact.options import PERIODIC, PeriodicOptions
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
+    from cython.cimports.fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        OPEN,
+        UNKNOWN,
+        ContactParameters,
+        HarmonicMotion,
+    )
     from cython.cimports.fcm.cubic import powers, slope_bounds, value_bounds
 else:
-    from fcm.contact.contact_kernel import ContactParameters
+    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, UNKNOWN, ContactParameters, HarmonicMotion
     from fcm.cubic import powers, slope_bounds, value_bounds
 
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
 FIRST_NODE = cython.declare(cython.double, 0.1171)
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 PI = cython.declare(cython.double, 3.141592653589793)
-
-
-@cython.cclass
-class Nodes:
-    """The nodes, angles first + j * step: few for a motion of the fundamental alone, many for all harmonics.
-
-    node_cos, node_sin (node, harmonic): the harmonics at the few, then at the many; those that are taken
-    stand from `before` on.
-    """
-
-    def __init__(self, harmonics: list[int], options: PeriodicOptions = PERIODIC) -> None:
-        self.highest = max(harmonics, default=0)
-        self.few = options.nodes_per_harmonic + 1
-        self.many = options.nodes_per_harmonic * max(self.highest, 1) + 1
-        both = _waves(self.few, harmonics), _waves(self.many, harmonics)
-        self.node_cos, self.node_sin = (np.concatenate(waves) for waves in zip(*both, strict=True))
-        self.fundamental = harmonics[:1] == [1]
-        self.take_nodes(len(harmonics))
-
-    def take_nodes(self, moving: cython.int) -> None:
-        """Chooses the nodes for a motion whose first so many harmonics are not zero."""
-        self.alone = moving <= 1 and self.fundamental
-        self.nodes = self.few if self.alone else self.many
-        self.before = 0 if self.alone else self.few
-        self.step = TWO_PI / self.nodes
-        self.first = FIRST_NODE * self.step
 
 
 def _waves(count: int, harmonics: list[int]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
@@ -81,69 +62,54 @@ REACH = cython.declare(cython.int, 12)  # mu n; of coefficients only
 ROWS = cython.declare(cython.int, 13)
 
 POWERS = cython.declare(cython.int, 3)  # of a harmonic's number, in bounds
-OPEN = cython.declare(cython.int, 0)
-CLOSED = cython.declare(cython.int, 1)
-MIXED = cython.declare(cython.int, 2)
-UNKNOWN = cython.declare(cython.int, 3)
-
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothing
-FAINT = cython.declare(
-    cython.double, 1e-150
-)  # motion that is smaller than its mean by that counts as nothing
 
 
 @cython.cclass
-class LineMotion(Nodes):
+class LineMotion(HarmonicMotion):
     """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
 
-    moving: the harmonics after so many are nothing, as where few are looked at among more.
-    taken: whether a cycle remembers the motion that is loaded; see `LineCycle.take`. sampled: whether the
-    nodes are those of that motion.
+    Attributes
+    ----------
+    nodes, first, step
+        The number of nodes, at the angles first + j step [rad]: few for a motion of the fundamental alone,
+        many for all harmonics.
+    at (row, node)
+        The rows at the nodes.
+    node_cos, node_sin (node, harmonic)
+        The harmonics at the few, then at the many; those that are taken stand from `before` on.
+    taken
+        Whether a cycle remembers the motion that is loaded; see `LineCycle.take`.
+    sampled
+        Whether the nodes are those of that motion.
     """
 
     def __init__(self, harmonics: list[int], options: PeriodicOptions = PERIODIC) -> None:
-        Nodes.__init__(self, harmonics, options)
-        numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
-        self.number, self.order = numbers, numbers.astype(np.float64)
-        self.re = np.zeros((ROWS, max(self.count, 1)))
-        self.im = np.zeros((ROWS, max(self.count, 1)))
-        self.mean = np.zeros(ROWS)
-        self.scale = self.load_scale = self.ratio = self.preload = 0.0
+        HarmonicMotion.__init__(self, harmonics, 2, ROWS)
+        self.few = options.nodes_per_harmonic + 1
+        self.many = options.nodes_per_harmonic * max(self.highest, 1) + 1
+        both = _waves(self.few, harmonics), _waves(self.many, harmonics)
+        self.node_cos, self.node_sin = (np.concatenate(waves) for waves in zip(*both, strict=True))
+        self.fundamental = harmonics[:1] == [1]
+        self.take_nodes(len(harmonics))
         self.taken = self.sampled = False
         self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
         self.at = np.zeros((REACH, self.many))
 
+    def take_nodes(self, moving: cython.int) -> None:
+        """Chooses the nodes for a motion whose first so many harmonics are not zero."""
+        self.alone = moving <= 1 and self.fundamental
+        self.nodes = self.few if self.alone else self.many
+        self.before = 0 if self.alone else self.few
+        self.step = TWO_PI / self.nodes
+        self.first = FIRST_NODE * self.step
+
     def load(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
         """Takes a motion x[first:]; OPEN, CLOSED or MIXED, UNKNOWN where a number is not finite."""
-        mu: float = contact.mu
-        k_u: float = contact.k_u
-        k_v: float = contact.k_v
-        n_0: float = contact.n_0
         self.taken = self.sampled = False
-        self.moving = 0
-        k: cython.int
-        i: cython.Py_ssize_t = first + 2
-        motion: float = 0.0
-        variation: float = 0.0
-        for k in range(self.count):
-            motion = max(motion, fabs(x[i]), fabs(x[i + 1]))
-            variation = max(variation, fabs(x[i + 2]), fabs(x[i + 3]))
-            if not x[i] == x[i + 1] == x[i + 2] == x[i + 3] == 0.0:
-                self.moving = k + 1
-            # max passes over what is not a number
-            if not (isfinite(x[i]) and isfinite(x[i + 1]) and isfinite(x[i + 2]) and isfinite(x[i + 3])):
-                return UNKNOWN
-            i += 4
-        if not (isfinite(x[first]) and isfinite(x[first + 1]) and isfinite(n_0) and isfinite(mu)):
+        if not self.measure(x, first, contact):
             return UNKNOWN
-        self.preload = n_0 + k_v * float(x[first + 1])
-        self.load_scale = max(k_v * variation, FAINT * fabs(self.preload), LEAST)
-        self.scale = max(k_u * motion, mu * self.load_scale, FAINT * k_u * fabs(x[first]), LEAST)
-        if not (isfinite(self.scale) and isfinite(self.preload) and isfinite(k_u) and isfinite(k_v)):
-            return UNKNOWN
-        self.ratio = mu * (self.load_scale / self.scale) if mu > 0.0 else 0.0
-        self.fill(x, first + 2, k_u, k_v)
+        self.fill(x, first + 2, contact)
         self.take_nodes(self.moving)
         self.mean[LOAD] = self.preload / self.load_scale
         self.mean[REACH] = self.ratio * self.mean[LOAD]
@@ -152,8 +118,10 @@ class LineMotion(Nodes):
         self.bound()
         return self.behaviour()
 
-    def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: float, k_v: float) -> None:
+    def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> None:
         """Fills the coefficients of all rows."""
+        k_u: float = contact.k_u
+        k_v: float = contact.k_v
         k: cython.int
         i: cython.Py_ssize_t = first
         row: cython.int

@@ -3,8 +3,6 @@ from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 from fcm.contact.plane.slider cimport Slider
 
-cdef int STUCK, UNSOLVED
-
 cdef class PlanarCycle:
     cdef double double_point, slight, hardly, inside, fine, next_change, contraction, determinant
     cdef int most_periods

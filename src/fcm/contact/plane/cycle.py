@@ -13,42 +13,19 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import (
-        CLOSED,
-        CLOSES,
-        EPSILON,
-        FIRST_NODE,
-        LOAD,
-        MIXED,
-        OPEN,
-        OPENS,
-        TWO_PI,
-        UNKNOWN,
-    )
+    from cython.cimports.fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, UNSOLVED
+    from cython.cimports.fcm.contact.periodic.motion import CLOSES, EPSILON, FIRST_NODE, LOAD, OPENS, TWO_PI
     from cython.cimports.fcm.contact.plane.panel import SCAN, PlaneMotion
     from cython.cimports.fcm.contact.plane.resting import FAR, Resting
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 else:
-    from fcm.contact.periodic.motion import (
-        CLOSED,
-        CLOSES,
-        EPSILON,
-        FIRST_NODE,
-        LOAD,
-        MIXED,
-        OPEN,
-        OPENS,
-        TWO_PI,
-        UNKNOWN,
-    )
+    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, UNSOLVED
+    from fcm.contact.periodic.motion import CLOSES, EPSILON, FIRST_NODE, LOAD, OPENS, TWO_PI
     from fcm.contact.plane.panel import SCAN, PlaneMotion
     from fcm.contact.plane.resting import FAR, Resting
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 
 from fcm.contact.periodic.motion import ZeroCrossings
-
-STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN
-UNSOLVED = cython.declare(cython.int, 5)
 
 
 @cython.cclass
@@ -95,7 +72,7 @@ class PlanarCycle:
         self.slider.theta = self.slider.w_x = self.slider.w_y = 0.0
         if behaviour == UNKNOWN:
             return UNKNOWN
-        self.slider.sums.begin()
+        self.slider.integrals.begin()
         if behaviour == MIXED:
             self.motion.normal.sample()
             self.crossings.begin()
@@ -108,7 +85,7 @@ class PlanarCycle:
             self.kind = OPEN
             return OPEN
         if behaviour == CLOSED:
-            self.slider.sums.contact(0.0, TWO_PI)
+            self.slider.integrals.contact(0.0, TWO_PI)
             if not self.motion.rubs():
                 self.slider.derivatives.take(0, self.slider.derivatives.unknowns)
                 self.slider.add(SLIP)
@@ -151,7 +128,7 @@ class PlanarCycle:
             at += 1
             if at == count:
                 at, turn = 0, TWO_PI
-            self.slider.sums.contact(begin, end)
+            self.slider.integrals.contact(begin, end)
             if self.motion.rubs():
                 self.slider.close(begin)
                 self.slider.advance(end, True)
@@ -250,8 +227,8 @@ class PlanarCycle:
 
     def gather(self, gradient: bool) -> None:
         """Clears the sums and lets the next period be summed."""
-        self.slider.sums.begin()
-        self.slider.sums.contact(0.0, TWO_PI)
+        self.slider.integrals.begin()
+        self.slider.integrals.contact(0.0, TWO_PI)
         if gradient:
             self.slider.derivatives.fill(0.0)
         self.slider.gathering, self.slider.varying, self.slider.gradient = True, True, gradient

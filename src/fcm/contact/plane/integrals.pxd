@@ -1,4 +1,5 @@
-from fcm.contact.plane.panel cimport Panel, PlaneMotion
+from fcm.contact.contact_kernel cimport ForceDerivatives, FourierIntegrals
+from fcm.contact.plane.panel cimport Panel
 
 cdef int STICKS, CONTACT, SLIPS_X, SLIPS_Y
 
@@ -35,25 +36,19 @@ cdef extern from *:
     bint turn_eight "fcm_turn_eight"(
         const double *, const double *, const double *, const double *, double *, int) noexcept nogil
 
-cdef class Sums:
-    cdef readonly PlaneMotion motion
-    cdef readonly int most, highest
-    cdef readonly double[:, ::1] cos_sum, sin_sum, power_cos, power_sin
-    cdef readonly double[::1] held_x_re, held_x_im, held_y_re, held_y_im, reciprocal
+cdef class PlanarIntegrals(FourierIntegrals):
+    cdef readonly double[::1] held_x_re, held_x_im, held_y_re, held_y_im
     cdef readonly double work, path
-    cdef double re, im
     cdef double[:, ::1] lanes
     cdef double x[8]
     cdef double y[8]
     cdef double c[8]
     cdef double s[8]
     cdef void begin(self) noexcept nogil
-    cdef void powers(self, int into, double c_1, double s_1) noexcept nogil
     cdef void contact(self, double begin, double end) noexcept nogil
     cdef void stick(self, double begin, double end, double w_x, double w_y) noexcept nogil
     cdef void slip(self, Panel panel) noexcept nogil
     cdef void total(self) noexcept nogil
-    cdef void product(self, int h, int which, int row) noexcept nogil
 
 cdef extern from *:
     """
@@ -211,21 +206,15 @@ cdef extern from *:
         const double *, const double *, Py_ssize_t, Py_ssize_t, const double *, double *, Py_ssize_t, double,
         double *) noexcept nogil
 
-cdef class Derivatives:
-    cdef readonly PlaneMotion motion
+cdef class PlanarDerivatives(ForceDerivatives):
     cdef readonly Panel panel
-    cdef readonly Sums sums
-    cdef readonly int outputs, unknowns, rows, width
+    cdef readonly int rows, width
     cdef int low, high
-    cdef int[::1] place
     cdef bint known
-    cdef readonly int[::1] output
-    cdef readonly double[:, ::1] jacobian
     cdef readonly double[::1] turn, w_x, w_y
     cdef double[::1] u_x, u_y, r
     cdef double[:, ::1] block, gathered, weight
     cdef double[::1] slope
-    cdef void fill(self, double value) noexcept nogil
     cdef void take(self, int low, int high) noexcept nogil
     cdef void moved(self) noexcept nogil
     cdef void start(self) noexcept nogil
@@ -241,6 +230,4 @@ cdef class Derivatives:
     cdef void weigh(self) noexcept nogil
     cdef void stick(self, double begin, double end) noexcept nogil
     cdef void direct(self) noexcept nogil
-    cdef void row(self, Py_ssize_t row, int rows, int h, int which, int part, double factor) noexcept nogil
     cdef void settle(self, bint kept) noexcept nogil
-    cdef void rescale(self, double by_motion, double by_load, double load_by_load) noexcept nogil

@@ -1,4 +1,4 @@
-r"""Kernel: integrals over a cycle in the plane, of the forces' harmonics (`Sums`), and their `Derivatives`.
+r"""Kernel: integrals over a cycle in the plane, of the forces' harmonics and of their derivatives.
 
 A friction force is U less the place of the slider while the contact sticks, and R times the direction while
 it slips. U and R are trigonometric polynomials. So two kinds of integrals are needed: of exp(-i m theta) over
@@ -28,6 +28,7 @@ from cython.cimports.libc.math import cos, fabs, sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
+    from cython.cimports.fcm.contact.contact_kernel import ForceDerivatives, FourierIntegrals
     from cython.cimports.fcm.contact.plane.integrals import (
         carry_eight,
         drive_eight,
@@ -38,6 +39,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
     from fcm.contact.closed_form import PI
+    from fcm.contact.contact_kernel import ForceDerivatives, FourierIntegrals
     from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
 
@@ -50,8 +52,8 @@ SLIPS_Y = cython.declare(cython.int, 3)
 
 
 @cython.cclass
-class Sums:
-    """Cosine and sine integrals (function, m) over the pieces of a cycle.
+class PlanarIntegrals(FourierIntegrals):
+    """Integrals over the pieces of a cycle.
 
     Attributes
     ----------
@@ -59,18 +61,12 @@ class Sums:
         Of the place of the slider while the contact sticks.
     work, path
         Of the friction force on the slider, and the way of the slider, divided by the scale.
-    power_cos, power_sin (slot, m)
-        The harmonics at two angles, or at an angle in slot 0.
     """
 
     def __init__(self, motion: PlaneMotion, most: int) -> None:
-        self.motion, self.most = motion, most
-        self.highest = most + motion.highest
-        self.cos_sum, self.sin_sum = np.zeros((2, 4, self.highest + 1))
-        self.power_cos, self.power_sin = np.ones((2, self.highest + 1)), np.zeros((2, self.highest + 1))
+        FourierIntegrals.__init__(self, motion, most, 4)
         self.held_x_re, self.held_x_im, self.held_y_re, self.held_y_im = np.zeros((4, most + 1))
-        self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
-        self.work = self.path = self.re = self.im = 0.0
+        self.work = self.path = 0.0
         # of the slips, each node of a panel by itself: direction x and y times cosine and sine
         self.lanes = np.zeros((4 * (self.highest + 1), STAGES))
         if not cython.compiled:
@@ -80,9 +76,7 @@ class Sums:
         """Sets all sums to zero."""
         m: cython.int
         p: cython.int
-        for p in range(4):
-            for m in range(self.highest + 1):
-                self.cos_sum[p, m] = self.sin_sum[p, m] = 0.0
+        self.clear()
         for m in range(4 * (self.highest + 1)):
             for p in range(STAGES):
                 self.lanes[m, p] = 0.0
@@ -90,27 +84,11 @@ class Sums:
             self.held_x_re[m] = self.held_x_im[m] = self.held_y_re[m] = self.held_y_im[m] = 0.0
         self.work = self.path = 0.0
 
-    def powers(self, into: cython.int, c_1: float, s_1: float) -> None:
-        """Fills cos(m theta) and sin(m theta) for all m, into one slot."""
-        m: cython.int
-        c: float = 1.0
-        s: float = 0.0
-        turned: float
-        for m in range(1, self.highest + 1):
-            turned = c * c_1 - s * s_1
-            s = s * c_1 + c * s_1
-            c = turned
-            self.power_cos[into, m], self.power_sin[into, m] = c, s
-
     def contact(self, begin: float, end: float) -> None:
         """Adds an interval of angles in which the contact is closed."""
-        m: cython.int
         self.powers(0, cos(begin), sin(begin))
         self.powers(1, cos(end), sin(end))
-        self.cos_sum[CONTACT, 0] += end - begin
-        for m in range(1, self.highest + 1):
-            self.cos_sum[CONTACT, m] += (self.power_sin[1, m] - self.power_sin[0, m]) * self.reciprocal[m]
-            self.sin_sum[CONTACT, m] += (self.power_cos[0, m] - self.power_cos[1, m]) * self.reciprocal[m]
+        self.add(CONTACT, 0, 1, end - begin, 1.0)
 
     def stick(self, begin: float, end: float, w_x: float, w_y: float) -> None:
         """Adds a stick with the slider at a place."""
@@ -119,17 +97,15 @@ class Sums:
         s: float = 0.0
         self.powers(0, cos(begin), sin(begin))
         self.powers(1, cos(end), sin(end))
-        for m in range(self.highest + 1):
+        self.add(STICKS, 0, 1, c, 1.0)
+        for m in range(self.most + 1):
             if m > 0:
                 c = (self.power_sin[1, m] - self.power_sin[0, m]) * self.reciprocal[m]
                 s = (self.power_cos[0, m] - self.power_cos[1, m]) * self.reciprocal[m]
-            self.cos_sum[STICKS, m] += c
-            self.sin_sum[STICKS, m] += s
-            if m <= self.most:
-                self.held_x_re[m] += w_x * c
-                self.held_x_im[m] -= w_x * s
-                self.held_y_re[m] += w_y * c
-                self.held_y_im[m] -= w_y * s
+            self.held_x_re[m] += w_x * c
+            self.held_x_im[m] -= w_x * s
+            self.held_y_re[m] += w_y * c
+            self.held_y_im[m] -= w_y * s
 
     def slip(self, panel: Panel) -> None:
         """Adds a panel of slip to `lanes`."""
@@ -141,10 +117,10 @@ class Sums:
         for i in range(STAGES):
             w = panel.weight[i] * panel.speed[i]
             self.x[i], self.y[i] = w * panel.e_x[i], w * panel.e_y[i]
-            self.c[i], self.s[i] = self.motion.node[6 * STAGES + i], self.motion.node[7 * STAGES + i]
+            self.c[i], self.s[i] = panel.motion.node[6 * STAGES + i], panel.motion.node[7 * STAGES + i]
             w *= panel.push[i + 1]
             self.path += w
-            self.work += w * max(self.motion.node[2 * STAGES + i], 0.0)
+            self.work += w * max(panel.motion.node[2 * STAGES + i], 0.0)
         if cython.compiled and turn_eight(
             cython.address(self.x[0]), cython.address(self.y[0]), cython.address(self.c[0]),
             cython.address(self.s[0]), cython.address(self.lanes[0, 0]), self.highest,
@@ -173,28 +149,6 @@ class Sums:
                 self.cos_sum[SLIPS_Y, m] += self.lanes[4 * m + 2, i]
                 self.sin_sum[SLIPS_Y, m] += self.lanes[4 * m + 3, i]
 
-    def product(self, h: cython.int, which: cython.int, row: cython.int) -> None:
-        """Sets `re`, `im`: the integral of a row of the motion times a function times exp(-i h theta)."""
-        k: cython.int
-        d: cython.int
-        p: cython.int
-        a: float
-        b: float
-        c: float
-        s: float
-        re: float = self.motion.mean[row] * self.cos_sum[which, h]
-        im: float = -self.motion.mean[row] * self.sin_sum[which, h]
-        for k in range(self.motion.moving):
-            d, p = h - self.motion.number[k], h + self.motion.number[k]
-            a, b = 0.5 * self.motion.re[row, k], 0.5 * self.motion.im[row, k]
-            if d >= 0:
-                c, s = self.cos_sum[which, d], self.sin_sum[which, d]
-            else:
-                c, s = self.cos_sum[which, -d], -self.sin_sum[which, -d]
-            re += a * (c + self.cos_sum[which, p]) + b * (s - self.sin_sum[which, p])
-            im += b * (c - self.cos_sum[which, p]) - a * (s + self.sin_sum[which, p])
-        self.re, self.im = re, im
-
 
 def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
     """Zeros (rows, width) aligned to a cache line of the processor."""
@@ -204,8 +158,8 @@ def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
 
 
 @cython.cclass
-class Derivatives:
-    """Builds `jacobian` (force, unknown), in the order of `PlanarContact`.
+class PlanarDerivatives(ForceDerivatives):
+    """Derivatives of the forces in a plane.
 
     Columns 0 and 1, which are those of the means of u, are of the place of the slider at the start until
     `settle`: that it moves one way is that u moves the other. Only columns from `low` to `high` are made.
@@ -216,20 +170,14 @@ class Derivatives:
         Derivatives of the resting slider, and of the direction of slip.
     """
 
-    def __init__(self, panel: Panel, sums: Sums, outputs: list[int]) -> None:
-        self.motion, self.panel, self.sums = panel.motion, panel, sums
-        self.output, self.outputs = np.array(outputs, dtype=np.intc), len(outputs)
-        self.unknowns = 3 + 6 * self.motion.count
-        self.jacobian = np.zeros((3 + 6 * self.outputs, self.unknowns))
+    def __init__(self, panel: Panel, sums: PlanarIntegrals, outputs: list[int]) -> None:
+        ForceDerivatives.__init__(self, sums, outputs)
+        self.panel, self.known = panel, bool(np.all(np.asarray(self.place) >= 0))
         self.w_x, self.w_y, self.u_x, self.u_y, self.r = np.zeros((5, self.unknowns))
-        motion_of = {h: k for k, h in enumerate(np.asarray(self.motion.number).tolist())}
         self.rows = 2 + 4 * self.outputs
         self.width = (self.unknowns + 7) // 8 * 8  # whole registers
         self.turn, self.slope = np.zeros(self.width), np.array(self.panel.slopes)[1:, 0].copy()
         self.block, self.gathered = _whole_lines(STAGES, self.width), _whole_lines(self.rows, self.width)
-        # of an output that is a harmonic of the motion, its place among them
-        self.place = np.array([motion_of.get(h, -1) for h in outputs], dtype=np.intc)
-        self.known = bool(np.all(np.asarray(self.place) >= 0))
         self.weight = np.zeros((self.rows, STAGES))
         self.low, self.high = 0, self.unknowns
 
@@ -237,9 +185,7 @@ class Derivatives:
         """Sets all derivatives to one value, and clears the gathered ones."""
         i: cython.Py_ssize_t
         j: cython.int
-        for i in range(3 + 6 * self.outputs):
-            for j in range(self.unknowns):
-                self.jacobian[i, j] = value
+        ForceDerivatives.fill(self, value)
         for i in range(self.rows):
             for j in range(self.width):
                 self.gathered[i, j] = 0.0
@@ -273,7 +219,7 @@ class Derivatives:
         self.u_x[2] = self.u_y[2] = 0.0
         self.r[2] = 1.0
         for k in range(self.motion.count):
-            c, s = self.motion.cos[SCAN, k], self.motion.sin[SCAN, k]
+            c, s = self.panel.motion.cos[SCAN, k], self.panel.motion.sin[SCAN, k]
             j = 3 + 6 * k
             self.u_x[j], self.u_x[j + 1], self.u_y[j + 2], self.u_y[j + 3] = c, -s, c, -s
             self.r[j + 4], self.r[j + 5] = c, -s
@@ -282,7 +228,7 @@ class Derivatives:
         """Derivatives of the slip direction where a stick ends, at the angle in SCAN."""
         j: cython.int
         self.moved()
-        by: float = 1.0 / self.motion.value[SCAN, 2]
+        by: float = 1.0 / self.panel.motion.value[SCAN, 2]
         for j in range(self.low, self.high):
             self.turn[j] = by * (e_x * (self.u_y[j] - self.w_y[j]) - e_y * (self.u_x[j] - self.w_x[j]))
 
@@ -291,7 +237,7 @@ class Derivatives:
         j: cython.int
         across: float
         self.moved()
-        r: float = max(self.motion.value[SCAN, 2], 0.0)
+        r: float = max(self.panel.motion.value[SCAN, 2], 0.0)
         for j in range(self.low, self.high):
             across = r * self.turn[j]
             self.w_x[j] = self.u_x[j] - self.r[j] * e_x + across * e_y
@@ -302,10 +248,10 @@ class Derivatives:
         j: cython.int
         later: float
         self.moved()
-        x_1: float = self.motion.value[SCAN, 3]
-        y_1: float = self.motion.value[SCAN, 4]
+        x_1: float = self.panel.motion.value[SCAN, 3]
+        y_1: float = self.panel.motion.value[SCAN, 4]
         # the motion is never faster here than the disc grows, or it would not stick
-        by: float = max(self.motion.value[SCAN, 5], fabs(x_1), fabs(y_1))
+        by: float = max(self.panel.motion.value[SCAN, 5], fabs(x_1), fabs(y_1))
         by = 1.0 / by if by > 0.0 else 0.0
         for j in range(self.low, self.high):
             later = -by * self.r[j]
@@ -319,7 +265,7 @@ class Derivatives:
         c: float
         s: float
         order: float
-        along: float = e_x * self.motion.value[SCAN, 3] + e_y * self.motion.value[SCAN, 4]
+        along: float = e_x * self.panel.motion.value[SCAN, 3] + e_y * self.panel.motion.value[SCAN, 4]
         by: float = 1.0 / along
         for j in range(self.low, self.high):
             self.turn[j] = 0.0
@@ -328,7 +274,7 @@ class Derivatives:
         self.turn[2] = -by * rate
         for k in range(self.motion.count):
             order = by * self.motion.order[k]
-            c, s = self.motion.cos[SCAN, k], self.motion.sin[SCAN, k]
+            c, s = self.panel.motion.cos[SCAN, k], self.panel.motion.sin[SCAN, k]
             j = 3 + 6 * k
             self.turn[j], self.turn[j + 1] = e_y * order * s, e_y * order * c
             self.turn[j + 2], self.turn[j + 3] = -e_x * order * s, -e_x * order * c
@@ -398,8 +344,8 @@ class Derivatives:
         if cython.compiled and drive_eight(
             cython.address(self.panel.tangent[1]), self.panel.r, cython.address(self.slope[0]),
             cython.address(self.panel.rate[0]), cython.address(self.panel.e_x[0]),
-            cython.address(self.panel.e_y[0]), cython.address(self.motion.node_cos[0, 0]),
-            cython.address(self.motion.node_sin[0, 0]), cython.address(self.motion.order[0]),
+            cython.address(self.panel.e_y[0]), cython.address(self.panel.motion.node_cos[0, 0]),
+            cython.address(self.panel.motion.node_sin[0, 0]), cython.address(self.motion.order[0]),
             self.motion.count, cython.address(self.turn[0]), self.width, self.high > 2,
             cython.address(self.block[0, 0]),
         ):  # fmt: skip
@@ -417,8 +363,8 @@ class Derivatives:
             across_y: float = part * self.panel.e_x[i]
             self.block[i, 2] += of_reach
             for k in range(self.motion.count):
-                c: float = self.motion.node_cos[k, i]
-                d: float = self.motion.node_sin[k, i]
+                c: float = self.panel.motion.node_cos[k, i]
+                d: float = self.panel.motion.node_sin[k, i]
                 j = 3 + 6 * k
                 self.block[i, j + 4] += of_reach * c
                 self.block[i, j + 5] -= of_reach * d
@@ -456,21 +402,27 @@ class Derivatives:
         s: float
         if cython.compiled and self.known and weigh_eight(
             cython.address(self.panel.tangent[1]), cython.address(self.panel.weight[0]),
-            cython.address(self.panel.speed[0]), cython.address(self.motion.node[2 * STAGES]),
+            cython.address(self.panel.speed[0]), cython.address(self.panel.motion.node[2 * STAGES]),
             cython.address(self.panel.e_x[0]), cython.address(self.panel.e_y[0]),
-            cython.address(self.motion.node_cos[0, 0]), cython.address(self.motion.node_sin[0, 0]),
+            cython.address(self.panel.motion.node_cos[0, 0]),
+            cython.address(self.panel.motion.node_sin[0, 0]),
             cython.address(self.place[0]), self.outputs, 2.0 / PI, cython.address(self.weight[0, 0]),
         ):  # fmt: skip
             return
         for i in range(STAGES):
             t: float = self.panel.tangent[i + 1]
             w = self.panel.weight[i] * self.panel.speed[i] * 2.0 / (1.0 + t * t) / PI
-            w *= max(self.motion.node[2 * STAGES + i], 0.0)
+            w *= max(self.panel.motion.node[2 * STAGES + i], 0.0)
             x, y = -w * self.panel.e_y[i], w * self.panel.e_x[i]
             self.weight[0, i], self.weight[1, i] = 0.5 * x, 0.5 * y
-            self.sums.powers(0, self.motion.node[6 * STAGES + i], self.motion.node[7 * STAGES + i])
+            self.integrals.powers(
+                0, self.panel.motion.node[6 * STAGES + i], self.panel.motion.node[7 * STAGES + i]
+            )
             for m in range(self.outputs):
-                c, s = self.sums.power_cos[0, self.output[m]], self.sums.power_sin[0, self.output[m]]
+                c, s = (
+                    self.integrals.power_cos[0, self.output[m]],
+                    self.integrals.power_sin[0, self.output[m]],
+                )
                 row = 2 + 4 * m
                 self.weight[row, i], self.weight[row + 1, i] = x * c, -x * s
                 self.weight[row + 2, i], self.weight[row + 3, i] = y * c, -y * s
@@ -486,13 +438,21 @@ class Derivatives:
         for j in range(self.low, self.high):
             self.jacobian[0, j] -= c * self.w_x[j]
             self.jacobian[1, j] -= c * self.w_y[j]
-        self.sums.powers(0, cos(begin), sin(begin))
-        self.sums.powers(1, cos(end), sin(end))
+        self.integrals.powers(0, cos(begin), sin(begin))
+        self.integrals.powers(1, cos(end), sin(end))
         for m in range(self.outputs):
             h = self.output[m]
             row = 3 + 6 * m
-            c = (self.sums.power_sin[1, h] - self.sums.power_sin[0, h]) * self.sums.reciprocal[h] / PI
-            s = (self.sums.power_cos[1, h] - self.sums.power_cos[0, h]) * self.sums.reciprocal[h] / PI
+            c = (
+                (self.integrals.power_sin[1, h] - self.integrals.power_sin[0, h])
+                * self.integrals.reciprocal[h]
+                / PI
+            )
+            s = (
+                (self.integrals.power_cos[1, h] - self.integrals.power_cos[0, h])
+                * self.integrals.reciprocal[h]
+                / PI
+            )
             for j in range(self.low, self.high):
                 self.jacobian[row, j] -= c * self.w_x[j]
                 self.jacobian[row + 1, j] -= s * self.w_x[j]
@@ -502,57 +462,12 @@ class Derivatives:
     def direct(self) -> None:
         """Adds the derivatives of the forces by the motion and load at the same angle."""
         i: cython.int
-        h: cython.int
-        rows: cython.int
-        row: cython.Py_ssize_t
-        factor: float
         for i in range(-1, self.outputs):
-            h = self.output[i] if i >= 0 else 0
-            row = 3 + 6 * i if i >= 0 else 0
-            rows = 2 if i >= 0 else 1
-            factor = 1.0 / PI if i >= 0 else 0.5 / PI
-            self.row(row, rows, h, STICKS, 0, factor)
-            self.row(row + rows, rows, h, STICKS, 1, factor)
-            self.row(row, rows, h, SLIPS_X, 2, factor)
-            self.row(row + rows, rows, h, SLIPS_Y, 2, factor)
-            self.row(row + 2 * rows, rows, h, CONTACT, 2, factor)
-
-    def row(
-        self,
-        row: cython.Py_ssize_t,
-        rows: cython.int,
-        h: cython.int,
-        which: cython.int,
-        part: cython.int,
-        factor: float,
-    ) -> None:
-        """Adds the derivatives of one force harmonic, in `rows` rows, by u_x, u_y or v (parts 0 to 2)."""
-        k: cython.int
-        d: cython.int
-        p: cython.int
-        c: float
-        s: float
-        cos_p: float
-        sin_p: float
-        column: cython.Py_ssize_t
-        if part == 2:
-            self.jacobian[row, 2] += factor * self.sums.cos_sum[which, h]
-            if rows > 1:
-                self.jacobian[row + 1, 2] -= factor * self.sums.sin_sum[which, h]
-        factor *= 0.5
-        for k in range(self.motion.count):
-            d, p = h - self.motion.number[k], h + self.motion.number[k]
-            column = 3 + 6 * k + 2 * part
-            if d >= 0:
-                c, s = factor * self.sums.cos_sum[which, d], factor * self.sums.sin_sum[which, d]
-            else:
-                c, s = factor * self.sums.cos_sum[which, -d], -factor * self.sums.sin_sum[which, -d]
-            cos_p, sin_p = factor * self.sums.cos_sum[which, p], factor * self.sums.sin_sum[which, p]
-            self.jacobian[row, column] += c + cos_p
-            self.jacobian[row, column + 1] += s - sin_p
-            if rows > 1:
-                self.jacobian[row + 1, column] -= s + sin_p
-                self.jacobian[row + 1, column + 1] += c - cos_p
+            self.add_product(i, 0, STICKS, 0)
+            self.add_product(i, 1, STICKS, 1)
+            self.add_product(i, 0, SLIPS_X, 2)
+            self.add_product(i, 1, SLIPS_Y, 2)
+            self.add_product(i, 2, CONTACT, 2)
 
     def settle(self, kept: bool) -> None:
         """Closes the period, W = P(W_0): the slider's derivatives at the start become those at the end."""
@@ -573,25 +488,7 @@ class Derivatives:
         if kept and by != 0.0:
             for j in range(2, self.unknowns):
                 x, y = (d * self.w_x[j] - b * self.w_y[j]) / by, (a * self.w_y[j] - c * self.w_x[j]) / by
-                for i in range(3 + 6 * self.outputs):
+                for i in range(self.equations):
                     self.jacobian[i, j] += self.jacobian[i, 0] * x + self.jacobian[i, 1] * y
-        for i in range(3 + 6 * self.outputs):
+        for i in range(self.equations):
             self.jacobian[i, 0] = self.jacobian[i, 1] = 0.0
-
-    def rescale(self, by_motion: float, by_load: float, load_by_load: float) -> None:
-        """Scales the derivatives of friction by u and v, and of the load by v; overwrites `w_x`, `w_y`."""
-        i: cython.Py_ssize_t
-        j: cython.int
-        p: cython.int
-        for j in range(self.unknowns):  # three means, then six numbers of each harmonic
-            p = 2 * j if j < 3 else (j - 3) % 6
-            self.w_x[j] = by_load if p >= 4 else by_motion
-            self.w_y[j] = load_by_load if p >= 4 else 0.0
-        for i in range(3 + 6 * self.outputs):
-            p = 2 * i if i < 3 else (i - 3) % 6
-            if p < 4:
-                for j in range(self.unknowns):
-                    self.jacobian[i, j] *= self.w_x[j]
-            else:
-                for j in range(self.unknowns):
-                    self.jacobian[i, j] *= self.w_y[j]

@@ -157,8 +157,8 @@ def planar_loop(
         sequence,
         angles[:0] if single else angles,
         x[:2] + length * rest,
-        slider.sums.work * scale * length if slipped else 0.0,
-        slider.sums.path * length if slipped else 0.0,
+        slider.integrals.work * scale * length if slipped else 0.0,
+        slider.integrals.path * length if slipped else 0.0,
         0.0, since[:0] if single else since, np.array(slider.record)[: slider.panels],
     )  # fmt: skip
     return replace(loop, greatest_force=_greatest(loop, len(harmonics)))

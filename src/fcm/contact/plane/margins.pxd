@@ -11,7 +11,6 @@ cdef class PlanarMargins(RegimeMargins):
     cdef readonly PlanarCycle cycle
     cdef readonly Resting resting
     cdef void hold(self, double[::1] x, ContactParameters contact, bint start) noexcept nogil
-    cdef int find(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void rests(self, double s_x, double s_y) noexcept nogil
     cdef double other(self) noexcept nogil
     cdef double weaker(self, double s_x, double s_y) noexcept nogil

@@ -20,7 +20,15 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
+    from cython.cimports.fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        OPEN,
+        STUCK,
+        UNKNOWN,
+        UNSOLVED,
+        ContactParameters,
+    )
     from cython.cimports.fcm.contact.periodic.cycle import join_states
     from cython.cimports.fcm.contact.periodic.margins import (
         GREATEST_LOAD,
@@ -29,24 +37,17 @@ if cython.compiled:
         RegimeMargins,
         greatest_load,
     )
-    from cython.cimports.fcm.contact.periodic.motion import (
-        CLOSED,
-        LOAD_RATE,
-        MIXED,
-        OPEN,
-        UNKNOWN,
-        ZeroCrossings,
-    )
-    from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
+    from cython.cimports.fcm.contact.periodic.motion import LOAD_RATE, ZeroCrossings
+    from cython.cimports.fcm.contact.plane.cycle import PlanarCycle
     from cython.cimports.fcm.contact.plane.panel import SCAN
     from cython.cimports.fcm.contact.plane.resting import FAR
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
-    from fcm.contact.contact_kernel import ContactParameters
+    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, UNSOLVED, ContactParameters
     from fcm.contact.periodic.cycle import join_states
     from fcm.contact.periodic.margins import GREATEST_LOAD, PAST, SLIPS, RegimeMargins, greatest_load
-    from fcm.contact.periodic.motion import CLOSED, LOAD_RATE, MIXED, OPEN, UNKNOWN, ZeroCrossings
-    from fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
+    from fcm.contact.periodic.motion import LOAD_RATE, ZeroCrossings
+    from fcm.contact.plane.cycle import PlanarCycle
     from fcm.contact.plane.panel import SCAN
     from fcm.contact.plane.resting import FAR
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
@@ -66,12 +67,11 @@ class PlanarMargins(RegimeMargins):
         self.steps = cycle.motion.options.samples_per_radian
         self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
 
-    def find(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
-        """Computes the margins of the motion x[first:] of a contact; see `PlanarContact`."""
+    def find(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> None:
         behaviour: cython.int = self.motion.load(x, first, contact)
         self.count = 0
         if behaviour == UNKNOWN:
-            return UNKNOWN
+            return
         s_x: float = -self.motion.mean_x
         s_y: float = -self.motion.mean_y
         kind: cython.int = self.cycle.solve(behaviour, s_x, s_y, False)
@@ -79,10 +79,10 @@ class PlanarMargins(RegimeMargins):
             self.normal.sample()
         self.loads(behaviour)
         if not contact.mu * contact.k_u > 0.0 or kind in (OPEN, UNKNOWN):
-            return kind
+            return
         if kind == STUCK:
             self.rests(s_x, s_y)
-            return kind
+            return
         if self.cycle.behaviour == CLOSED:
             self.resting.encloses(True)
             # slips are as long as the root of this, and turn by that
@@ -92,7 +92,6 @@ class PlanarMargins(RegimeMargins):
             self.note(SLIPS, 0.0, PAST)
         if kind != UNSOLVED:
             self.pushes()
-        return kind
 
     def overlap(self, x: cython.double[::1], contact: ContactParameters, start: bool) -> float:
         """How far all discs of a motion x must grow to share a place [force]; see `resting`.
@@ -243,8 +242,8 @@ class PlanarMeasures:
         if rubs and (self.cycle.kind == MIXED or self.cycle.kind == STUCK):
             self.friction()
         if rubs and self.cycle.kind == MIXED:
-            self.dissipation = self.cycle.slider.sums.work * self.motion.scale * length
-            self.slip_path = self.cycle.slider.sums.path * length
+            self.dissipation = self.cycle.slider.integrals.work * self.motion.scale * length
+            self.slip_path = self.cycle.slider.integrals.path * length
 
     def loads(self) -> None:
         """Computes the greatest load, at one of its extremes."""

@@ -80,7 +80,6 @@ class PlanarOptions(Frozen):
     min_state_length : length of a state below which it is rounding.
     smooth_radius : radius of the disc, relative to the motion, up to which the contact slides without
         friction.
-    min_motion : motion relative to its mean, below which there is none.
     """
 
     tolerance: float = 2e-7
@@ -123,7 +122,6 @@ class PlanarOptions(Frozen):
     samples_per_radian: float = 12.0
     min_state_length: float = 1e-12
     smooth_radius: float = 1e-14
-    min_motion: float = 1e-150
 
 
 class LoopOptions(Frozen):

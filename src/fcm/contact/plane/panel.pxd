@@ -1,4 +1,4 @@
-from fcm.contact.contact_kernel cimport ContactParameters
+from fcm.contact.contact_kernel cimport ContactParameters, HarmonicMotion
 from fcm.contact.periodic.motion cimport LineMotion
 
 cdef extern from *:
@@ -73,19 +73,17 @@ cdef extern from *:
 
 cdef int X, Y, REACH, LOAD, SCAN, ROWS
 
-cdef class PlaneMotion:
+cdef class PlaneMotion(HarmonicMotion):
     cdef readonly object options
-    cdef double smooth, faint
+    cdef double smooth
     cdef readonly LineMotion normal
-    cdef readonly int count, highest, moving, stages
-    cdef readonly double scale, load_scale, ratio, preload, mean_x, mean_y, size, reach
-    cdef readonly int[::1] number
-    cdef readonly double[::1] order, mean, motion_bound, reach_bound
-    cdef readonly double[:, ::1] re, im, cos, sin, value, node_cos, node_sin
+    cdef readonly int stages
+    cdef readonly double mean_x, mean_y, size, reach
+    cdef readonly double[::1] motion_bound, reach_bound
+    cdef readonly double[:, ::1] cos, sin, value, node_cos, node_sin
     cdef double node[64]
     cdef double[::1] line
     cdef int load(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
-    cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
     cdef void bound(self) noexcept nogil
     cdef bint rubs(self) noexcept nogil
     cdef void place(self, int slot, double theta) noexcept nogil

@@ -30,14 +30,14 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import cos, fabs, isfinite, sin, sqrt
+from cython.cimports.libc.math import cos, fabs, sin, sqrt
 
 from fcm.contact.plane.options import PlanarOptions
 from fcm.contact.plane.radau import radau
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.contact_kernel import ContactParameters
-    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
+    from cython.cimports.fcm.contact.contact_kernel import UNKNOWN, ContactParameters, HarmonicMotion
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LineMotion
     from cython.cimports.fcm.contact.plane.panel import (
         apply_eight,
         face_eight,
@@ -46,8 +46,8 @@ if cython.compiled:
         turn_of_eight,
     )
 else:
-    from fcm.contact.contact_kernel import ContactParameters
-    from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, LineMotion
+    from fcm.contact.contact_kernel import UNKNOWN, ContactParameters, HarmonicMotion
+    from fcm.contact.periodic.motion import EPSILON, LineMotion
     from fcm.contact.plane.radau import STAGES
 
 
@@ -63,17 +63,13 @@ BOUNDS = cython.declare(cython.int, 5)  # orders of derivatives that are bounded
 
 
 @cython.cclass
-class PlaneMotion:
+class PlaneMotion(HarmonicMotion):
     """u_x, u_y and n_0 + k_v v with given harmonics; `load` takes one contact, `place` an angle.
 
     Attributes
     ----------
     normal
         The same load as the motion of a contact on a line, which finds where the contact closes and opens.
-    moving
-        The harmonics after so many are nothing.
-    scale, load_scale, ratio
-        What forces on u and on v are divided by; mu load_scale / scale.
     size, reach
         Bounds of |U| and of R.
     motion_bound, reach_bound
@@ -87,16 +83,9 @@ class PlaneMotion:
 
     def __init__(self, harmonics: list[int], stages: int, options: PlanarOptions) -> None:
         self.options = given = options
-        self.smooth, self.faint = given.smooth_radius, given.min_motion
-        numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
-        self.normal = LineMotion(harmonics)
-        self.highest, self.stages = max(harmonics, default=0), stages
-        self.number, self.order = numbers, numbers.astype(np.float64)
-        self.re = np.zeros((ROWS, max(self.count, 1)))
-        self.im = np.zeros((ROWS, max(self.count, 1)))
-        self.mean = np.zeros(ROWS)
-        self.scale = self.load_scale = self.ratio = self.preload = self.mean_x = self.mean_y = 0.0
-        self.size = self.reach = 0.0
+        HarmonicMotion.__init__(self, harmonics, 3, ROWS)
+        self.smooth, self.normal, self.stages = given.smooth_radius, LineMotion(harmonics), stages
+        self.mean_x = self.mean_y = self.size = self.reach = 0.0
         self.motion_bound, self.reach_bound = np.zeros(BOUNDS), np.zeros(BOUNDS)
         self.cos = np.zeros((stages + 1, max(self.count, 1)))
         self.sin = np.zeros((stages + 1, max(self.count, 1)))
@@ -105,55 +94,22 @@ class PlaneMotion:
         self.node_cos, self.node_sin = np.zeros((2, max(self.count, 1), stages))
         if not cython.compiled:
             self.node = np.zeros(8 * stages)
-        self.moving = 0
 
     def load(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
         """Takes a motion x[first:]; OPEN, CLOSED or MIXED, UNKNOWN where a number is not finite."""
-        mu: float = contact.mu
+        k: cython.int
+        i: cython.Py_ssize_t = first + 3
         k_u: float = contact.k_u
         k_v: float = contact.k_v
-        n_0: float = contact.n_0
-        k: cython.int
-        p: cython.int
-        i: cython.Py_ssize_t = first + 3
-        motion: float = 0.0
-        variation: float = 0.0
-        self.moving = 0
+        if not self.measure(x, first, contact):
+            return UNKNOWN
         self.line[0], self.line[1] = 0.0, x[first + 2]
-        for k in range(self.count):
-            for p in range(6):
-                if not isfinite(x[i + p]):
-                    return UNKNOWN
-                if x[i + p] != 0.0:
-                    self.moving = k + 1
-            motion = max(motion, fabs(x[i]), fabs(x[i + 1]), fabs(x[i + 2]), fabs(x[i + 3]))
-            variation = max(variation, fabs(x[i + 4]), fabs(x[i + 5]))
-            self.line[2 + 4 * k] = self.line[3 + 4 * k] = 0.0
-            self.line[4 + 4 * k], self.line[5 + 4 * k] = x[i + 4], x[i + 5]
-            i += 6
-        if not (isfinite(x[first]) and isfinite(x[first + 1]) and isfinite(x[first + 2])):
-            return UNKNOWN
-        if not (isfinite(n_0) and isfinite(mu)):
-            return UNKNOWN
-        self.preload = n_0 + k_v * float(x[first + 2])
-        self.load_scale = max(k_v * variation, self.faint * fabs(self.preload), LEAST)
-        away: float = self.faint * k_u * max(fabs(x[first]), fabs(x[first + 1]))
-        self.scale = max(k_u * motion, mu * self.load_scale, away, LEAST)
-        if not (isfinite(self.scale) and isfinite(self.preload) and isfinite(k_u) and isfinite(k_v)):
-            return UNKNOWN
-        self.ratio = mu * (self.load_scale / self.scale) if mu > 0.0 else 0.0
         self.mean_x, self.mean_y = k_u * x[first] / self.scale, k_u * x[first + 1] / self.scale
         self.mean[LOAD] = self.preload / self.load_scale
         self.mean[REACH] = self.ratio * self.mean[LOAD]
-        self.fill(x, first + 3, k_u, k_v)
-        self.bound()
-        return self.normal.load(self.line, 0, contact)
-
-    def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: float, k_v: float) -> None:
-        """Fills the coefficients of all rows."""
-        k: cython.int
-        i: cython.Py_ssize_t = first
         for k in range(self.count):
+            self.line[2 + 4 * k] = self.line[3 + 4 * k] = 0.0
+            self.line[4 + 4 * k], self.line[5 + 4 * k] = x[i + 4], x[i + 5]
             self.re[X, k], self.im[X, k] = k_u * x[i] / self.scale, k_u * x[i + 1] / self.scale
             self.re[Y, k], self.im[Y, k] = k_u * x[i + 2] / self.scale, k_u * x[i + 3] / self.scale
             self.re[LOAD, k] = k_v * x[i + 4] / self.load_scale
@@ -161,6 +117,8 @@ class PlaneMotion:
             self.re[REACH, k] = self.ratio * self.re[LOAD, k]
             self.im[REACH, k] = self.ratio * self.im[LOAD, k]
             i += 6
+        self.bound()
+        return self.normal.load(self.line, 0, contact)
 
     def bound(self) -> None:
         """Fills bounds of motion and reach: sums of order**power times the amplitude."""

@@ -1,5 +1,5 @@
 from fcm.contact.plane.panel cimport Panel, PlaneMotion
-from fcm.contact.plane.integrals cimport Derivatives, Sums
+from fcm.contact.plane.integrals cimport PlanarDerivatives, PlanarIntegrals
 
 cdef int STICK, SLIP, SEPARATION
 
@@ -7,8 +7,8 @@ cdef class Slider:
     cdef double shortest, least_step, on_edge, negligible, near, ends, deepest, nothing, light, shrink, grow, safety, varied, unturned
     cdef readonly PlaneMotion motion
     cdef readonly Panel panel
-    cdef readonly Sums sums
-    cdef readonly Derivatives derivatives
+    cdef readonly PlanarIntegrals integrals
+    cdef readonly PlanarDerivatives derivatives
     cdef readonly int pieces, capacity, panels, most_panels
     cdef readonly int[::1] state
     cdef readonly double[::1] begin, rest_x, rest_y

@@ -14,12 +14,12 @@ from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import EPSILON, TWO_PI
-    from cython.cimports.fcm.contact.plane.integrals import Derivatives, Sums
+    from cython.cimports.fcm.contact.plane.integrals import PlanarDerivatives, PlanarIntegrals
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
     from cython.cimports.fcm.cubic import slope_bounds, value_bounds
 else:
     from fcm.contact.periodic.motion import EPSILON, TWO_PI
-    from fcm.contact.plane.integrals import Derivatives, Sums
+    from fcm.contact.plane.integrals import PlanarDerivatives, PlanarIntegrals
     from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
     from fcm.cubic import slope_bounds, value_bounds
@@ -78,8 +78,8 @@ class Slider:
         self.varied, self.unturned = given.derivative_fraction, given.impulse_tolerance
         self.motion = motion
         self.panel = Panel(motion)
-        self.sums = Sums(motion, max(outputs, default=0))
-        self.derivatives = Derivatives(self.panel, self.sums, outputs)
+        self.integrals = PlanarIntegrals(motion, max(outputs, default=0))
+        self.derivatives = PlanarDerivatives(self.panel, self.integrals, outputs)
         self.capacity = 64 + 32 * max(motion.highest, 1)
         self.state = np.zeros(self.capacity, dtype=np.intc)
         self.begin, self.rest_x, self.rest_y = np.zeros((3, self.capacity))
@@ -91,7 +91,7 @@ class Slider:
         self.last_x = self.last_y = self.last_speed = self.falls = 0.0
         self.first_step = self.least_step
         self.tolerance = given.tolerance
-        self.longest = given.panel_length / max(self.sums.highest, 1)
+        self.longest = given.panel_length / max(self.integrals.highest, 1)
         self.sliding = self.varying = self.gathering = self.gradient = self.failed = False
 
     def add(self, state: cython.int) -> None:
@@ -358,7 +358,7 @@ class Slider:
             self.gone_x += way * self.panel.e_x[i]
             self.gone_y += way * self.panel.e_y[i]
         if self.gathering:
-            self.sums.slip(self.panel)
+            self.integrals.slip(self.panel)
             if self.panels < self.most_panels:
                 self.record[self.panels, 0], self.record[self.panels, 1] = self.panel.theta, self.panel.length
                 self.record[self.panels, 2], self.record[self.panels, 3] = (
@@ -466,14 +466,14 @@ class Slider:
             length = 0.5 * h
         self.theta = end
         if self.gathering:
-            self.sums.stick(begin, end, self.w_x, self.w_y)
+            self.integrals.stick(begin, end, self.w_x, self.w_y)
             if self.gradient:
                 self.derivatives.stick(begin, end)
 
     def release(self, begin: float, theta: float) -> None:
         """Ends the stick at an angle, where slip begins."""
         if self.gathering:
-            self.sums.stick(begin, theta, self.w_x, self.w_y)
+            self.integrals.stick(begin, theta, self.w_x, self.w_y)
             if self.gradient:
                 self.derivatives.stick(begin, theta)
         self.theta = theta
