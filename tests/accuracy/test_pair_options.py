@@ -31,7 +31,7 @@ def test_as_many_neighbours_of_the_highest_point_are_looked_at_as_is_asked(neigh
         known=np.arange(9) == 6,
         change=np.hstack((np.zeros((9, 1)), change)),
         arc=np.arange(9.0),
-        quantities=SimpleNamespace(growth=np.zeros((9, 1))),
+        quantities=SimpleNamespace(amplitude=amplitude, growth=np.zeros((9, 1))),
         path=SimpleNamespace(mark=np.zeros(9, dtype=np.int64)),
         followed=[],
     )

@@ -1,9 +1,12 @@
 """Values beside a curve, on curves that are known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from fcm.accuracy.curve_distance import ReferenceCurveData, rises, shifted
+from fcm.accuracy.reference_curve import ComparedQuantities
 
 
 def beside(place, parameter, rate, value, slope, wanted, forward):
@@ -59,10 +62,12 @@ def test_a_curve_moved_along_itself_and_across_differs_by_what_it_is_across():
     z, direction = np.column_stack((np.zeros_like(p), p)), np.tile([0.0, 1.0], (21, 1))
     amplitude, growth = (p**2)[:, None], (2.0 * p)[:, None]
     change = np.column_stack((on / p, ((p + on) ** 2 + 0.01) / p**2 - 1.0))
-    off = shifted(s, z, direction, amplitude, growth, amplitude, change)
+    compared = ComparedQuantities(amplitude, growth, amplitude, change)
+    off = shifted(s, z, direction, compared)
     assert off[1:, 0] == pytest.approx(0.01 / p[1:] ** 2, rel=2e-3)  # at p = 1 it goes on straight
-    back = shifted(s, z[::-1].copy(), -direction, amplitude[::-1].copy(), -growth[::-1].copy(),
-                   amplitude[::-1].copy(), change[::-1].copy())  # fmt: skip
+    amplitude, growth, change = amplitude[::-1].copy(), -growth[::-1].copy(), change[::-1].copy()
+    compared = ComparedQuantities(amplitude, growth, amplitude, change)
+    back = shifted(s, z[::-1].copy(), -direction, compared)
     assert back[::-1] == pytest.approx(off, rel=1e-9)
 
 
@@ -70,8 +75,10 @@ def test_between_points_a_parabola_is_higher_than_at_the_highest():
     """Points a quarter of the way and three quarters beside the top; of a flat curve moved by a straight line
     none is, nor is anything told beside a corner."""
     s = np.array([-0.75, 0.25, 1.25])
-    amplitude, growth, none = 1.0 - s[:, None] ** 2, -2.0 * s[:, None], np.zeros((3, 1))
+    none = np.zeros((3, 1))
+    parabola = SimpleNamespace(amplitude=1.0 - s[:, None] ** 2, growth=-2.0 * s[:, None])
+    flat = SimpleNamespace(amplitude=none, growth=none)
     corner, top = np.zeros(3, dtype=np.uint8), np.array([1])
-    assert rises(s, amplitude, growth, none, corner, top) == pytest.approx([0.0625], rel=1e-9)
-    assert rises(s, none, none, s[:, None].copy(), corner, np.array([2])) == pytest.approx([0.0])
-    assert rises(s, amplitude, growth, none, np.array([1, 0, 1], dtype=np.uint8), top) == 0.0
+    assert rises(s, parabola, none, corner, top) == pytest.approx([0.0625], rel=1e-9)
+    assert rises(s, flat, s[:, None].copy(), corner, np.array([2])) == pytest.approx([0.0])
+    assert rises(s, parabola, none, np.array([1, 0, 1], dtype=np.uint8), top) == 0.0

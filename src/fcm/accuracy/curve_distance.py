@@ -8,6 +8,8 @@ reference with more harmonics near a point is found by Newton's method in the no
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isnan, sqrt
@@ -20,6 +22,11 @@ if cython.compiled:
     from cython.cimports.fcm.cubic import cubic
 else:
     from fcm.cubic import cubic
+
+if TYPE_CHECKING:
+    from fcm.accuracy.reference_curve import ComparedQuantities, ReferenceCurve
+    from fcm.accuracy.reference_pieces import CurvePiece
+    from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 
 LEAST = cython.declare(cython.double, 1e-300)  # unit of a curve that stays where it is
 INFINITY = cython.declare(cython.double, float("inf"))
@@ -291,17 +298,13 @@ class ReferenceCurveData:
 
     def values_at_crossings(
         self,
-        orientation: cython.double[::1],
-        value: cython.double[:, ::1],
-        slope: cython.double[:, ::1],
+        piece: CurvePiece,
         wanted: cython.double[::1],
         parity: cython.double[::1],
         target: cython.double[:, ::1],
         number: cython.int[::1],
-        out: cython.double[:, ::1],
-    ) -> None:
-        """Interpolates values (place, value) where the second curve passes given parameters `wanted`
-        (place,).
+    ) -> FloatArray:
+        """Values (place, value) of a piece where this, its curve, passes given parameters `wanted` (place,).
 
         Of several passings that with a number, counted along the curve from 0; where that is -1 the one whose
         first values are nearest to target values (place, some of the values), of those with the same
@@ -312,8 +315,12 @@ class ReferenceCurveData:
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
         count: cython.int
-        found = np.empty(value.shape[1])
-        at: cython.double[::1] = found
+        orientation: cython.double[::1] = piece.orientation
+        value: cython.double[:, ::1] = piece.value
+        slope: cython.double[:, ::1] = piece.slope
+        found, here = np.empty((wanted.shape[0], value.shape[1])), np.empty(value.shape[1])
+        out: cython.double[:, ::1] = found
+        at: cython.double[::1] = here
         for i in range(wanted.shape[0]):
             least: cython.double = INFINITY
             count = 0
@@ -346,6 +353,7 @@ class ReferenceCurveData:
             if least == INFINITY:
                 for j in range(value.shape[1]):
                     out[i, j] = NAN
+        return found
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -419,18 +427,17 @@ def shifted(
     place: cython.double[::1],
     z: cython.double[:, ::1],
     direction: cython.double[:, ::1],
-    amplitude: cython.double[:, ::1],
-    growth: cython.double[:, ::1],
-    unit: cython.double[:, ::1],
-    change: cython.double[:, ::1],
+    compared: ComparedQuantities,
 ) -> FloatArray:
-    """Differences (point, dof) from the amplitudes of a curve to those of another at the same parameter.
+    """Differences (point, column) from the values of a curve to those of another at the same parameter.
 
-    z, direction (point, unknown + 1): the parameter is the last. change (point, 1 + dof): from each point to
-    one of the other curve, of the parameter, relative, and of the amplitudes in their unit, in which the
-    differences are, too. growth (point, dof) is that of the amplitudes along the curve. NaN as of
-    `ReferenceCurveData.values`.
+    z, direction (point, unknown + 1): the parameter is the last. The change is that from each point to one of
+    the other curve; the differences are in the same unit. NaN as of `ReferenceCurveData.values`.
     """
+    amplitude: cython.double[:, ::1] = compared.value
+    growth: cython.double[:, ::1] = compared.growth
+    unit: cython.double[:, ::1] = compared.unit
+    change: cython.double[:, ::1] = compared.change
     i: cython.Py_ssize_t
     d: cython.Py_ssize_t
     n: cython.Py_ssize_t = z.shape[1] - 1
@@ -477,8 +484,7 @@ def slope(
 
 def rises(
     place: cython.double[::1],
-    amplitude: cython.double[:, ::1],
-    growth: cython.double[:, ::1],
+    quantities: ReportedQuantities,
     moved: cython.double[:, ::1],
     corner: cython.uchar[::1],
     tops: cython.Py_ssize_t[::1],
@@ -486,9 +492,11 @@ def rises(
 ) -> FloatArray:
     """Rise (dof,) of a curve above its tops, between each top and the points next to it.
 
-    Its amplitudes (point, dof), with growth (point, dof), are moved (point, dof): they follow cubics, what
-    they are moved by straight lines. Nothing is told of what lies between a point and a corner.
+    Its amplitudes, with their growth, are moved (point, dof): they follow cubics, what they are moved by
+    straight lines. Nothing is told of what lies between a point and a corner.
     """
+    amplitude: cython.double[:, ::1] = quantities.amplitude
+    growth: cython.double[:, ::1] = quantities.growth
     d: cython.Py_ssize_t
     k: cython.Py_ssize_t
     part: cython.int
@@ -525,26 +533,21 @@ class PointwiseDisplacement:
     def __init__(self, prolongation: Prolongation) -> None:
         self.prolongation, self.missed = prolongation, 0.0
 
-    def find(
-        self,
-        points: cython.Py_ssize_t[::1],
-        z: cython.double[:, ::1],
-        direction: cython.double[:, ::1],
-        amplitude: cython.double[:, ::1],
-        unit: cython.double[:, ::1],
-        change: cython.double[:, ::1],
-        reference_unknowns: cython.double[:, ::1],
-        known: cython.uchar[::1],
-        most: cython.double,
-    ) -> None:
-        """Computes the displacements (point, 1 + dof) of those given points that are unknown, and marks them
-        known.
+    def find(self, points: cython.Py_ssize_t[::1], curve: ReferenceCurve, most: cython.double) -> None:
+        """Computes the displacements of those given points of a curve that are unknown, and marks them known.
 
-        z, direction (point, unknown + 1); the first displacement is that of the frequency, relative, the
-        others are those of amplitude (point, dof) in their unit (point, dof). reference_unknowns (point,
-        reference's unknown + 1) is the reference there. NaN where Newton's method finds no point of the
-        reference near, and where more than the most evaluations were spent on such points.
+        The first of its change (point, 1 + dof) is that of the frequency, relative, the others are those of
+        amplitudes in their unit; its reference_unknowns (point, reference's unknown + 1) are the reference
+        there. NaN where Newton's method finds no point of the reference near, and where more than the most
+        evaluations were spent on such points.
         """
+        z: cython.double[:, ::1] = curve.path.z
+        direction: cython.double[:, ::1] = curve.path.direction
+        amplitude: cython.double[:, ::1] = curve.amplitude
+        unit: cython.double[:, ::1] = curve.unit
+        change: cython.double[:, ::1] = curve.change
+        reference_unknowns: cython.double[:, ::1] = curve.reference_unknowns
+        known: cython.uchar[::1] = curve.known.view(np.uint8)
         n: cython.Py_ssize_t = z.shape[1] - 1
         p: cython.Py_ssize_t
         d: cython.Py_ssize_t

@@ -93,8 +93,7 @@ def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: In
     corner = ((reference.path.mark & Mark.CORNER) > 0).view(np.uint8)
     return rises(
         reference.arc,
-        reference.amplitude,
-        reference.quantities.growth,
+        reference.quantities,
         moved,
         corner,
         places,

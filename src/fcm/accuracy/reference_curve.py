@@ -225,16 +225,9 @@ class ReferenceCurve:
                     self.change[rest], self.reference_unknowns[rest], self.known[rest] = np.nan, np.nan, True
                     return
                 if not self.known[i]:
-                    self._find(points[k : k + 1])
+                    self.finding.find(points[k : k + 1], self, self.failed)
             return
-        self._find(points)
-
-    def _find(self, points: Indices) -> None:
-        path = self.path
-        self.finding.find(
-            points, path.z, path.direction, self.amplitude, self.unit,
-            self.change, self.reference_unknowns, self.known.view(np.uint8), self.failed,
-        )  # fmt: skip
+        self.finding.find(points, self, self.failed)
 
     @cached_property
     def _further(self) -> FurtherHarmonics:
@@ -480,9 +473,7 @@ class ReferenceCurve:
         NaN where the reference does not reach that frequency.
         """
         path, change = self.path, compared.change
-        shift = shifted(
-            self.arc, path.z, path.direction, compared.value, compared.growth, compared.unit, change
-        )
+        shift = shifted(self.arc, path.z, path.direction, compared)
         shift[np.isnan(change).any(axis=1)] = np.nan
         self._fill_beyond_folds(compared, shift)
         for one in self.followed:

@@ -52,12 +52,8 @@ class CurvePiece(Frozen):
 
         See `ReferenceCurveData.values_at_crossings`; without `number` every passing is considered.
         """
-        found, every = np.empty((len(omega), self.value.shape[1])), np.full(len(omega), -1, dtype=np.intc)
-        which = every if number is None else number
-        self.curve.values_at_crossings(
-            self.orientation, self.value, self.slope, omega, parity, target, which, found
-        )
-        return found
+        which = np.full(len(omega), -1, dtype=np.intc) if number is None else number
+        return self.curve.values_at_crossings(self, omega, parity, target, which)
 
 
 class ReportedPath(Frozen):
