@@ -6,7 +6,7 @@ import pytest
 from fcm.scene import scene_from_dict
 from fcm.structure.linear import linear_of
 from fcm.structure.options import DAMPING
-from fcm.structure.receptance import ForcedModes, Receptance, dynamic_stiffness
+from fcm.structure.receptance import DrivenModes, ForcedModes, Receptance, dynamic_stiffness
 
 
 @pytest.mark.parametrize(("ports", "modes"), [(2, 5), (4, 7), (8, 38), (20, 30)])
@@ -18,7 +18,8 @@ def test_receptances_and_their_derivatives_are_sums_over_the_modes(ports: int, m
         random.normal(size=modes) + 1j * random.normal(size=modes),
     )
     harmonics, omega = np.array([1.0, 2.0, 5.0]), 3.1
-    seen = Receptance(shapes, natural, damping, force, np.zeros((ports, ports)), harmonics)
+    loaded = DrivenModes(shapes, natural, damping, force[None], 0.0 * force[None], (1,))
+    seen = Receptance(loaded, np.zeros((ports, ports)), harmonics)
     seen.at(omega)
     w = harmonics[:, None] * omega
     compliance = 1.0 / (natural**2 - w**2 + 2j * damping * natural * w)
@@ -62,7 +63,8 @@ def test_an_undamped_mode_at_its_own_frequency_answers_alike_to_all_that_ask() -
     natural, damping, one = np.array([3.0]), np.zeros(1), np.ones((1, 1))
     stiffness = dynamic_stiffness(natural, damping, natural)[0, 0]
     assert stiffness == 9j * DAMPING.min_loss_factor
-    seen = Receptance(one, natural, damping, np.ones(1), np.zeros((1, 1)), np.ones(1))
+    loaded = DrivenModes(one, natural, damping, one, 0.0 * one, (1,))
+    seen = Receptance(loaded, np.zeros((1, 1)), np.ones(1))
     seen.at(3.0)
     assert seen.of_harmonic(0)[0, 0] == pytest.approx(1.0 / stiffness, rel=1e-14)
     share = np.zeros(1)

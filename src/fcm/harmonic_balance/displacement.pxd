@@ -43,13 +43,13 @@ cdef class Displacements(Extremes):
     cdef int[::1] share_ports
     cdef int[::1] share_end
     cdef double[:, ::1] of_modes
-    cdef double q_re, q_im, r_re, r_im
+    cdef double f_re, f_im, g_re, g_im, q_re, q_im, r_re, r_im
     cdef public double[::1] mean
     cdef public double[::1] rest
     cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef int harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) except -1
     cdef int sum_modes(self) except -1
-    cdef void move(self, Receptance receptance, int j, Py_ssize_t i, double f_re, double f_im, double g_re, double g_im, double d_omega) noexcept
+    cdef void move(self, Receptance receptance, int j, Py_ssize_t i, double d_omega) noexcept
     cdef void from_ports(self, Py_ssize_t d, double[::1] z, double[::1] direction) noexcept
 
 cdef class TravellingDisplacements(Displacements):

@@ -279,7 +279,8 @@ class Displacements(Extremes):
                 f_im -= self.receptance.shapes[i, p] * force[k + 1]
                 g_re -= self.receptance.shapes[i, p] * d_force[k]
                 g_im -= self.receptance.shapes[i, p] * d_force[k + 1]
-            self.move(self.receptance, j, i, f_re, f_im, g_re, g_im, d_omega)
+            self.f_re, self.f_im, self.g_re, self.g_im = f_re, f_im, g_re, g_im
+            self.move(self.receptance, j, i, d_omega)
             self.of_modes[j, i], self.of_modes[n + j, i] = self.q_re, self.q_im
             self.of_modes[2 * n + j, i], self.of_modes[3 * n + j, i] = self.r_re, self.r_im
         return 0
@@ -305,15 +306,7 @@ class Displacements(Extremes):
     @cython.cfunc
     @cython.exceptval(check=False)
     def move(
-        self,
-        receptance: Receptance,
-        j: cython.int,
-        i: cython.Py_ssize_t,
-        f_re: cython.double,
-        f_im: cython.double,
-        g_re: cython.double,
-        g_im: cython.double,
-        d_omega: cython.double,
+        self, receptance: Receptance, j: cython.int, i: cython.Py_ssize_t, d_omega: cython.double
     ) -> cython.void:
         """Compute q, the amplitude of mode i under its force f in harmonic j, and its rate r.
 
@@ -323,10 +316,10 @@ class Displacements(Extremes):
         c_im: cython.double = receptance.c_im[j, i]
         s_re: cython.double = receptance.s_re[j, i] * d_omega
         s_im: cython.double = receptance.s_im[j, i] * d_omega
-        self.q_re = c_re * f_re - c_im * f_im
-        self.q_im = c_re * f_im + c_im * f_re
-        self.r_re = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
-        self.r_im = c_re * g_im + c_im * g_re + s_re * f_im + s_im * f_re
+        self.q_re = c_re * self.f_re - c_im * self.f_im
+        self.q_im = c_re * self.f_im + c_im * self.f_re
+        self.r_re = c_re * self.g_re - c_im * self.g_im + s_re * self.f_re - s_im * self.f_im
+        self.r_im = c_re * self.g_im + c_im * self.g_re + s_re * self.f_im + s_im * self.f_re
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -404,7 +397,8 @@ class TravellingDisplacements(Displacements):
                 f_im -= a * force[k + 1] - b * force[k]
                 g_re -= a * d_force[k] + b * d_force[k + 1]
                 g_im -= a * d_force[k + 1] - b * d_force[k]
-            self.move(wave, 0, i, f_re, f_im, g_re, g_im, d_omega)
+            self.f_re, self.f_im, self.g_re, self.g_im = f_re, f_im, g_re, g_im
+            self.move(wave, 0, i, d_omega)
             for d in range(self.dofs):
                 a = self.wave_re[j, i, d]
                 b = self.wave_im[j, i, d]

@@ -167,15 +167,15 @@ class Balance(Problem):
 
     def __init__(
         self,
-        receptance: Receptance,
-        layout: Layout,
-        laws: list[Law],
         displacements: Displacements,
+        laws: list[Law],
         counted: npt.NDArray[np.float64],
         span: cython.double,
         rank: cython.int = 0,
         units: UnitOptions = HARMONIC_BALANCE.units,
     ) -> None:
+        receptance: Receptance = displacements.receptance
+        layout: Layout = receptance.layout
         width: cython.int = layout.width
         Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), displacements.dofs, rank)
         self.receptance, self.displacements, self.laws, self.contacts, self.width = (

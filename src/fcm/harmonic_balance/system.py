@@ -222,16 +222,7 @@ class System(Frozen):
         rank = condensed_size(self, linear.ports.shape[1], len(self.harmonics))
         receptance = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
         displacements = _displacements(linear, receptance, self.options.extremes)
-        balance = Balance(
-            receptance,
-            self.layout,
-            self.laws(),
-            displacements,
-            linear.counted,
-            high - low,
-            rank,
-            self.options.units,
-        )
+        balance = Balance(displacements, self.laws(), linear.counted, high - low, rank, self.options.units)
         balance.reported = np.array([float(self.scene.reports(dof)) for dof in self.scene.modal.dofs])
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensation

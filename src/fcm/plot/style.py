@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DOTS = (0.0, (1.0, 1.0))  # of the lines of what is not known, or does not stay
 
 
-class Layout(Frozen):
+class PictureLayout(Frozen):
     """Sizes of pictures, and how much is drawn in one."""
 
     width: float = 5.5  # [inch] 140 mm, one and a half columns
@@ -117,7 +117,7 @@ class Layout(Frozen):
     table_error: float = 1e-300  # in the place of 0, which has no logarithm
 
 
-LAYOUT = Layout()
+LAYOUT = PictureLayout()
 
 COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 

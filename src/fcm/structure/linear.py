@@ -13,7 +13,7 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.loads import loads_of
 from fcm.structure.options import REDUCTION
-from fcm.structure.receptance import Receptance, dynamic_stiffness
+from fcm.structure.receptance import DrivenModes, Receptance, dynamic_stiffness
 from fcm.structure.rigid import settled
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -37,10 +37,8 @@ class Linear(Frozen):
 
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
         """Receptances of the ports at some harmonics, with the sums over modes or without them."""
-        ends = self.force, self.static, harmonics, summed
-        seen = Receptance(self.ports, self.natural, self.damping, *ends, self.counted.size, self.driven)
-        seen.add_inertia_forces(self.square)
-        return seen
+        modes = DrivenModes(self.ports, self.natural, self.damping, self.force, self.square, self.driven)
+        return Receptance(modes, self.static, harmonics, self.counted.size, summed)
 
     @property
     def directions_of_contact(self) -> int:

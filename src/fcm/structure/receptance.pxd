@@ -5,6 +5,7 @@ cdef class Receptance:
     cdef public int ports
     cdef public int count
     cdef public int stride
+    cdef readonly object layout
     cdef public Py_ssize_t[::1] mean_at
     cdef public Py_ssize_t[::1] wave_at
     cdef public double omega

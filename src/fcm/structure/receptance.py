@@ -18,6 +18,8 @@ as many ports, (a, b).
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import cython
 import numpy as np
 import numpy.typing as npt
@@ -58,6 +60,20 @@ def dynamic_stiffness(
     return found
 
 
+class DrivenModes(NamedTuple):
+    """Modes of mass 1 seen from the ports of contacts, and the external forces on them.
+
+    The forces (driven, mode) are force + omega^2 square, at the harmonics `driven`.
+    """
+
+    shapes: npt.NDArray[np.float64]  # (mode, port)
+    natural: npt.NDArray[np.float64]  # (mode,) [rad/s]
+    damping: npt.NDArray[np.float64]  # (mode,) ratios
+    force: npt.NDArray[np.complex128]
+    square: npt.NDArray[np.complex128]
+    driven: tuple[int, ...]
+
+
 @cython.cclass
 class Receptance:
     """Receptances at the ports of contacts, and the response to external forces, at one frequency.
@@ -68,38 +84,36 @@ class Receptance:
     (driven, mode) are the external forces at omega and their derivatives. Without `summed`, for many ports, G
     is not made; responses then go by the modes.
 
-    force (driven, mode) acts at the harmonics driven; forced (harmonic,) is the number of the force at each
-    of the list, -1 where there is none, and first the place of harmonic 1 in the list.
+    forced (harmonic,) is the number of the external force at each harmonic of the list, -1 where there is
+    none, and first the place of harmonic 1 in the list.
 
     mean_at, wave_at (port,): indices of the mean of a port and of the real part of its first harmonic among
     the unknowns of a balance, see `fcm.structure.layout`. stride: from the index of one harmonic to the next.
-    contacts: how many the ports belong to.
+    layout: that of these unknowns, where the ports belong to so many contacts.
     """
 
     def __init__(
         self,
-        shapes: npt.NDArray[np.float64],
-        natural: npt.NDArray[np.float64],
-        damping: npt.NDArray[np.float64],
-        force: npt.NDArray[np.complex128],
+        driven_modes: DrivenModes,
         static: npt.NDArray[np.float64],
         harmonics: npt.NDArray[np.float64],
-        summed: cython.bint = True,
         contacts: cython.int = 0,
-        driven: tuple[int, ...] = (1,),
+        summed: cython.bint = True,
     ) -> None:
+        shapes, natural, damping, force, square, driven = driven_modes
         modes, ports = shapes.shape
-        force = np.asarray(force).reshape(len(driven), modes)
         count = len(harmonics)
         self.modes, self.ports, self.count = modes, ports, count
         layout = Layout(contacts, ports // contacts if contacts else 0, count)
+        self.layout = layout
         self.mean_at, self.wave_at, self.stride = layout.mean_at, layout.wave_at, layout.stride
         self.harmonics = np.array(harmonics, dtype=np.float64)
         self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
         self.shapes, self.static = np.ascontiguousarray(shapes), np.ascontiguousarray(static)
         self.constant_re, self.constant_im = np.array(force.real), np.array(force.imag)
         self.force_re, self.force_im = np.array(force.real), np.array(force.imag)
-        self.square_re, self.square_im, self.slope_re, self.slope_im = np.zeros((4, *force.shape))
+        self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
+        self.slope_re, self.slope_im = np.zeros((2, *force.shape))
         self.weights = np.zeros((4 * count, modes))  # those of the modes, and the sums over these, as one
         self.summed, size = summed, ports if summed else 0
         self.sum = np.zeros((4 * count * size, size))
@@ -117,11 +131,6 @@ class Receptance:
         numbers = [int(h) for h in harmonics]
         self.forced = np.array([driven.index(h) if h in driven else -1 for h in numbers], dtype=np.intc)
         self.first = numbers.index(1) if 1 in numbers else 0
-        self.omega = -1.0
-
-    def add_inertia_forces(self, square: npt.NDArray[np.complex128]) -> None:
-        """Sets additional external forces omega^2 square (driven, mode)."""
-        self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.omega = -1.0
 
     def set_external_forces(
@@ -310,7 +319,8 @@ class TravellingReceptance(Receptance):
     ) -> None:
         shapes, none = np.zeros((0, len(static))), np.zeros(0)
         push = np.zeros((len(driven), 0), dtype=np.complex128)
-        Receptance.__init__(self, shapes, none, none, push, static, harmonics, True, contacts, driven)
+        modes = DrivenModes(shapes, none, none, push, push, driven)
+        Receptance.__init__(self, modes, static, harmonics, contacts)
         self.waves = waves
 
     @cython.ccall

@@ -12,7 +12,7 @@ from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import FROM_SINE, Linear, amplitudes, attached_to, with_springs
 from fcm.structure.loads import Loads
-from fcm.structure.receptance import Receptance, TravellingReceptance
+from fcm.structure.receptance import DrivenModes, Receptance, TravellingReceptance
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -63,9 +63,9 @@ class RingLinear(Linear):
             k, onto = self.driven.index(harmonic), FROM_SINE * wave.dofs.conj()
             force[0], square[0] = onto @ self.loads.constant[k], onto @ self.loads.square[k]
         static, at = np.zeros((both.shape[1], both.shape[1])), np.array([float(harmonic)])
-        seen = Receptance(both, wave.natural, wave.damping, force, static, at, driven=(harmonic,))
-        seen.add_inertia_forces(square)
-        return seen
+        return Receptance(
+            DrivenModes(both, wave.natural, wave.damping, force, square, (harmonic,)), static, at
+        )
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
         """Displacements (point, harmonic, dof) by forces on the ports (point, harmonic, port)."""
