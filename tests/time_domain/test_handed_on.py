@@ -48,7 +48,7 @@ def measured():
 CALLED_BACK = [
     ("Flows", "next_power", cycle),
     ("Flows", "spell", moved),
-    ("Integrals", "fill_ahead", measured),
+    ("MotionIntegrals", "fill_ahead", measured),
     ("Scan", "fill_ahead", measured),
     ("Scan", "values", measured),
 ]

@@ -57,7 +57,7 @@ cdef class CoefficientLaw:
         Py_ssize_t numbers,
     ) noexcept
 
-cdef class Integrals(HarmonicCycle):
+cdef class CoefficientIntegrals(HarmonicCycle):
     cdef bint light, gradient
     cdef double light_load
     cdef double F_b, F_s, F_c
@@ -75,7 +75,7 @@ cdef class Integrals(HarmonicCycle):
     cdef void _slipped(self) noexcept nogil
 
 cdef class ClosedForm(CoefficientLaw):
-    cdef Integrals integrals
+    cdef CoefficientIntegrals integrals
     cdef void evaluate(
         self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
     ) noexcept nogil

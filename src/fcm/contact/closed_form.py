@@ -449,8 +449,8 @@ class CoefficientLaw:
 
 @cython.final
 @cython.cclass
-class Integrals(HarmonicCycle):
-    """Integrals of one contact's force over its cycle: three coefficients and nine derivatives.
+class CoefficientIntegrals(HarmonicCycle):
+    """CoefficientIntegrals of one contact's force over its cycle: three coefficients and nine derivatives.
 
     While they are summed over the spans, they are pi times the coefficients.
 
@@ -538,7 +538,7 @@ class Integrals(HarmonicCycle):
         self.kept_phi = -pull * self.b * (cos_theta * self.cos_phi - sin_theta * self.sin_phi)
 
     def _motion(self) -> None:
-        """Integrals of -w, -w sin(theta) and -w cos(theta) over a span."""
+        """CoefficientIntegrals of -w, -w sin(theta) and -w cos(theta) over a span."""
         stick_sin: float = self.start_cos - self.begin_cos
         stick_cos: float = self.begin_sin - self.start_sin
         self.span_b = -(self.w_start * (self.length - self.slip) + self.w_end * self.slip)
@@ -555,7 +555,7 @@ class Integrals(HarmonicCycle):
             self.span_c -= self.end_cos * g_cos + self.end_sin * g_sin
 
     def _stick_force(self) -> None:
-        """Integrals of the force over the stick of a span, for a light load."""
+        """CoefficientIntegrals of the force over the stick of a span, for a light load."""
         length: float = self.length - self.slip
         sine, versine, deficit = arc(length)
         start_sin: float = self.start_sin
@@ -628,7 +628,7 @@ class ClosedForm(CoefficientLaw):
     """The coefficient law in closed form."""
 
     def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
-        self.integrals = Integrals(options)
+        self.integrals = CoefficientIntegrals(options)
 
     def evaluate(
         self,

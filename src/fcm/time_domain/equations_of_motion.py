@@ -19,7 +19,7 @@ from fcm.time_domain.contact_states import Codes, made
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.flow import Flows
 from fcm.time_domain.integrator import March
-from fcm.time_domain.measures import Integrals, Powers, Rows, Scan
+from fcm.time_domain.measures import MotionIntegrals, Powers, Rows, Scan
 from fcm.time_domain.options import TIME, FlowOptions
 from fcm.time_domain.segments import Segments, Steps, Walk
 from fcm.time_domain.variational import Derivative, Directional
@@ -84,7 +84,7 @@ class EquationsOfMotion:
         self.limit_rows = self._limit_rows()
         self.flows = Flows(matrices_of(self), kept)
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
-        self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
+        self._along, self.integrals = Directional(self.flows), MotionIntegrals(self.flows)
         none = np.zeros(m)
         self.made = dict[str, Any]()  # what other packages make once for a scene
         self.slips = Powers(self.flows, none[None], none, none, everywhere=False)

@@ -8,14 +8,15 @@ cdef class Powers(Walk):
     cdef double[::1] _static, _damper, _nodes, _weights
     cdef void _add(self, double weight) noexcept nogil
 
-cdef class Integrals(Walk):
+cdef class MotionIntegrals(Walk):
     cdef readonly double[:, ::1] sums
+    cdef double _length
     cdef double[::1] _nodes
     cdef double[:, ::1] _shares, _weights, _terms, _there, _sums
     cdef int _steps(self, Py_ssize_t slot, long long whole) except -1 nogil
     cdef void _gather(self, double[:, ::1] y, Py_ssize_t k) noexcept nogil
-    cdef void _weigh(self, double angle) noexcept nogil
-    cdef void _take(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t k, double h, int end, double one, double sine, double cosine) noexcept nogil
+    cdef void _weigh(self, double length) noexcept nogil
+    cdef void _take(self, Py_ssize_t slot, double[::1] y, int end, double one, double sine, double cosine) noexcept nogil
 
 cdef class Rows:
     cdef readonly Py_ssize_t count

@@ -1,9 +1,9 @@
 """Measures of a motion: integrals of its modal displacements, extremes of any rows of its state, powers.
 
-The integrals are also those of products with sin and cos (`Integrals`). Over a step a displacement is the
-polynomial with its first `TERMS` Taylor coefficients at both ends; that and its integrals times exp(i theta)
-are exact to rounding: what is left out is of the order 1e-19. All that is linear in the state vector, so the
-vectors of all whole steps are summed before their coefficients are made.
+The integrals are also those of products with sin and cos (`MotionIntegrals`). Over a step a displacement is
+the polynomial with its first `TERMS` Taylor coefficients at both ends; that and its integrals times exp(i
+theta) are exact to rounding: what is left out is of the order 1e-19. All that is linear in the state vector,
+so the vectors of all whole steps are summed before their coefficients are made.
 
 The integrals of all powers are by Gauss quadrature that is exact to rounding on a step (`Powers`).
 
@@ -185,13 +185,14 @@ _ON_ONE = 0.5 * (_PLACES + 1.0), 0.5 * _SHARES[:, None] * _basis(0.5 * (_PLACES 
 
 
 @cython.cclass
-class Integrals(Walk):
+class MotionIntegrals(Walk):
     """Time integrals of q, q sin(theta) and q cos(theta) over a motion, in `sums` (3, mode)."""
 
     def __init__(self, flows: Flows) -> None:
         Walk.__init__(self, flows)
         self.sums = np.zeros((3, flows.modes))
         self._nodes, self._shares = _ON_ONE
+        self._length = 0.0
         self._weights, self._terms = np.zeros((3, 2 * TERMS)), np.zeros((TERMS, flows.size))
         self._there, self._sums = np.zeros((2, flows.size)), np.zeros((6, flows.size))
 
@@ -221,18 +222,18 @@ class Integrals(Walk):
                 for i in range(self.flows.size):
                     self._sums[b, i] = 0.0
             self._steps(slot, whole)
-            self._weigh(self.flows.omega * h)
+            self._weigh(h)
             for b in range(2):
-                self._take(slot, self._sums, 3 * b, h, b, 1.0, 0.0, 0.0)
-                self._take(slot, self._sums, 3 * b + 1, h, b, 0.0, 1.0, 0.0)
-                self._take(slot, self._sums, 3 * b + 2, h, b, 0.0, 0.0, 1.0)
+                self._take(slot, self._sums[3 * b], b, 1.0, 0.0, 0.0)
+                self._take(slot, self._sums[3 * b + 1], b, 0.0, 1.0, 0.0)
+                self._take(slot, self._sums[3 * b + 2], b, 0.0, 0.0, 1.0)
         if x > 0.0:
-            self._weigh(self.flows.omega * x * h)
+            self._weigh(x * h)
             sine: cython.double = self._there[0, self.flows.linear]
             cosine: cython.double = self._there[0, self.flows.linear + 1]
-            self._take(slot, self._there, 0, x * h, 0, 1.0, sine, cosine)
+            self._take(slot, self._there[0], 0, 1.0, sine, cosine)
             self.flows.part(slot, x, self._there, 0, 1)
-            self._take(slot, self._there, 0, x * h, 1, 1.0, sine, cosine)
+            self._take(slot, self._there[0], 1, 1.0, sine, cosine)
         return 0
 
     @cython.cfunc
@@ -281,13 +282,16 @@ class Integrals(Walk):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _weigh(self, angle: cython.double) -> cython.void:
-        """Sets the weights of the coefficients in the integrals of q times 1, sin(angle x), cos(angle x)."""
+    def _weigh(self, length: cython.double) -> cython.void:
+        """Sets the weights of the coefficients in the integrals of q times 1, sin(angle), cos(angle), over
+        steps of a length [s]."""
+        angle: cython.double = self.flows.omega * length
         i: cython.int
         j: cython.int
         real: cython.double
         imag: cython.double
         share: cython.double
+        self._length = length
         for j in range(2 * _TERMS):
             self._weights[0, j] = self._weights[1, j] = self._weights[2, j] = 0.0
         for i in range(_NODES):
@@ -304,18 +308,15 @@ class Integrals(Walk):
     def _take(
         self,
         slot: cython.Py_ssize_t,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
-        h: cython.double,
+        y: cython.double[::1],
         end: cython.int,
         one: cython.double,
         sine: cython.double,
         cosine: cython.double,
     ) -> cython.void:
-        """Adds the contribution of row k of y at the first (0) or last (1) end of steps of length h [s].
+        """Adds what y gives at the first (0) or last (1) end of the steps weighed last.
 
-        Row k is a state vector, or a sum over steps of it times sin or cos of the forces' angle at the first
-        end.
+        y is a state vector, or a sum over steps of it times sin or cos of the forces' angle at the first end.
         """
         i: cython.Py_ssize_t
         j: cython.int
@@ -324,13 +325,13 @@ class Integrals(Walk):
         by_sine: cython.double
         by_cosine: cython.double
         for i in range(self.flows.size):
-            self._terms[0, i] = y[k, i]
-        self.flows.extend(slot, self._terms, _TERMS - 1, h, self._terms, False)
+            self._terms[0, i] = y[i]
+        self.flows.extend(slot, self._terms, _TERMS - 1, self._length, self._terms, False)
         for j in range(_TERMS):
             w = end * _TERMS + j
-            even = h * one * self._weights[0, w]
-            by_sine = h * (sine * self._weights[2, w] + cosine * self._weights[1, w])
-            by_cosine = h * (cosine * self._weights[2, w] - sine * self._weights[1, w])
+            even = self._length * one * self._weights[0, w]
+            by_sine = self._length * (sine * self._weights[2, w] + cosine * self._weights[1, w])
+            by_cosine = self._length * (cosine * self._weights[2, w] - sine * self._weights[1, w])
             for i in range(self.flows.modes):
                 self.sums[0, i] += even * self._terms[j, i]
                 self.sums[1, i] += by_sine * self._terms[j, i]
