@@ -158,7 +158,7 @@ class FourierIntegrals:
         self.motion, self.most = motion, most
         self.highest = most + motion.highest
         self.cos_sum, self.sin_sum = np.zeros((2, functions, self.highest + 1))
-        self.power_cos, self.power_sin = np.ones((3, self.highest + 1)), np.zeros((3, self.highest + 1))
+        self.power_cos, self.power_sin = np.ones((2, self.highest + 1)), np.zeros((2, self.highest + 1))
         self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
         self.re = self.im = 0.0
 

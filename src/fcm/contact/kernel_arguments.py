@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.contact_kernel import ContactKernel
+
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -63,15 +65,33 @@ class KernelArguments(NamedTuple):
             np.ascontiguousarray(unknowns), np.ascontiguousarray(np.stack(columns, axis=-1)),
         )  # fmt: skip
 
-    def check_single(self) -> None:
-        """Raises ValueError if there are several contacts."""
-        if self.shape:
-            raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {self.shape}")
+    @classmethod
+    def of_one(
+        cls, motions: Mapping[str, npt.ArrayLike], numbers: Mapping[str, npt.ArrayLike]
+    ) -> KernelArguments:
+        """Arguments from one motion of one contact; ValueError if there are several, or one is not finite."""
+        found = cls.of(motions, None, numbers)
+        if found.shape:
+            raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {found.shape}")
+        if not (np.isfinite(found.unknowns).all() and np.isfinite(found.parameters).all()):
+            raise ValueError("all coefficients and parameters must be finite numbers")
+        return found
 
-    def room(self, equations: int, gradient: bool) -> tuple[FloatArray, FloatArray]:
-        """Empty arrays: forces (point, equation) and, if wanted, derivatives (point, equation, unknown)."""
+    def evaluated(self, kernel: ContactKernel, gradient: bool) -> tuple[FloatArray, FloatArray]:
+        """Forces (point, equation) and, if wanted, their derivatives (point, equation, unknown).
+
+        Raises
+        ------
+        RuntimeError
+            If no steady cycle is found.
+        """
         count, unknowns = self.unknowns.shape
-        return np.empty((count, equations)), np.empty((count if gradient else 0, equations, unknowns))
+        forces = np.empty((count, kernel.equations))
+        jacobian = np.empty((count if gradient else 0, kernel.equations, unknowns))
+        unsolved = kernel.all(self.unknowns, self.parameters, forces, jacobian)
+        if unsolved >= 0:
+            raise RuntimeError(f"no steady cycle of the motion with number {unsolved} was found")
+        return forces, jacobian
 
     def coefficients(self, forces: FloatArray) -> list[ComplexArray]:
         """Complex Fourier coefficients of each force, from a kernel's real numbers along axis 1."""

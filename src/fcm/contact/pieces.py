@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
+
+Piece = tuple[str, float, Any]
 
 
 class Pieces:
@@ -42,6 +46,19 @@ class LoadedPieces(Pieces):
     def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
         """Slip limit mu n [force] at each angle theta [rad]."""
         return self.mu * self.normal_load(theta)
+
+
+def from_piece(first: int, pieces: list[Piece]) -> list[Piece]:
+    """The pieces (state, first angle, place of the slider) of a cycle in their order, from a given one on."""
+    turned = [(state, begin + 2.0 * np.pi, place) for state, begin, place in pieces[:first]]
+    return pieces[first:] + turned
+
+
+def transitions_of(pieces: list[Piece]) -> tuple[str, FloatArray, FloatArray]:
+    """The sequence of states, the angles [rad] at which they begin, and these less the first; of one none."""
+    sequence, begin = "".join(state for state, _, _ in pieces), np.array([begin for _, begin, _ in pieces])
+    since = begin[: 0 if len(pieces) == 1 else None] - begin[0]
+    return sequence, within_turn(begin[0] + since), since
 
 
 def within_turn(angle: FloatArray) -> FloatArray:

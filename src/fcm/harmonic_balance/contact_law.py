@@ -217,12 +217,7 @@ class LineLaw(KernelLaw):
         pushed: cython.double = 0.0
         for p in range(self.steady.pieces):
             state: cython.int = self.steady.state[p]
-            last: cython.bint = p + 1 == self.steady.pieces
-            end: cython.double = self.steady.begin[0] if last else self.steady.begin[p + 1]
-            length: cython.double = end - self.steady.begin[p]
-            while length < 0.0 or (last and length <= 0.0):
-                length += TWO_PI
-            length /= TWO_PI
+            length: cython.double = self.steady.length(p) / TWO_PI
             closed += length if state != SEPARATION else 0.0
             stick += length if state == STICK else 0.0
             pushed += length if state == POSITIVE else -length if state == NEGATIVE else 0.0

@@ -3,6 +3,8 @@ from fcm.stability.state_sequence cimport StateSequence
 
 cdef class Monodromy(Disturbances):
     cdef readonly StateSequence sequence
+    cdef int first
+    cdef int[::1] memory
     cdef double[:, ::1] port
     cpdef int follow(self, double omega) except -1
     cdef int begin(self) except -1
@@ -11,11 +13,8 @@ cdef class Monodromy(Disturbances):
 cdef class RingMonodromy(Monodromy):
     cdef double part, start
     cdef object renumber, source
-    cdef int first
-    cdef int[::1] memory
     cpdef int follow(self, double omega) except -1
     cdef void widest(self) noexcept
-    cdef int begin(self) except -1
 
 cdef extern from *:
     """

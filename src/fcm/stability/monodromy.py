@@ -86,7 +86,8 @@ class Monodromy(Disturbances):
 
     `follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
 
-    Velocities are by the angle. Followed is the motion that the sequence is of.
+    Velocities are by the angle. Followed is the motion that the sequence is of, from the event that is number
+    `first` of its order on. memory (contact,): whether a slider's place is a disturbance then.
     """
 
     def __init__(
@@ -94,7 +95,8 @@ class Monodromy(Disturbances):
     ) -> None:
         Disturbances.__init__(self, stiffness, propagator or Propagator())
         self.sequence = sequence
-        self.port = np.zeros((2, self.size))
+        self.port, self.first = np.zeros((2, self.size)), 0
+        self.memory = np.zeros(self.contacts, dtype=np.intc)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -136,7 +138,7 @@ class Monodromy(Disturbances):
             for i in range(columns):
                 out[j, i] = self.X[j, i]
         for c in range(self.contacts):
-            if self.sequence.remembers[c]:
+            if self.memory[c]:
                 for i in range(columns):
                     out[row, i] = self.X[2 * self.modes + c, i]
                 row += 1
@@ -145,17 +147,23 @@ class Monodromy(Disturbances):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def begin(self) -> cython.int:
-        """Set the disturbances to be followed, before the first event."""
+        """Set the disturbances to be followed, and the states before the first event."""
+        s: StateSequence = self.sequence
         i: cython.int
         j: cython.int
         c: cython.int
         self.memories = 0
+        for c in range(self.contacts):
+            self.state[c], self.memory[c] = s.state[c], s.remembers[c]
+        for i in range(self.first):
+            c = s.whose[s.order[i]]
+            self.state[c] = s.into[s.order[i]]
+            self.memory[c] = self.state[c] == STICK
         for i in range(self.X.shape[0]):
             for j in range(self.X.shape[1]):
                 self.X[i, j] = 1.0 if i == j and i < 2 * self.modes else 0.0
         for c in range(self.contacts):
-            self.state[c] = self.sequence.state[c]
-            if self.sequence.remembers[c]:
+            if self.memory[c]:
                 self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
                 self.memories += 1
         return self.assemble()
@@ -212,8 +220,7 @@ class RingMonodromy(Monodromy):
     ) -> None:
         Monodromy.__init__(self, stiffness, sequence, BySeries())
         self.part, self.renumber, self.source = part, renumber, source
-        self.memory = np.zeros(self.contacts, dtype=np.intc)
-        self.first, self.start = 0, 0.0
+        self.start = 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -255,29 +262,6 @@ class RingMonodromy(Monodromy):
             gap: cython.double = s.angle[s.order[i]] - before
             if gap > widest:
                 widest, self.first, self.start = gap, i, before + 0.5 * gap
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def begin(self) -> cython.int:
-        """Set the disturbances to be followed, and the states at the start."""
-        s: StateSequence = self.sequence
-        i: cython.int
-        c: cython.int
-        self.memories = 0
-        self.state[:] = s.state
-        self.memory[:] = s.remembers
-        for i in range(self.first):
-            c = s.whose[s.order[i]]
-            self.state[c] = s.into[s.order[i]]
-            self.memory[c] = self.state[c] == STICK
-        self.X[:, :] = 0.0
-        for i in range(2 * self.modes):
-            self.X[i, i] = 1.0
-        for c in range(self.contacts):
-            if self.memory[c]:
-                self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
-                self.memories += 1
-        return self.assemble()
 
     def matrix(self) -> npt.NDArray[np.float64]:
         """The monodromy matrix, (2 modes + memories, the same).

@@ -23,4 +23,3 @@ cdef class BalancedSequence(StateSequence):
     cpdef bint find_events(self, double[::1] x) except -1
     cdef bint contact_cycle(self, double[::1] x, int c) noexcept
     cdef bint opens(self) noexcept
-    cdef double limit_at(self, int p) noexcept

@@ -11,17 +11,16 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
-from cython.cimports.libc.math import fabs
 
 from fcm.contact.kernels import periodic_contact
 
 if cython.compiled:
     from cython.cimports.fcm.contact.contact_kernel import OPEN, STUCK, UNKNOWN, ContactParameters
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.cycle import SEPARATION, STICK
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI
 else:
     from fcm.contact.contact_kernel import OPEN, STUCK, UNKNOWN, ContactParameters
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.cycle import SEPARATION, STICK
     from fcm.contact.periodic.motion import TWO_PI
 
 
@@ -155,7 +154,7 @@ class BalancedSequence(StateSequence):
                 self.held += 1
                 if self.yielding:
                     e = self.cycle.event[0]
-                    self.add_event(self.cycle.event_angle[e], c, STICK, self.limit_at(0))
+                    self.add_event(self.cycle.event_angle[e], c, STICK, self.cycle.along(0))
             return True
         if not rubs and not self.opens():  # it slides to and fro, and nothing changes by that
             self.state[c] = FREE
@@ -165,7 +164,7 @@ class BalancedSequence(StateSequence):
             state = self.cycle.state[p]
             if not rubs and state != SEPARATION:
                 state = FREE
-            self.add_event(self.cycle.begin[p], c, state, self.limit_at(p) if state == STICK else 0.0)
+            self.add_event(self.cycle.begin[p], c, state, self.cycle.along(p) if state == STICK else 0.0)
         return True
 
     @cython.cfunc
@@ -177,16 +176,3 @@ class BalancedSequence(StateSequence):
         for p in range(self.cycle.pieces):
             found = found or self.cycle.state[p] == SEPARATION
         return found
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def limit_at(self, p: cython.int) -> cython.double:
-        """`along` of a stick. After a separation w = u where the load vanishes: that moves by -dn / n'."""
-        e: cython.int = self.cycle.event[p]
-        if self.cycle.cause[p] != SEPARATION:
-            return -1.0 if self.cycle.cause[p] == POSITIVE else 1.0
-        # the limits are never steeper than the motion here, or it would not stick
-        load: cython.double = self.motion.ratio * self.cycle.load_rate[e]
-        if fabs(self.cycle.motion_rate[e]) < load:
-            return -self.cycle.motion_rate[e] / load
-        return -1.0 if self.cycle.motion_rate[e] > 0.0 else 1.0

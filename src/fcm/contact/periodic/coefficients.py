@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
+from fcm.contact.kernel_arguments import ComplexArray, KernelArguments
 from fcm.contact.periodic.forces import PeriodicContact
 
 
@@ -85,7 +85,8 @@ def periodic_forces(
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
     motion = KernelArguments.of({"u": u, "v": v}, harmonics, numbers)
-    f, n = motion.coefficients(_evaluated(motion, gradient=False)[0])
+    kernel = PeriodicContact(motion.harmonics, motion.outputs)
+    f, n = motion.coefficients(motion.evaluated(kernel, gradient=False)[0])
     return f, n
 
 
@@ -124,22 +125,6 @@ def periodic_gradients(
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
     motion = KernelArguments.of({"u": u, "v": v}, harmonics, numbers)
-    forces, jacobian = _evaluated(motion, gradient=True)
+    kernel = PeriodicContact(motion.harmonics, motion.outputs)
+    forces, jacobian = motion.evaluated(kernel, gradient=True)
     return PeriodicGradients(*motion.coefficients(forces), *motion.derivatives(jacobian))
-
-
-def one_motion(
-    u: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
-) -> tuple[PeriodicContact, FloatArray, FloatArray]:
-    """The kernel, unknowns and parameters of a single contact motion."""
-    motion = KernelArguments.of({"u": u, "v": v}, None, numbers)
-    motion.check_single()
-    return PeriodicContact(motion.harmonics, motion.outputs), motion.unknowns[0], motion.parameters[0]
-
-
-def _evaluated(motion: KernelArguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
-    """Forces (point, equation) and, if wanted, their derivatives (point, equation, unknown)."""
-    contact = PeriodicContact(motion.harmonics, motion.outputs)
-    forces, jacobian = motion.room(contact.equations, gradient)
-    contact.all(motion.unknowns, motion.parameters, forces, jacobian)
-    return forces, jacobian

@@ -13,6 +13,8 @@ cdef class LineCycle(CycleEvents):
     cdef int slipping, span, span_cause
     cdef double span_begin, w
     cdef void add(self, int state, int event, double theta, double rest, int cause) noexcept nogil
+    cdef double length(self, int p) noexcept nogil
+    cdef double along(self, int p) noexcept nogil
     cdef void close(self) noexcept nogil
     cdef bint pushes(self, int side) noexcept nogil
     cdef void advance(self, int end, double theta, int kind) noexcept nogil
@@ -22,7 +24,6 @@ cdef class LineCycle(CycleEvents):
     cdef readonly double overlap, greatest_lower, least_upper, start
     cdef readonly int behaviour, kind
     cdef double[::1] numbers
-    cdef int[::1] order
     cdef ContactParameters contact
     cdef int take(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef bint known(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil

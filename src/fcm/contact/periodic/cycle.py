@@ -122,7 +122,7 @@ class LineCycle(CycleEvents):
         crossings = ZeroCrossings(motion)
         size = 2 * crossings.capacity + 4
         CycleEvents.__init__(self, motion, size)
-        self.crossings, self.order = crossings, np.zeros(crossings.capacity, dtype=np.intc)
+        self.crossings = crossings
         self.state, self.event = np.zeros(size, dtype=np.intc), np.zeros(size, dtype=np.intc)
         self.cause = np.zeros(size, dtype=np.intc)
         self.begin, self.rest = np.zeros(size), np.zeros(size)
@@ -191,7 +191,7 @@ class LineCycle(CycleEvents):
         if behaviour == CLOSED:
             return self.never_open(start)
         first: cython.int = 0
-        while self.crossings.kind[self.order[first]] != CLOSES:
+        while self.crossings.kind[self.crossings.order[first]] != CLOSES:
             first += 1
         self.march(first, CLOSES)
         return MIXED
@@ -202,19 +202,14 @@ class LineCycle(CycleEvents):
         return spare >= 0.0
 
     def sort_cuts(self) -> None:
-        """Fills `order`: the cuts sorted by angle, each reduced to the turn that begins at the first node."""
+        """Sorts the cuts by angle, each reduced to the turn that begins at the first node."""
         i: cython.int
-        j: cython.int
         for i in range(self.crossings.count):
             if self.crossings.angle[i] < self.motion.first:
                 self.crossings.angle[i] += TWO_PI
             elif self.crossings.angle[i] >= self.motion.first + TWO_PI:
                 self.crossings.angle[i] -= TWO_PI
-            j = i
-            while j > 0 and self.crossings.angle[self.order[j - 1]] > self.crossings.angle[i]:
-                self.order[j] = self.order[j - 1]
-                j -= 1
-            self.order[j] = i
+        self.crossings.sort()
 
     def never_open(self, start: float) -> cython.int:
         """Solves a cycle without separation, from the greatest top on if it lies above the least bottom."""
@@ -224,8 +219,10 @@ class LineCycle(CycleEvents):
         bottom: cython.int = -1
         first: cython.int = 0
         for i in range(self.crossings.count):
-            e = self.place(self.crossings.angle[self.order[i]], self.crossings.kind[self.order[i]])
-            if self.crossings.kind[self.order[i]] == TOP:
+            e = self.place(
+                self.crossings.angle[self.crossings.order[i]], self.crossings.kind[self.crossings.order[i]]
+            )
+            if self.crossings.kind[self.crossings.order[i]] == TOP:
                 if top < 0 or self.lower[e] > self.lower[top]:
                     top, first = e, i
             elif bottom < 0 or self.upper[e] < self.upper[bottom]:
@@ -252,7 +249,7 @@ class LineCycle(CycleEvents):
         turn: float = 0.0
         i: cython.int
         at: cython.int = first
-        theta: float = self.crossings.angle[self.order[first]]
+        theta: float = self.crossings.angle[self.crossings.order[first]]
         opened: bool = False
         self.slipping, self.span_cause = 0, POSITIVE
         self.span = first if kind == TOP else self.place(theta, kind)
@@ -264,8 +261,8 @@ class LineCycle(CycleEvents):
             at += 1
             if at == count:
                 at, turn = 0, TWO_PI
-            theta = self.crossings.angle[self.order[at]] + turn
-            kind = self.crossings.kind[self.order[at]]
+            theta = self.crossings.angle[self.crossings.order[at]] + turn
+            kind = self.crossings.kind[self.crossings.order[at]]
             if opened:
                 if kind == CLOSES:
                     opened = False
@@ -285,6 +282,29 @@ class LineCycle(CycleEvents):
         self.state[i], self.event[i], self.begin[i] = state, event, theta
         self.rest[i], self.cause[i] = rest, cause
         self.pieces += 1
+
+    def length(self, p: cython.int) -> float:
+        """Length [rad] of piece p."""
+        end: float = self.begin[p + 1] if p + 1 < self.pieces else self.begin[0] + TWO_PI
+        length: float = end - self.begin[p]
+        return length
+
+    def along(self, p: cython.int) -> float:
+        """How the place of the slider in a stick p varies with the load, beside k_u u; see `cause`.
+
+        After a slip it is that of the limit. After a separation w = u where the load vanishes, and that
+        instant moves by -dn / n'.
+        """
+        e: cython.int = self.event[p]
+        along: float = -1.0 if self.cause[p] == POSITIVE else 1.0
+        if self.cause[p] == SEPARATION:
+            # its limits are never steeper than the motion here, or it would not stick
+            along = self.motion.ratio * self.load_rate[e]
+            if fabs(self.motion_rate[e]) < along:
+                along = -self.motion_rate[e] / along
+            else:
+                along = -1.0 if self.motion_rate[e] > 0.0 else 1.0
+        return along
 
     def close(self) -> None:
         """Sets the slider where the contact closes, and whether it slips at once, (20) to (22)."""

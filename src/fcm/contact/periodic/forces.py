@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, sin
+from cython.cimports.libc.math import sin
 
 from fcm.contact.periodic.gauss import gauss
 
@@ -31,7 +31,7 @@ if cython.compiled:
         FourierIntegrals,
     )
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, LineCycle
-    from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, REACH, TWO_PI, LineMotion
+    from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, REACH, LineMotion
 else:
     from fcm.contact.closed_form import NAN, PI
     from fcm.contact.contact_kernel import (
@@ -45,7 +45,7 @@ else:
         FourierIntegrals,
     )
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, LineCycle
-    from fcm.contact.periodic.motion import FORCE, LOAD, REACH, TWO_PI, LineMotion
+    from fcm.contact.periodic.motion import FORCE, LOAD, REACH, LineMotion
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
@@ -74,27 +74,16 @@ class LineIntegrals(FourierIntegrals):
         """Sums the integrals of exp(-i m theta) over the pieces, and the forces of short sticks."""
         m: cython.int
         p: cython.int
-        last: cython.int = self.cycle.pieces - 1
         e: cython.int = self.cycle.event[0]
         self.clear()
         for m in range(self.most + 1):
             self.total_re[m] = self.total_im[m] = 0.0
         self.powers(0, self.cycle.event_cos[e], self.cycle.event_sin[e])
-        begin: cython.int = 0
-        end: cython.int = 1
-        length: float
-        for p in range(last + 1):
-            if p < last:
-                e = self.cycle.event[p + 1]
-                length = self.cycle.begin[p + 1] - self.cycle.begin[p]
-            else:
-                end = 2
-                e = self.cycle.event[0]
-                length = self.cycle.begin[0] + TWO_PI - self.cycle.begin[p]
-            self.powers(end, self.cycle.event_cos[e], self.cycle.event_sin[e])
+        for p in range(self.cycle.pieces):
+            e = self.cycle.event[p + 1 if p + 1 < self.cycle.pieces else 0]
+            self.powers((p + 1) % 2, self.cycle.event_cos[e], self.cycle.event_sin[e])
             if self.cycle.state[p] != SEPARATION:
-                self.piece(p, begin, end, max(length, 0.0))
-            begin, end = end, begin
+                self.piece(p, p % 2, (p + 1) % 2, max(self.cycle.length(p), 0.0))
 
     def piece(self, p: cython.int, begin: cython.int, end: cython.int, length: float) -> None:
         """Adds a piece in which the contact is closed to the sums of its sets."""
@@ -200,22 +189,10 @@ class LineDerivatives(ForceDerivatives):
                 self.remember(p)
 
     def gradient(self, p: cython.int) -> None:
-        """Fills `memory`: derivatives of the slider's resting place in piece p, but for the mean of u.
-
-        After a slip it is that of the limit, where the limit turns. After a separation w = u where the load
-        vanishes, and that instant moves by -n_q / n_t.
-        """
+        """Fills `memory`: derivatives of the slider's resting place in piece p, but for the mean of u."""
         e: cython.int = self.cycle.event[p]
-        cause: cython.int = self.cycle.cause[p]
-        along: float = -1.0 if cause == POSITIVE else 1.0
+        along: float = self.cycle.along(p)
         k: cython.int
-        if cause == SEPARATION:
-            # its limits are never steeper than the motion here, or it would not stick
-            along = self.motion.ratio * self.cycle.load_rate[e]
-            if fabs(self.cycle.motion_rate[e]) < along:
-                along = -self.cycle.motion_rate[e] / along
-            else:
-                along = -1.0 if self.cycle.motion_rate[e] > 0.0 else 1.0
         self.integrals.powers(0, self.cycle.event_cos[e], self.cycle.event_sin[e])
         self.memory[0], self.memory[1] = 0.0, along
         for k in range(self.motion.count):
@@ -232,14 +209,11 @@ class LineDerivatives(ForceDerivatives):
         row: cython.Py_ssize_t
         next_p: cython.int = p + 1 if p + 1 < self.cycle.pieces else 0
         e: cython.int = self.cycle.event[next_p]
-        length: float = self.cycle.begin[next_p] - self.cycle.begin[p]
         re: float
         im: float
-        if next_p == 0:
-            length += TWO_PI
         self.integrals.powers(1, self.cycle.event_cos[e], self.cycle.event_sin[e])
         for j in range(1, self.unknowns):
-            self.jacobian[0, j] -= 0.5 / PI * length * self.memory[j]
+            self.jacobian[0, j] -= 0.5 / PI * self.cycle.length(p) * self.memory[j]
         for i in range(self.outputs):
             h = self.output[i]
             row = 2 + 4 * i

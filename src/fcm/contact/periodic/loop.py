@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.kernel_arguments import ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
 from fcm.contact.options import PERIODIC
-from fcm.contact.periodic.coefficients import one_motion
 from fcm.contact.periodic.cycle import LineCycle, join_states
+from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Measures
-from fcm.contact.pieces import LoadedPieces, friction, waves_at, within_turn
+from fcm.contact.pieces import LoadedPieces, Piece, friction, from_piece, transitions_of, waves_at
 from fcm.frozen import Frozen
 
 STICK = 0  # of the kernel's states
@@ -102,32 +102,29 @@ def periodic_loop(
     >>> loop.sequence
     'SNEPEPEN'
     """
-    contact, x, parameters = one_motion(u, v, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
-    if not (np.isfinite(x).all() and np.isfinite(parameters).all()):
-        raise ValueError("all coefficients and parameters must be finite numbers")
-    contact.at(x, ContactParameters(*parameters.tolist()))
+    numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
+    motion = KernelArguments.of_one({"u": u, "v": v}, numbers)
+    contact = PeriodicContact(motion.harmonics, motion.outputs)
+    contact.at(motion.unknowns[0], ContactParameters(*motion.parameters[0].tolist()), False)
     measures = Measures(contact.cycle)
-    measures.take(k_u)
+    measures.measure(k_u)
     length = contact.motion.scale / k_u if k_u > 0.0 else 0.0
-    mean = float(x[0])
+    mean = float(motion.unknowns[0, 0])
     regions = _ordered(_visible(contact.cycle))
-    since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
-    angles = within_turn(regions[0][1] + since)
-    single = len(regions) == 1
+    sequence, angles, since = transitions_of(regions)
     return PeriodicLoop(
         np.atleast_1d(np.asarray(u, np.complex128)),
         np.atleast_1d(np.asarray(v, np.complex128)),
         float(mu), float(k_u), float(k_v), float(n_0),
-        "".join(state for state, _, _ in regions),
-        angles[:0] if single else angles,
+        sequence, angles,
         np.array([mean + length * rest if state == "E" else np.nan for state, _, rest in regions]),
         measures.dissipation, measures.slip_path,
         measures.greatest_friction, measures.least_load, measures.greatest_load, measures.overlap,
-        since[:0] if single else since,
+        since,
     )  # fmt: skip
 
 
-def _visible(cycle: LineCycle) -> list[tuple[str, float, float]]:
+def _visible(cycle: LineCycle) -> list[Piece]:
     """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
     begin = np.asarray(cycle.begin)[: cycle.pieces]
     length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
@@ -147,7 +144,7 @@ def _seen(cycle: LineCycle, p: int) -> tuple[int, float]:
     return state if abs(end - begin) > PERIODIC.min_state_length else STICK, begin
 
 
-def _ordered(regions: list[tuple[str, float, float]]) -> list[tuple[str, float, float]]:
+def _ordered(regions: list[Piece]) -> list[Piece]:
     """The pieces rotated to begin with a separation, else with a stick after negative slip.
 
     Of several the first after angle 0 is taken.
@@ -158,6 +155,4 @@ def _ordered(regions: list[tuple[str, float, float]]) -> list[tuple[str, float, 
     ]
     if not firsts:
         return regions
-    first = min(firsts, key=lambda i: regions[i][1] % (2.0 * np.pi))
-    turned = [(state, begin + 2.0 * np.pi, rest) for state, begin, rest in regions[:first]]
-    return regions[first:] + turned
+    return from_piece(min(firsts, key=lambda i: regions[i][1] % (2.0 * np.pi)), regions)

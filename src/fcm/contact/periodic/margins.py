@@ -189,7 +189,6 @@ TURN = cython.declare(cython.int, 12)  # of the motion
 POINTS = cython.declare(cython.int, 8)
 PART = cython.declare(cython.double, 3.0)  # [rad] in which as many points err by 2e-15
 _GAUSS = gauss(8)  # POINTS of them, on 0 to 1
-PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int still
 
 
 def greatest_load(crossings: ZeroCrossings) -> float:
@@ -206,7 +205,7 @@ def greatest_load(crossings: ZeroCrossings) -> float:
 
 @cython.cclass
 class Measures:
-    """Forces, energy and state sequence of the cycle that a contact has solved last, in the units of its
+    """Forces and energy of the cycle that a contact has solved last, in the units of its
     arguments.
 
     Attributes
@@ -223,8 +222,6 @@ class Measures:
         Energy that friction takes in a cycle [force length], never negative.
     slip_path
         Way of the slider while it slips, in a cycle [length].
-    signature
-        A number for the sequence of states; equal for equal sequences.
     """
 
     def __init__(self, cycle: LineCycle) -> None:
@@ -233,13 +230,8 @@ class Measures:
         self.value = np.zeros(self.crossings.capacity)
         self.least_load = self.greatest_load = self.overlap = self.greatest_friction = 0.0
         self.dissipation = self.slip_path = self.piece_energy = self.piece_path = 0.0
-        self.signature = 0
         self.points, self.weights = _GAUSS
         self.turn_cos, self.turn_sin = np.zeros((2, POINTS))
-
-    def take(self, k_u: float) -> None:
-        """Calls `measure` from Python."""
-        self.measure(k_u)
 
     def measure(self, k_u: float) -> None:
         """Computes all attributes of the present cycle."""
@@ -247,7 +239,6 @@ class Measures:
         self.friction()
         self.extremes()
         self.slips(k_u)
-        self.sign()
 
     def bear(self, k_u: float) -> None:
         """Computes only greatest load and friction, energy and slip path, which costs less than `measure`."""
@@ -329,14 +320,11 @@ class Measures:
     def slips(self, k_u: float) -> None:
         """Computes the energy and path of all slips, as sums of non-negative terms."""
         p: cython.int
-        last: cython.int = self.cycle.pieces - 1
         energy: float = 0.0
         path: float = 0.0
-        end: float
-        for p in range(last + 1):
+        for p in range(self.cycle.pieces):
             if self.cycle.state[p] == POSITIVE or self.cycle.state[p] == NEGATIVE:
-                end = self.cycle.begin[p + 1] if p < last else self.cycle.begin[0] + TWO_PI
-                self.slip(p, end - self.cycle.begin[p])
+                self.slip(p, self.cycle.length(p))
                 energy += self.piece_energy
                 path += self.piece_path
         # forces times ways of forces: the stiffness turns these into lengths; without it there is no friction
@@ -369,17 +357,3 @@ class Measures:
                 rate = max(rate * self.cycle.state[p], 0.0) * self.weights[j] * step
                 self.piece_energy += rate * max(load, 0.0)
                 self.piece_path += rate
-
-    def sign(self) -> None:
-        """Computes `signature`: the cyclic sequence of states as one number, whatever state is first."""
-        i: cython.int
-        p: cython.int
-        state: cython.int
-        number: cython.longlong
-        self.signature = PRIME
-        for i in range(self.cycle.pieces):
-            number = 0
-            for p in range(self.cycle.pieces):
-                state = self.cycle.state[(i + p) % self.cycle.pieces]
-                number = (number * 7 + cython.cast(cython.longlong, state) + 2) % PRIME
-            self.signature = min(self.signature, number)

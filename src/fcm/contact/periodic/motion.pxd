@@ -27,7 +27,7 @@ cdef class ZeroCrossings:
     cdef readonly LineMotion motion
     cdef readonly int count, capacity
     cdef readonly double[::1] angle
-    cdef readonly int[::1] kind
+    cdef readonly int[::1] kind, order
     cdef int[::1] open
     cdef double[:, ::1] stack
     cdef readonly int sign
@@ -38,6 +38,7 @@ cdef class ZeroCrossings:
     cdef int max_halvings
     cdef void begin(self) noexcept nogil
     cdef void search(self, int row, int rising, int falling) noexcept nogil
+    cdef void sort(self) noexcept nogil
     cdef void bounds(self) noexcept nogil
     cdef int definite_node(self) noexcept nogil
     cdef void interval(self, int j) noexcept nogil

@@ -258,14 +258,17 @@ class LineMotion(HarmonicMotion):
 
 @cython.cclass
 class ZeroCrossings:
-    """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search."""
+    """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search.
+
+    `order`: their numbers by rising angle, when they have been sorted.
+    """
 
     def __init__(self, motion: LineMotion, options: PeriodicOptions = PERIODIC) -> None:
         self.motion = motion
         self.max_halvings, self.min_interval = options.max_halvings, options.min_interval
         self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
         self.angle = np.empty(self.capacity)
-        self.kind = np.empty(self.capacity, dtype=np.intc)
+        self.kind, self.order = np.empty((2, self.capacity), dtype=np.intc)
         self.open = np.zeros(motion.at.shape[1], dtype=np.intc)
         self.stack = np.empty((self.max_halvings + 2, 3))
         self.count = self.row = self.rising = self.falling = self.sign = 0
@@ -295,6 +298,17 @@ class ZeroCrossings:
             return
         for j in range(start, start + self.motion.nodes):
             self.interval(j)
+
+    def sort(self) -> None:
+        """Fills `order`."""
+        i: cython.int
+        j: cython.int
+        for i in range(self.count):
+            j = i
+            while j > 0 and self.angle[self.order[j - 1]] > self.angle[i]:
+                self.order[j] = self.order[j - 1]
+                j -= 1
+            self.order[j] = i
 
     def bounds(self) -> None:
         """Sets bounds of the row's second and fourth derivatives, and of the rounding error of its value."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
+from fcm.contact.kernel_arguments import ComplexArray, KernelArguments
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINE
 
@@ -94,7 +94,8 @@ def planar_forces(
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
     motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
-    f_x, f_y, n = motion.coefficients(_evaluated(motion, gradient=False)[0])
+    kernel = PlanarContact(motion.harmonics, motion.outputs, options=FINE)
+    f_x, f_y, n = motion.coefficients(motion.evaluated(kernel, gradient=False)[0])
     return f_x, f_y, n
 
 
@@ -136,24 +137,6 @@ def planar_gradients(
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
     motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
-    forces, jacobian = _evaluated(motion, gradient=True)
+    kernel = PlanarContact(motion.harmonics, motion.outputs, options=FINE)
+    forces, jacobian = motion.evaluated(kernel, gradient=True)
     return PlanarGradients(*motion.coefficients(forces), *motion.derivatives(jacobian))
-
-
-def one_motion(
-    u_x: npt.ArrayLike, u_y: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
-) -> tuple[list[int], FloatArray, FloatArray]:
-    """The harmonics, unknowns and parameters of a single contact motion, as the kernel takes them."""
-    motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, None, numbers)
-    motion.check_single()
-    return motion.harmonics, motion.unknowns[0], motion.parameters[0]
-
-
-def _evaluated(motion: KernelArguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
-    """Forces (point, equation) and, if wanted, their derivatives (point, equation, unknown)."""
-    contact = PlanarContact(motion.harmonics, motion.outputs, options=FINE)
-    forces, jacobian = motion.room(contact.equations, gradient)
-    unsolved = contact.all(motion.unknowns, motion.parameters, forces, jacobian)
-    if unsolved >= 0:
-        raise RuntimeError(f"no steady cycle of the motion with number {unsolved} was found")
-    return forces, jacobian

@@ -14,8 +14,6 @@ cdef class PlanarCycle:
     cdef double moved_x, moved_y, place_x, place_y
     cdef double[:, ::1] side
     cdef int sides, replaced
-    cdef double[::1] cut
-    cdef int[::1] cut_kind
     cdef int solve(self, int behaviour, double s_x, double s_y, bint gradient) noexcept nogil
     cdef int opening(self, bint gradient) noexcept nogil
     cdef int closed(self, bint gradient) noexcept nogil

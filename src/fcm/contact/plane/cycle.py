@@ -54,8 +54,6 @@ class PlanarCycle:
         self.slider = Slider(motion, outputs, most_panels)
         self.resting = Resting(motion)
         self.crossings = ZeroCrossings(motion.normal)
-        self.cut = np.zeros(self.crossings.capacity)
-        self.cut_kind = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.kind = self.behaviour = UNKNOWN
         self.periods = 0
         self.moved_x = self.moved_y = self.place_x = self.place_y = 0.0
@@ -64,8 +62,6 @@ class PlanarCycle:
 
     def solve(self, behaviour: cython.int, s_x: float, s_y: float, gradient: bool) -> cython.int:
         """Solves the cycle of the loaded motion, for a slider that began at a place from the means of u."""
-        i: cython.int
-        j: cython.int
         self.periods = self.slider.pieces = self.slider.panels = 0
         self.slider.failed = False
         self.behaviour = self.kind = behaviour
@@ -97,13 +93,7 @@ class PlanarCycle:
             else:
                 self.kind = self.closed(gradient)
             return self.kind
-        for i in range(self.crossings.count):
-            angle: float = self.crossings.angle[i]
-            j = i
-            while j > 0 and self.cut[j - 1] > angle:
-                self.cut[j], self.cut_kind[j] = self.cut[j - 1], self.cut_kind[j - 1]
-                j -= 1
-            self.cut[j], self.cut_kind[j] = angle, self.crossings.kind[i]
+        self.crossings.sort()
         self.kind = self.opening(gradient)
         return self.kind
 
@@ -114,17 +104,17 @@ class PlanarCycle:
         turn: float = 0.0
         count: cython.int = self.crossings.count
         first: cython.int = 0
-        while self.cut_kind[first] != CLOSES:
+        while self.crossings.kind[self.crossings.order[first]] != CLOSES:
             first += 1
         self.slider.gathering, self.slider.varying, self.slider.gradient = True, gradient, gradient
         self.slider.derivatives.take(2, self.slider.derivatives.unknowns)
         at = first
         for i in range(count // 2):  # noqa: B007
-            begin: float = self.cut[at] + turn
+            begin: float = self.crossings.angle[self.crossings.order[at]] + turn
             at += 1
             if at == count:
                 at, turn = 0, TWO_PI
-            end: float = self.cut[at] + turn
+            end: float = self.crossings.angle[self.crossings.order[at]] + turn
             at += 1
             if at == count:
                 at, turn = 0, TWO_PI

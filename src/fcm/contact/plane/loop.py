@@ -8,10 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.kernel_arguments import ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
 from fcm.contact.periodic.cycle import join_states
-from fcm.contact.pieces import LoadedPieces, waves_at, within_turn
-from fcm.contact.plane.coefficients import one_motion
+from fcm.contact.pieces import LoadedPieces, Piece, from_piece, transitions_of, waves_at
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, LOOP
 from fcm.contact.plane.radau import STAGES, radau
@@ -136,40 +135,34 @@ def planar_loop(
     'EPSP'
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
-    harmonics, x, parameters = one_motion(u_x, u_y, v, **numbers)
-    if not (np.isfinite(x).all() and np.isfinite(parameters).all()):
-        raise ValueError("all coefficients and parameters must be finite numbers")
-    contact = _solved(harmonics, x, parameters)
+    motion = KernelArguments.of_one({"u_x": u_x, "u_y": u_y, "v": v}, numbers)
+    contact = _solved(motion)
     slider, scale = contact.cycle.slider, contact.motion.scale
     length = scale / k_u if k_u > 0.0 else 0.0
     regions = visible(contact)
-    since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
-    angles = within_turn(regions[0][1] + since)
-    single = len(regions) == 1
+    sequence, angles, since = transitions_of(regions)
     rest = np.array([place if state == "E" else (np.nan, np.nan) for state, _, place in regions])
-    sequence = "".join(state for state, _, _ in regions)
     slipped = "P" in sequence
     loop = PlanarLoop(
         np.atleast_1d(np.asarray(u_x, np.complex128)),
         np.atleast_1d(np.asarray(u_y, np.complex128)),
         np.atleast_1d(np.asarray(v, np.complex128)),
         float(mu), float(k_u), float(k_v), float(n_0),
-        sequence,
-        angles[:0] if single else angles,
-        x[:2] + length * rest,
+        sequence, angles,
+        motion.unknowns[0, :2] + length * rest,
         slider.integrals.work * scale * length if slipped else 0.0,
         slider.integrals.path * length if slipped else 0.0,
-        0.0, since[:0] if single else since, np.array(slider.record)[: slider.panels],
+        0.0, since, np.array(slider.record)[: slider.panels],
     )  # fmt: skip
-    return replace(loop, greatest_force=_greatest(loop, len(harmonics)))
+    return replace(loop, greatest_force=_greatest(loop, len(motion.harmonics)))
 
 
-def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> PlanarContact:
+def _solved(motion: KernelArguments) -> PlanarContact:
     """The kernel with the steady cycle solved and all its panels recorded."""
     most = LOOP.recorded_panels
     while True:
-        contact = PlanarContact(harmonics, harmonics, most, FINEST)
-        contact.at(x, ContactParameters(*parameters.tolist()), False)
+        contact = PlanarContact(motion.harmonics, motion.outputs, most, FINEST)
+        contact.at(motion.unknowns[0], ContactParameters(*motion.parameters[0].tolist()), False)
         if np.isnan(contact.forces).any():
             raise RuntimeError("no steady cycle of the motion was found")
         if contact.cycle.slider.panels <= most:
@@ -177,21 +170,20 @@ def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> Plan
         most = contact.cycle.slider.panels
 
 
-def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float]]]:
+def visible(contact: PlanarContact) -> list[Piece]:
     """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
     slider = contact.cycle.slider
     begin = np.asarray(slider.begin)[: slider.pieces]
     lengths = np.diff(begin, append=begin[0] + 2.0 * np.pi)
     shown = np.flatnonzero((lengths > FINEST.min_state_length) | (slider.pieces == 1)).astype(np.intc)
     left = join_states(np.asarray(slider.state)[shown], shown, len(shown))
-    regions = [
+    regions: list[Piece] = [
         (LETTERS[slider.state[p]], float(begin[p]), (float(slider.rest_x[p]), float(slider.rest_y[p])))
         for p in shown[:left].tolist()
     ]
     states = [state for state, _, _ in regions]
     first = next((i for i, state in enumerate(states) if state == "E"), 0)
-    turned = [(state, begin + 2.0 * np.pi, place) for state, begin, place in regions[:first]]
-    return regions[first:] + turned
+    return from_piece(first, regions)
 
 
 def _greatest(loop: PlanarLoop, harmonics: int) -> float:
