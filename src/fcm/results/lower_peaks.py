@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.local_maxima import local_maxima
+from fcm.local_maxima import local_maxima, prominence
 from fcm.results.options import RESULTS, PeakOptions
 
 _PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
@@ -32,7 +32,7 @@ def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> 
     found = [
         (d, k)
         for d, k in zip(dofs.tolist(), points.tolist(), strict=True)
-        if k != highest[d] and _prominence(amplitude[:, d], k) > options.least_prominence * amplitude[k, d]
+        if k != highest[d] and prominence(amplitude[:, d], k) > options.least_prominence * amplitude[k, d]
     ]
     return np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
 
@@ -74,20 +74,3 @@ def _rise(x: list[float], y: list[float]) -> float:
     places = np.array(x) / unit
     coefficients = np.linalg.solve(np.vander(places), y)
     return float(np.polyval(coefficients, np.linspace(places[top - 1], places[top + 1], _SAMPLES)).max())
-
-
-def _prominence(heights: FloatArray, k: int) -> float:
-    """Prominence of a point: its height above the higher of the two lowest points on either side.
-
-    A side reaches to a higher point, or to the end of the branch; that before the point to one as high, too,
-    so that the first of several is the peak.
-    """
-    before, behind = heights[k::-1], heights[k:]
-    off = max(_lowest(before, before[1:] < before[0]), _lowest(behind, behind[1:] <= behind[0]))
-    return float(heights[k] - off)
-
-
-def _lowest(side: FloatArray, counts: npt.NDArray[np.bool_]) -> float:
-    """The lowest of a way that begins at a peak, as far as the points behind that count."""
-    ends = np.flatnonzero(~counts)
-    return float(side[: 1 + (ends[0] if ends.size else counts.size)].min())

@@ -118,7 +118,8 @@ class CornerOptions(Frozen):
     max_distance : float
         Greatest length along a corner at which its special point is looked for.
     side_distance : float
-        Distance from a corner at which its two sides are evaluated.
+        Distance from a corner at which its two sides are evaluated, beyond the rounding of its place: that
+        is some 1e-12 in a plane, where slip begins with a root.
     rounding : float
         Distance up to which a point is at a corner.
     """
@@ -127,7 +128,7 @@ class CornerOptions(Frozen):
     tolerance: float = 1e-13
     first_step: float = 1e-6
     max_distance: float = 0.1
-    side_distance: float = 1e-13
+    side_distance: float = 1e-10
     rounding: float = 1e-11
 
 
@@ -189,6 +190,9 @@ class CurveOptions(Frozen):
     min_height : float
         Height of a peak, relative to the greatest amplitude of its degree of freedom, up to which it is not
         tracked.
+    min_prominence : float
+        Prominence of a peak lower than others of its branch, relative to its height, up to which no tracked
+        curve begins there. Folds where a contact begins to slip have many that are smaller.
     cusp_tolerance : float
         Rate of the frequency at a turn of the number, relative to that beside it, below which the turn is a
         cusp: the frequency turns back, too.
@@ -199,6 +203,7 @@ class CurveOptions(Frozen):
     frequency_tolerance: float = 1e-3
     max_peaks: int = 3
     min_height: float = 1e-3
+    min_prominence: float = 1e-3
     cusp_tolerance: float = 1e-3
 
 

@@ -13,6 +13,7 @@ from fcm.at_rest import at_rest
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
+from fcm.local_maxima import local_maxima, prominence
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import onset
@@ -76,13 +77,14 @@ def _points(
 
 
 def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
-    """Indices of the points higher than their neighbours."""
-    inner = amplitude[1:-1]
-    tops = 1 + np.flatnonzero((inner >= amplitude[:-2]) & (inner > amplitude[2:]))
-    high: npt.NDArray[np.intp] = tops[
-        amplitude[tops] > options.curves.min_height * amplitude.max(initial=0.0)
+    """Indices of peaks: of the highest point where it is not an end, and of those that stand out."""
+    curves, highest = options.curves, amplitude.max(initial=0.0)
+    tops = np.flatnonzero(local_maxima(amplitude[:, None], curves.min_height)[:, 0])
+    outstanding = [
+        amplitude[k] == highest or prominence(amplitude, k) > curves.min_prominence * amplitude[k]
+        for k in tops
     ]
-    return high
+    return tops[np.array(outstanding, dtype=np.bool_)]
 
 
 def _onsets(
