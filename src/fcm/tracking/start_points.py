@@ -81,7 +81,7 @@ def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDA
     curves, highest = options.curves, amplitude.max(initial=0.0)
     tops = np.flatnonzero(local_maxima(amplitude[:, None], curves.min_height)[:, 0])
     outstanding = [
-        amplitude[k] == highest or prominence(amplitude, k) > curves.min_prominence * amplitude[k]
+        amplitude[k] == highest or prominence(amplitude, int(k)) > curves.min_prominence * amplitude[k]
         for k in tops
     ]
     return tops[np.array(outstanding, dtype=np.bool_)]
