@@ -194,6 +194,21 @@ def test_what_is_said_of_residual_friction_agrees_with_its_column():
     )
 
 
+def test_the_peaks_whose_range_with_residual_friction_is_unknown_are_named():
+    """It was said of all amplitudes, though of u and w it was known that they do not change."""
+    run = {"method": "exact", "exact_motion": InTime.COMPUTED.value}
+    one = curve({"u": 1.0, "v": 2.0, "w": 3.0}) | {"may_not_be_unique": 3}
+    for dof, change in (("u", 0.0), ("v", None), ("w", 0.0)):
+        one["peak"][dof]["residual_change"] = change
+    told = maybe_not_unique({"curves": [one]} | run)
+    assert 'By how much the peak of "v" may differ was not estimated' in told
+    one["peak"]["u"]["residual_change"] = None
+    told = maybe_not_unique({"curves": [one]} | run)
+    assert 'the peaks of "u" and "v" may differ' in told
+    one["peak"]["w"]["residual_change"] = None
+    assert "By how much amplitudes may differ" in maybe_not_unique({"curves": [one]} | run)
+
+
 def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
     known, unknown = (curve({"u": 1.0}) | {"may_not_be_unique": 3} for _ in range(2))
     known["peak"]["u"]["residual_change"], unknown["peak"]["u"]["residual_change"] = 0.0, None

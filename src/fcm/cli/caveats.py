@@ -403,12 +403,24 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
         return ""
     how, of_levels = _how(summary), any("level_folds" in curve for curve in summary["curves"])
     points = f"{count} point{'s' * (count > 1)}"
-    tells = "By how much amplitudes may differ was not estimated"
+    tells = f"By how much {_not_estimated(one_of_many, shown)} may differ was not estimated"
     if how:
         tells += f": {how}{', at the level 1,' if of_levels else ''} computes how far the motions range"
     elif any("mode" in curve for curve in summary["curves"]):
         tells += ": a run without --mode estimates it at peaks"
     return f"at {points} the motion may be one of many. {tells}"
+
+
+def _not_estimated(curves: Sequence[Mapping[str, Any]], shown: Sequence[str]) -> str:
+    """Amplitudes whose range is unknown: those of some peaks, where others are known; or all."""
+    from fcm.scene.errors import several
+
+    peaks = [(dof, one) for curve in curves for dof, one in curve.get("peak", {}).items() if one]
+    known = {dof for dof, one in peaks if dof in shown and one.get("residual_change") is not None}
+    unknown = {dof for dof, one in peaks if dof in shown and one.get("residual_change") is None}
+    if not known or not unknown or any("level_folds" in curve for curve in curves):
+        return "amplitudes"
+    return f"the peak{'s' * (len(unknown) > 1)} of {several([dof for dof in shown if dof in unknown])}"
 
 
 def _completed(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:

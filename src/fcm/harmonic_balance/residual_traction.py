@@ -13,6 +13,9 @@ may be further off, this is an estimate and no bound.
 Where all else is linear the peak is the same for every t, and g is zero, until another contact opens, closes
 or slips. Then g is that of the mean load of the contact that comes nearest to it.
 
+A member ends where those contacts begin to slip. Its peak may be there, and that of the motion itself, too:
+in such a corner of the curve.
+
 On a line t_i is a number and its limits an interval; in a plane it is a vector, within what all discs share.
 """
 
@@ -117,6 +120,7 @@ class _FixedTractionBalance:
         self.free = system.exact_laws(system.harmonics)
         each = zip(system.scene.contacts, self.free, strict=True)
         self.laws = [FixedTractionContact(contact, law) for contact, law in each]
+        self.held: list[int] = []
         self.fix(np.zeros(0, dtype=np.intp), np.zeros((0, 0)))
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)
@@ -124,6 +128,7 @@ class _FixedTractionBalance:
     def fix(self, contacts: npt.NDArray[np.intp], mean: FloatArray) -> None:
         """Hold some contacts, and no others, by mean friction forces (contact, direction)."""
         laws: list[Law] = list(self.free)
+        self.held = contacts.tolist()
         for i, one in zip(contacts.tolist(), mean, strict=True):
             self.laws[i].mean, laws[i] = np.array(one), self.laws[i]
         self.balance.laws = laws
@@ -151,10 +156,18 @@ class _FixedTractionBalance:
         row = np.eye(z.size)[-1]
         return row if self.solved(z, row) is None or edge else np.array(self.newton.tangent)
 
+    def sticks(self, z: FloatArray) -> bool:
+        """Whether the contacts that are held would stick all through the cycle, at whatever place."""
+        blocks, origin = self.system.layout.blocks(z[None])[0], np.zeros(self.system.layout.directions - 1)
+        each = ((self.laws[i], np.ascontiguousarray(blocks[i])) for i in self.held)
+        return all(law.mean_from(block, origin) is not None for law, block in each)
+
     def peak(self, z: FloatArray, row: FloatArray, dof: int) -> FloatArray | None:
         """The peak of a degree of freedom next to a point, uphill on the curve as far as the range goes.
 
-        Across the row there may be none after a change of state, but at the same frequency.
+        Where the contacts that are held begin to slip the member ends, and its last point is its peak; it is
+        sought downhill from a point that slips. Across the row there may be none after a change of state, but
+        at the same frequency.
         """
         low, high = self.system.scene.frequency_range
         options, here = self.options, self.solved(z, row)
@@ -162,9 +175,9 @@ class _FixedTractionBalance:
             here = self.solved(z, np.eye(z.size)[-1])
         if here is None:
             return None
-        ahead, length = np.array(self.newton.tangent), options.initial_step
+        ahead, length, sticks = np.array(self.newton.tangent), options.initial_step, self.sticks(here)
         up = self.amplitudes(here, ahead)[1][dof]
-        if up < 0.0:
+        if (up < 0.0) == sticks:
             ahead, up = -ahead, -up
         for _ in range(options.max_points):
             point = self.solved(here + length * self.scale * ahead, ahead)
@@ -173,13 +186,34 @@ class _FixedTractionBalance:
                 continue
             tangent = np.array(self.newton.tangent)
             growth = self.amplitudes(point, tangent)[1][dof]
-            if growth > 0.0 and not low <= point[-1] <= high:
+            outside = not low <= point[-1] <= high
+            if growth > 0.0 and outside and sticks:
                 point[-1] = min(max(point[-1], low), high)
                 return self.solved(point, np.eye(point.size)[-1])
-            if growth <= 0.0:
+            if self.sticks(point) != sticks:
+                ends = (0.0, length) if sticks else (length, 0.0)
+                return self._last_sticking(here, ahead, *ends, dof)
+            if outside and not sticks:
+                return None
+            if growth <= 0.0 and sticks:
                 return self._between(here, ahead, (0.0, up, here), (length, growth, point), dof)
             here, ahead, up, length = point, tangent, growth, length * options.max_factor
         return None
+
+    def _last_sticking(
+        self, here: FloatArray, ahead: FloatArray, sticks: float, slips: float, dof: int
+    ) -> FloatArray | None:
+        """The last point that sticks, by bisection between two lengths along a direction."""
+        for _ in range(self.options.max_points):
+            at = 0.5 * (sticks + slips)
+            point = self.solved(here + at * self.scale * ahead, ahead)
+            sticks, slips = (at, slips) if point is not None and self.sticks(point) else (sticks, at)
+            if point is None:
+                continue
+            height, growth = self.amplitudes(point, np.array(self.newton.tangent))
+            if abs(growth[dof] * (slips - sticks)) < self.options.peak_tolerance * height[dof]:
+                break
+        return self.solved(here + sticks * self.scale * ahead, ahead)
 
     def _between(self, here: FloatArray, ahead: FloatArray, low: _End, high: _End, dof: int) -> FloatArray:
         """The peak between two points at lengths along a direction, by their slopes: the Illinois method."""
@@ -251,16 +285,24 @@ class _Family:
         self.z, self.row = z, members.begin(z, edge)
 
     def change(self) -> FloatArray:
-        """Greatest relative changes of the amplitudes (dof,); NaN where no motion was found."""
+        """Greatest relative changes of the amplitudes (dof,); NaN where no motion was found.
+
+        In a corner of the curve, as where one begins to slip, the peak is the point itself, and only the
+        member with its traction has a direction there.
+        """
         members = self.members
         nothing = np.full(members.balance.outputs, np.nan)
-        base = None if self.row is None else self._top(self.z, self.row)
-        if base is None or self.row is None:
-            return nothing
-        row = self._row(self.row)
-        before = members.amplitudes(base, row)[0]
+        found = None if self.row is None else self._top(self.z, self.row)
+        row = None if found is None or self.row is None else self._row(self.row)
+        base = self.z if found is None else found
+        before = members.amplitudes(base, np.zeros(base.size))[0]
         own = self._limits(base, np.zeros((self.contacts.size, self.along)))
         if own is None:
+            return nothing
+        if row is None:
+            members.fix(self.contacts, own)
+            row = members.begin(base, self.edge)
+        if row is None:
             return nothing
         most = np.zeros(before.size)
         for sense in (1.0, -1.0):
