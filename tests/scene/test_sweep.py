@@ -321,6 +321,19 @@ def test_a_number_that_another_mistake_hides_is_no_mistake(data, mistakes, case,
     assert "no such number" not in said and said
 
 
+def test_a_name_that_several_share_is_said_with_their_indices(data, mistakes):
+    """It was taken for a misspelling of another force."""
+    here, beside = data["force"][0], {"dof": {"u": 1.0, "v": 1.0}, "amplitude": 1.0}
+    data["force"] = [here | {"dof": "u"}, here | {"dof": "u", "phase": 1.0}, beside]
+    said = mistakes(data | {"sweep": {"force.u.amplitude": [1.0]}})
+    meant = 'give the one that is meant: "force.0.amplitude", "force.1.amplitude"'
+    assert f'sweep."force.u.amplitude": 2 forces act at "u"; {meant}' in said and "did you mean" not in said
+    assert '"force.0.dof.v", "force.1.dof.v"' in mistakes(data | {"sweep": {"force.u.dof.v": [1.0]}})
+    data["load"] = [{"dof": "u", "force": 1.0}, {"dof": "u", "force": 2.0}]
+    said = mistakes(data | {"sweep": {"load.u.force": [1.0]}})
+    assert '2 loads act at "u"; give the one that is meant: "load.0.force", "load.1.force"' in said
+
+
 def test_a_misspelled_number_is_said_beside_other_mistakes(data, mistakes):
     data["contact"][0]["mu"] = "x"
     data["sweep"] = {"contact.shrod.n_0": [1.0]}

@@ -45,11 +45,29 @@ class Addresses:
             return (address,)
         if (members := self._members(key, path, mistakes)) is not None:
             return members
-        if not self._excused(key, path, mistakes):
+        if several := self._of_one_name(key):
+            mistakes.add(path, several)
+        elif not self._excused(key, path, mistakes):
             what = "there is no such number in the scene"
             hint = self._forces_meant() if key == LEVEL else self._other_word(key) or self._contact_meant(key)
             mistakes.add(path, what + (hint or suggestion(key, self.numbers) or self._those_there(key)))
         return ()
+
+    def _of_one_name(self, key: str) -> str:
+        """Mistake of a name that several forces, loads or contacts share, with their indices; or ''."""
+        for kind, what in (
+            ("force", "forces act at"),
+            ("load", "loads act at"),
+            ("contact", "contacts are named"),
+        ):
+            names = [draft["name"] for draft in self.parts[kind]]
+            for name, count in Counter(names).items():
+                rest = key.removeprefix(f"{kind}.{name}.")
+                each = [f"{kind}.{i}.{rest}" for i, one in enumerate(names) if one == name]
+                there = [one for one in each if one in self.numbers or self._element(one) is not None]
+                if name and count > 1 and rest != key and there:
+                    return f"{count} {what} {quoted(name)}; give the one that is meant: {choices(there)}"
+        return ""
 
     def _forces_meant(self) -> str:
         """Hint for the key of the force level, which is not swept: sweep the amplitudes, or use --level."""
