@@ -45,7 +45,7 @@ def scene() -> str:
         f"{MADE}`fcm respond --keys` prints the same. A number of the scene is named by its path, as in\n"
         "`[sweep]`: `contact.NAME.n_0`, `force.DOF.amplitude`, `modal.damping.0` and the like.\n"
         "Entries of lists count from 0 there, and modes in tables from 1: `modal.damping.0` is of mode 1.\n\n"
-        "Units are any consistent ones of length, force and the second: nothing is converted.\n",
+        "Units are any consistent ones of length, force and the second.\n",
     ]
     for name, keys in TABLES.items():
         written = f"`[[{name}]]`" if name in LISTS else f"`[{name}]`" if name else "Top level"

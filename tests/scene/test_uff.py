@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from fcm.model.question import Question
 from fcm.scene import SceneError, scene_from_dict
 
 # From pyuff's test data: uff55_translation.uff, its first two modes.
@@ -151,6 +152,96 @@ def test_dataset_2414_of_simcenter(tmp_path):
     assert scene.modal.frequency == pytest.approx([2 * pi * 23383.2])
     assert scene.modal.mass.tolist() == [1.5] and scene.modal.shapes.tolist() == [[1, -0.25, 3]]
     assert any('the units of the file are "mm (milli-newton)"' in note for note in scene.notes)
+
+
+UNITS = """\
+    -1
+   164
+{code:10d}{name:<20}         2
+  {length:.17e}  {force:.17e}  1.00000000000000000e+00
+  2.73149999999999977e+02
+    -1
+"""
+BEAM = """\
+    -1
+    55
+NONE
+NONE
+NONE
+NONE
+NONE
+         1         2         3         8         2         6
+         2         4         1         1
+  1.00000e+00  {mass:.6e}  0.00000e+00  0.00000e+00
+         1
+  0.00000e+00  1.00000e+00  0.00000e+00  0.00000e+00  0.00000e+00  {turn:.6e}
+    -1
+"""
+METRES = {"code": 1, "name": "SI: Meter (newton)", "length": 1.0, "force": 1.0}
+TONNES = {"code": 9, "name": "mm (newton)", "length": 1e3, "force": 1.0}
+GRAMS = {"code": 5, "name": "mm (milli-newton)", "length": 1e3, "force": 1e3}
+
+
+def beam(folder, units, length="", force="", mass=3.0, turn=0.5, modal=()):
+    """Modes of a node that moves along y and turns about z, in the units of a file."""
+    (folder / "m.uff").write_text(UNITS.format(**units) + BEAM.format(mass=mass, turn=turn))
+    named = {key: value for key, value in (("length", length), ("force", force)) if value}
+    return scene_from_dict(
+        {
+            "frequency_unit": "Hz", "units": named,
+            "modal": {"file": "m.uff", "damping": 0.01} | dict(modal),
+            "force": [{"dof": "1y", "amplitude": 1.0}], "response": {"frequency": [0.5, 1.5]},
+        },
+        "test.toml",
+        folder,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("units", "mass", "turn"), [(TONNES, 3e-3, 0.5e-3), (GRAMS, 3.0, 0.5e-3), (METRES, 3.0, 0.5)]
+)
+@pytest.mark.parametrize(("length", "force"), [("m", "N"), ("mm", "N"), ("mm", "mN"), ("um", "kN")])
+def test_modes_are_the_same_in_whichever_units_a_file_has_them(tmp_path, units, mass, turn, length, force):
+    """A mass of 3 kg, whose point turns by 0.5 rad/m, read from files in three systems of units.
+
+    In metres a unit force gives 1 / (m omega^2), and a rotation of 0.5 times that.
+    """
+    scene = beam(tmp_path, units, length, force, mass, turn)
+    metre, newton = {"m": 1.0, "mm": 1e-3, "um": 1e-6}[length], {"N": 1.0, "mN": 1e-3, "kN": 1e3}[force]
+    y, turned = (scene.modal.shapes[0, scene.modal.dofs.index(dof)] for dof in ("1y", "1rz"))
+    omega = 2.0 * pi
+    moved, rotated = y * y / (scene.modal.mass[0] * omega**2), turned * y / (scene.modal.mass[0] * omega**2)
+    assert moved * metre / newton == pytest.approx(1.0 / (3.0 * omega**2), rel=1e-12)
+    assert rotated / newton == pytest.approx(0.5 / (3.0 * omega**2), rel=1e-12)
+    own = 1.0 / units["length"], 1.0 / units["force"]
+    assert bool(scene.notes) == (own != pytest.approx((metre, newton)))
+    assert all(" is in " in note and f"converted to {length} and {force}" in note for note in scene.notes)
+
+
+def test_what_is_converted_is_said(tmp_path):
+    (note,) = beam(tmp_path, TONNES, "m", "N").notes
+    said = 'm.uff is in "mm (newton)", converted to m and N: modal masses times 1000, rotations times 1000'
+    assert note == f"modal: {said}"
+    (note,) = beam(tmp_path, GRAMS, "m", "N", turn=0.0).notes
+    assert note.endswith('"mm (milli-newton)", converted to m and N, in which its numbers are the same')
+
+
+def test_units_of_a_file_that_cannot_be_compared_are_said_or_asked_about(tmp_path):
+    """Nothing is converted with one unit of two; where that one differs it is asked."""
+    plain, same, other = (beam(tmp_path, TONNES, length) for length in ("", "mm", "m"))
+    assert all("the scene's must be the same" in one.notes[0] for one in (plain, same))
+    assert not any(isinstance(one.notes[0], Question) for one in (plain, same))
+    assert isinstance(other.notes[0], Question) and "is the scene, too?" in other.notes[0]
+    assert [one.modal.mass.tolist() for one in (plain, same, other)] == [[3.0]] * 3
+
+
+def test_masses_of_the_scene_beside_shapes_in_other_units(tmp_path):
+    """Mass-normalised in tonnes: 1 there is 1000 in kg."""
+    with pytest.raises(SceneError, match=r"Give mass = 1000 if they are mass-normalised"):
+        beam(tmp_path, TONNES, "m", "N", mass=0.0)
+    given = beam(tmp_path, TONNES, "m", "N", mass=0.0, modal={"mass": 1000.0})
+    asked = [note for note in given.notes if isinstance(note, Question)]
+    assert given.modal.mass.tolist() == [1000.0] and "a mass of 1 is 1000 here" in asked[0]
 
 
 def test_a_shape_of_one_phase_is_turned_to_be_real(tmp_path):

@@ -23,6 +23,7 @@ from fcm.scene.measured_function import (
     force_factor,
     function_of_table,
 )
+from fcm.scene.measured_units import units_in
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
@@ -66,9 +67,7 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
     sections = section.tables("data")
     if not sections and section.mistakes.count == before:
         section.wrong("data", "missing; give [[fit.data]] with the file of measured points")
-    units = top.data.get("units")
-    own = [str(units.get(key, "")) if isinstance(units, Mapping) else "" for key in ("length", "force")]
-    scene = Surroundings(reported, (own[0], own[1]), files.noted)
+    scene = Surroundings(reported, units_in(top.data), files.noted)
     for i, one in enumerate(sections):
         if one.data in [other.data for other in sections[:i]]:
             one.wrong("", "is there twice: the same data would count as measured again, with smaller errors")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fcm.units import QUANTITIES
 
@@ -36,6 +37,19 @@ class MotionUnit(NamedTuple):
     size: float  # in SI units
     quantity: str
     angular: bool
+
+
+def units_in(data: Mapping[str, Any]) -> tuple[str, str]:
+    """The units of length and force in the table of a scene, empty where they are not given.
+
+    >>> units_in({"units": {"length": "mm"}})
+    ('mm', '')
+    """
+    units = data.get("units")
+    length, force = (
+        str(units.get(key, "")) if isinstance(units, Mapping) else "" for key in ("length", "force")
+    )
+    return length, force
 
 
 def hertz_of(label: str) -> float | None:

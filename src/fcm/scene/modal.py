@@ -26,7 +26,7 @@ def read_modal(
 ) -> dict[str, Any]:
     """Dofs and arrays of the modal table, frequencies in the scene's unit; None for what is mistaken."""
     section = top.table("modal", "a [modal] table with dofs, frequency, damping and shapes")
-    section, notes = _with_file(section, files, unit, bool(cyclic)) if section else (None, [])
+    section, notes = _with_file(section, files, unit, top, bool(cyclic)) if section else (None, [])
     if section is None:
         return dict.fromkeys(KEYS)
     section.only(*names("modal"))
@@ -65,7 +65,9 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     return Modal(dofs=tuple(draft["dofs"]), **more, **arrays)
 
 
-def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[Section | None, list[str]]:
+def _with_file(
+    section: Section, files: Files, unit: str, top: Section, waves: bool
+) -> tuple[Section | None, list[str]]:
     """The section with what its file holds; a key given inline takes precedence."""
     if "file" not in section.data:
         return section, []
@@ -87,9 +89,19 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
     if "angular_frequency" in found:
         found["frequency"] = found.pop("angular_frequency") / UNIT[unit]
     notes += _unused(section, found, unused, name)
+    one = 1.0
+    if (own := found.pop("units", None)) is not None:
+        from fcm.scene.measured_units import units_in
+        from fcm.scene.modal_units import converted, question_of_masses
+
+        changed = converted(found, name, own, units_in(top.data))
+        one = changed.mass
+        notes += changed.notes
+        if "mass" in section.data and "shapes" not in section.data:
+            notes += question_of_masses(name, own, one)
     if not {"mass", "shapes"} & section.data.keys() and "mass" not in found and "shapes" in found:
         if name.lower().endswith(UNIVERSAL):
-            section.wrong("mass", without_masses(name))
+            section.wrong("mass", without_masses(name, one))
         else:
             notes += question_of_scale(name, found["shapes"])
     return Section({**found, **section.data}, section.path, section.mistakes), notes

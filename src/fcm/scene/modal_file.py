@@ -34,7 +34,7 @@ WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
 def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, Any]:
     """Reads the dofs, mass, frequency, damping and shapes of a file of modes, with "notes" on it.
 
-    "unused" are the names of its other arrays.
+    "unused" are the names of its other arrays; "units" (`FileUnits`) those that it says, if it does.
 
     waves : whether shapes may be complex, as those of travelling waves are.
 
@@ -57,7 +57,7 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
             found = {name: np.asarray(one) for name, one in read_own(path).items()}
             others = list(found)
             found = {name: one for name, one in found.items() if name in WANTED}
-        notes = found.pop("notes", [])
+        notes, units = found.pop("notes", []), found.pop("units", None)
         faults: list[str] = []
         found = _by_keys(found, others, name, notes, faults)
         if ending == ".mat":
@@ -67,17 +67,20 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
         if faults:
             raise DataFileError(*faults, *_lengths(found))
         unused = [one for one in others if one not in WANTED and not one.startswith("__")]
-        return found | {"notes": notes, "unused": unused}
+        return found | {"notes": notes, "unused": unused} | ({} if units is None else {"units": units})
 
 
-def without_masses(name: str) -> str:
+def without_masses(name: str, one: float) -> str:
     """What is missing where a universal file gives no modal masses, and what would be right.
+
+    one : the modal mass of mass-normalised shapes of the file, in the scene's units.
 
     Datasets 55 and 2414 have a place for them; zero in every mode says that they are not known.
     """
     return (
         f"missing; {quoted(name)} has 0 for the modal mass of each mode. Its shapes may have any scale, and "
-        "amplitudes depend on it. Give mass = 1 if they are mass-normalised; else phi^T M phi of each mode"
+        f"amplitudes depend on it. Give mass = {one:g} if they are mass-normalised; else phi^T M phi of each "
+        "mode"
     )
 
 

@@ -22,9 +22,10 @@ import numpy.typing as npt
 from fcm.frozen import Frozen
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError
+from fcm.scene.modal_units import FileUnits
 from fcm.scene.number_text import NUMBER, fault_of_number, number_in
 from fcm.scene.options import TOLERANCES
-from fcm.scene.uff_datasets import Dataset, read_datasets
+from fcm.scene.uff_datasets import Dataset, read_datasets, system_of
 
 DIRECTIONS = {1: ("",), 3: ("x", "y", "z"), 6: ("x", "y", "z", "rx", "ry", "rz")}  # by values per node
 NORMAL_MODE, AT_NODES = 2, 1
@@ -52,7 +53,8 @@ class _Mode(Frozen):
 def read_uff(path: Path) -> dict[str, Any]:
     """Dofs such as "12x" (node 12, direction x) and the modes' arrays; frequencies are angular.
 
-    A modal mass or a damping that is zero in every mode was not given, and is left out.
+    A modal mass or a damping that is zero in every mode was not given, and is left out. "units" are those of
+    the file, where it says them.
     """
     datasets = read_datasets(path)
     of_modes = [one for one in datasets if _is_normal_mode(one)]
@@ -68,13 +70,15 @@ def read_uff(path: Path) -> dict[str, Any]:
         "dofs": dofs,
         "angular_frequency": 2 * pi * np.array([mode.hertz for mode in modes]),
         "shapes": np.array([_real(mode, dofs, number, faults) for number, mode in enumerate(modes, 1)]),
-        "notes": units(datasets),
+        "notes": [],
     }
     if not faults:
         faults = _twice(found["angular_frequency"], found["shapes"])
         found["notes"] += _unlike(modes, dofs, path.name)
     if faults:
         raise DataFileError(*(f"{quoted(path.name)} cannot be read: {fault}" for fault in faults))
+    if (own := FileUnits(_name_of_units(datasets), system_of(datasets))) != FileUnits("", None):
+        found["units"] = own
     given = {"mass": [mode.mass for mode in modes], "damping": [mode.damping for mode in modes]}
     return found | {key: np.array(values) for key, values in given.items() if any(values)}
 
@@ -257,13 +261,10 @@ def contents(datasets: Iterable[Dataset]) -> str:
     return "it holds " + "; ".join(f"{kind} ×{count}: {what}" for (kind, what), count in counts.items())
 
 
-def units(datasets: Iterable[Dataset]) -> list[str]:
-    """A note on the units of a file, if it says them."""
-    for one in datasets:
-        name = one.lines[0][10:30].strip() if one.kind == "164" and one.lines else ""
-        if name and name.isprintable():
-            return [f"modal: the units of the file are {quoted(name)}; the scene's must be the same"]
-    return []
+def _name_of_units(datasets: Iterable[Dataset]) -> str:
+    """The name of the units of a file, if it says them."""
+    names = (one.lines[0][10:30].strip() for one in datasets if one.kind == "164" and one.lines)
+    return next((name for name in names if name and name.isprintable()), "")
 
 
 def _what(one: Dataset) -> str:

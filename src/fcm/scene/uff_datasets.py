@@ -10,11 +10,13 @@ Source: SDRC I-DEAS Test Data Universal File Format, as published by the Univers
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
 from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError
+from fcm.scene.number_text import number_in
 
 HEADS = {"55": 5, "56": 5, "57": 5, "58": 5, "151": 7, "2414": 8}  # lines of text behind the number
 AT_NODES = 1  # where the data of a dataset 2414 are
@@ -107,6 +109,17 @@ class _Text:
         end = self.content.find(b"\n", at)
         line = self.content[begin : end if end >= 0 else len(self.content)]
         return not line.strip(_NOTHING) or bool(_MARK.fullmatch(line))
+
+
+def system_of(every: Iterable[Dataset]) -> tuple[float, float] | None:
+    """The units of length [m] and force [N] of dataset 164, whose factors lead from SI to them."""
+    for one in every:
+        words = one.lines[1].split()[:2] if one.kind == "164" and len(one.lines) > 1 else []
+        numbers = [number_in(word) for word in words]
+        if len(numbers) == 2 and all(number is not None and number > 0.0 for number in numbers):
+            length, force = (float(number or 1.0) for number in numbers)
+            return 1.0 / length, 1.0 / force
+    return None
 
 
 def read_datasets(path: Path) -> list[Dataset]:

@@ -10,7 +10,6 @@ Source: SDRC I-DEAS Test Data Universal File Format, dataset 58, as published by
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,7 +23,7 @@ from fcm.scene.files import DataFileError
 from fcm.scene.measured_units import hertz_of
 from fcm.scene.names import DIRECTIONS, motion_of
 from fcm.scene.number_text import fault_of_number, number_in
-from fcm.scene.uff_datasets import Dataset, read_datasets
+from fcm.scene.uff_datasets import Dataset, read_datasets, system_of
 from fcm.scene.uff_qualifiers import Qualifiers, qualifiers_of
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -118,7 +117,7 @@ def read_function(path: Path, dof: str = "", forced: str = "") -> Function:
         what = f"has {counted(len(chosen), 'response')} over the frequency among its functions ({others})"
         which = f" at {dof}" if dof and len(chosen) > 1 else ""
         raise DataFileError(f"{quoted(path.name)} {what}; one{which} is right. The file holds {held}")
-    return _function(chosen[0], path, _system(every), qualifiers_of(every, chosen[0], path))
+    return _function(chosen[0], path, system_of(every), qualifiers_of(every, chosen[0], path))
 
 
 def _function(
@@ -199,16 +198,6 @@ def _decoded(text: str) -> str:
         return text.encode("latin-1").decode("utf-8")
     except UnicodeError:
         return text
-
-
-def _system(every: Sequence[Dataset]) -> tuple[float, float] | None:
-    """The units of length [m] and force [N] of dataset 164, whose factors lead from SI to them."""
-    for one in every:
-        numbers = [number_in(word) for word in _line(one, 1).split()[:2]] if one.kind == "164" else []
-        if len(numbers) == 2 and all(number is not None and number > 0.0 for number in numbers):
-            length, force = (float(number or 1.0) for number in numbers)
-            return 1.0 / length, 1.0 / force
-    return None
 
 
 def _values(one: Dataset, path: Path) -> tuple[FloatArray, ComplexArray, bool]:
