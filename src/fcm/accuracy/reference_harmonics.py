@@ -93,8 +93,8 @@ def keep_for_next(
 
 
 def _is_shareable(system: System) -> bool:
-    """Whether prolongations may be cached: no ring, no loads and no contact laws of one's own."""
-    return system.scene.ring is None and not system.scene.loads and not system.own_laws
+    """Whether prolongations may be cached: no ring, no strain at rest and no contact laws of one's own."""
+    return system.scene.ring is None and not system.scene.strained and not system.own_laws
 
 
 def _key(system: System, more: tuple[int, ...], options: PairOptions) -> tuple[object, ...]:

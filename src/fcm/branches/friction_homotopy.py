@@ -87,7 +87,7 @@ class FrictionProblem(Problem):
 def with_friction_raised(system: System, found: Traced) -> Traced:
     """The branches with those to which raising the friction from none leads, where contacts shake down."""
     paths, scene = found.branches.paths, system.scene
-    if not (paths and scene.contacts) or scene.loads or system.own_laws or not may_wedge(scene):
+    if not (paths and scene.contacts) or scene.strained or system.own_laws or not may_wedge(scene):
         return found
     points = np.concatenate([path.z for path in paths])
     omega = shakedown_at(system, points[:, -1], ContactRecord.at(system, points).words)

@@ -98,9 +98,9 @@ def highest_linear_limit(system: System, omega: float) -> float:
 
 
 def lowest_linear_limit(system: System, omega: float) -> float:
-    """The least level at which a contact is not as it is at rest; 0 where static loads, or laws of one's own,
-    have a say in that."""
-    if system.scene.loads or system.own_laws:
+    """The least level at which a contact is not as it is at rest; 0 where static loads, friction of [start],
+    or laws of one's own have a say in that."""
+    if system.scene.strained or system.own_laws:
         return 0.0
     return float(lowest_linear_limits(system, [omega])[0])
 

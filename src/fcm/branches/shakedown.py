@@ -25,7 +25,7 @@ def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.s
     the least force.
     """
     scene = system.scene
-    nothing = scene.loads or system.own_laws or not states.size or (states != states[0]).any()
+    nothing = scene.strained or system.own_laws or not states.size or (states != states[0]).any()
     if nothing or not np.isin(states[0], ("E", "S")).all():
         return np.nan
     rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)

@@ -18,7 +18,8 @@ from fcm.harmonic_balance.system import System
 
 
 def without_preload(system: System) -> System | None:
-    """The system with a few of its harmonics and no preload, gap or static load; None if it is no other.
+    """The system with a few of its harmonics and no preload, gap, static load or friction of [start]; None if
+    it is no other.
 
     Nor is there one of many contacts, of which hardly any opens, or with laws of one's own, whose forces need
     not be homogeneous.
@@ -28,7 +29,7 @@ def without_preload(system: System) -> System | None:
     opens = any(one.k_v > 0.0 and one.n_0 != 0.0 for one in scene.contacts)
     if many or system.own_laws or not opens:
         return None
-    contacts = tuple(replace(one, n_0=0.0) for one in scene.contacts)
+    contacts = tuple(replace(one, n_0=0.0, slider=()) for one in scene.contacts)
     few = system.harmonics[: system.option(LEVEL_CURVE).reliable_harmonics]
     found = system.of(replace(scene, contacts=contacts, loads=())).with_harmonics(few)
     found.work.poll = system.work.poll

@@ -140,8 +140,6 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
     check_solvable(scene)
     for note in scene.notes:
         messages.note(note)
-    if not asked.compare:
-        schedule.say_unused_start(messages, scene, asked.method)
     schedule.check_options(scene, asked.history_csv)
     return _with_step(scene, asked), exporting
 

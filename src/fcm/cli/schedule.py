@@ -46,14 +46,6 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
         )
 
 
-def say_unused_start(messages: Messages, scene: Scene, method: str) -> None:
-    """Say that a [start] decides nothing where no motion is simulated and no curve is exact."""
-    if scene.start is not None and not scene.schedule and method != "exact":
-        messages.info(
-            "start: it decides nothing in this run: only --method exact, or a [[schedule]], starts from it"
-        )
-
-
 def simulated(messages: Messages, scene: Scene, response: Response, keep: CheckpointFile | None) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
     from fcm.response import scheduled

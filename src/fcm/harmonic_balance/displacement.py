@@ -196,7 +196,8 @@ class Displacements(Extremes):
 
     `at` fills their parts: sums of the shapes (mode, dof) times the parts of each mode, of_modes (4 *
     harmonic, mode); of combinations of ports sums of shares (share,) of the ports share_ports (share,), up to
-    share_end (dof,) of each. mean (dof,); rest (dof,): the answer to static loads alone.
+    share_end (dof,) of each. mean (dof,); rest (dof,): the answer to static loads alone; of a combination of
+    ports that of the displacements from which these are counted.
     """
 
     def __init__(
@@ -331,7 +332,7 @@ class Displacements(Extremes):
         j: cython.int
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        self.mean[d] = 0.0
+        self.mean[d] = self.rest[d]
         for j in range(self.receptance.count):
             self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
         for i in range(self.share_end[d - 1] if d > 0 else 0, self.share_end[d]):

@@ -5,8 +5,9 @@ relative displacements of the contacts alone, whatever the number of modes:
 
     X_h = X_external,h - G(h omega) F_h,    x_0 = x_rest - G(0) f_0
 
-with x_rest the answer to static loads alone, of which `share` is applied. The residual has the unit of a
-displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
+with x_rest the answer to static loads alone, of which `share` is applied. Displacements are counted from
+where the contacts start unstressed, by the scene's [start]: x_rest is less that. The residual has the unit of
+a displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
 
 The answer G F of the structure to forces of its contacts is laid out as the unknowns, see
 `fcm.structure.layout`. Each harmonic has its own receptance, the mean the static one.

@@ -1,8 +1,8 @@
 r"""Range of a peak with the residual traction of the contacts that stick all through the cycle.
 
 The slider of such a contact may rest anywhere between its slip limits, and a motion belongs to each place.
-The balance is of contacts that begin unstressed. With the mean friction t of those that stick, a peak changes
-by
+The balance is of contacts that begin unstressed, or with the friction of [start]. With the mean friction t of
+those that stick, a peak changes by
 
     dA = sum_i g_i . dt_i,    |k_u u~_i + t_i| <= mu n_i  at every angle
 

@@ -5,6 +5,8 @@ with k_u (u - 0) as far as mu n allows, for it is unstressed without them, and w
 without the loads is one still. So contacts that stick hold rigid-body modes that move none along its normal:
 such a mode rests where their friction balances the loads along it. Vibration leaves it there in the mean.
 The harmonic balance has this equilibrium as the limit of small forces.
+
+Where contacts start with friction, by [start], that grows with the loads, and strains the structure as well.
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ FLOATING = (
     "closed contacts hold them: give contacts a preload (n_0 above 0), or a static load that closes them"
 )
 NO_EQUILIBRIUM = (
-    "no equilibrium with the static loads was found. The contacts may not be able to hold them: they push "
+    "no equilibrium with the static loads, and the friction of [start], was found. Contacts may not be able "
+    "to hold them: they push "
     "and do not pull, and friction is at most mu n"
 )
 
@@ -105,6 +108,7 @@ class StaticLoadProblem(Problem):
         )
         self.counted, self.mean_at, self.moved = system.linear.counted, system.layout.mean_at, 0.0
         self.force = np.zeros(held.ports.shape[1])  # of the contacts, beyond their preloads
+        self.sliders = system.scene.sliders()
         self.at = np.zeros(balance.unknowns + 1)
         self.at[-1] = max(float(system.linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
         self.stiffest = held.stiffness + held.ports**2 @ system.springs(stuck=True)
@@ -124,7 +128,7 @@ class StaticLoadProblem(Problem):
         stiffness = np.diag(self.held.stiffness) + yields @ ports.T
         self.residual[:] = unit * (self.held.stiffness * y + ports @ self.force - share * self.held.load)
         np.asarray(self.jacobian)[:, :-1] = unit[:, None] * stiffness
-        np.asarray(self.jacobian)[:, -1] = -unit * self.held.load
+        np.asarray(self.jacobian)[:, -1] = -unit * (self.held.load + yields @ self.sliders)
         return 0
 
     def evaluate_scale(self, z: FloatArray) -> int:
@@ -160,20 +164,21 @@ class StaticLoadProblem(Problem):
         return float(self.balance.solved_sign())
 
     def _placed(self, z: FloatArray) -> FloatArray:
-        self.at[self.mean_at] = np.asarray(z)[:-1] @ self.held.ports
+        self.at[self.mean_at] = np.asarray(z)[:-1] @ self.held.ports - float(z[-1]) * self.sliders
         return self.at
 
 
 class AtRest(NamedTuple):
-    """Displacements at rest under the static loads: of the ports (port,), and of the modes adrift (mode,),
-    where the friction of contacts that stick holds them; 0 of other modes."""
+    """Displacements at rest under the static loads: of the ports (port,), from where contacts start
+    unstressed, and of the modes adrift (mode,), where the friction of contacts that stick holds them; 0 of
+    other modes."""
 
     ports: FloatArray
     adrift: FloatArray
 
 
 def equilibrium(system: System) -> AtRest:
-    """The equilibrium of a system under its static loads; zeros without any.
+    """The equilibrium of a system under its static loads and the friction it starts with; else zeros.
 
     Raises
     ------
@@ -182,9 +187,9 @@ def equilibrium(system: System) -> AtRest:
     """
     linear, ports = system.linear, system.layout.ports
     nothing = AtRest(np.zeros(ports), np.zeros(linear.natural.size))
-    if not linear.load.any():
+    if not linear.load.any() and not system.scene.strained:
         return nothing
-    if loads_move_rigid_body(linear, system.springs(stuck=True)):
+    if linear.load.any() and loads_move_rigid_body(linear, system.springs(stuck=True)):
         raise RestError(RIGID_BODY_FAULT)
     if not ports:
         return nothing
@@ -197,17 +202,17 @@ def equilibrium(system: System) -> AtRest:
         path = follow(problem, start, span, options=FollowOptions(options.max_step))
         complete = path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0
         if complete and problem.balances_rigid_body(path.z[-1], options.balance_tolerance):
-            return _found(linear, held, path.z[-1][:-1])
+            return _found(linear, held, path.z[-1][:-1], problem.sliders)
     for y in _linear(single, held, 1.0):
         problem = StaticLoadProblem(single, held, options.min_share_unit)
         z = solution_near(Newton(problem), np.append(y, 1.0))
         if z is not None and problem.balances_rigid_body(z, options.balance_tolerance):
-            return _found(linear, held, z[:-1])
+            return _found(linear, held, z[:-1], problem.sliders)
     raise RestError(NO_EQUILIBRIUM)
 
 
-def _found(linear: Linear, held: HeldStructure, y: FloatArray) -> AtRest:
-    return AtRest(y @ held.ports, np.where(linear.adrift, held.modes @ y, 0.0))
+def _found(linear: Linear, held: HeldStructure, y: FloatArray, sliders: FloatArray) -> AtRest:
+    return AtRest(y @ held.ports - sliders, np.where(linear.adrift, held.modes @ y, 0.0))
 
 
 def normal_forces_at_rest(scene: Scene) -> FloatArray:
@@ -266,12 +271,12 @@ def check_contacts_can_close(system: System) -> None:
 def _linear(system: System, held: HeldStructure, share: float) -> Iterator[FloatArray]:
     """Linear equilibria: with the contacts as they are without the loads, then all stuck, then all open."""
     n_0 = np.array([c.n_0 for c in system.scene.contacts])
-    d = system.layout.directions
+    d, sliders = system.layout.directions, system.scene.sliders()
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
         springs = system.springs(stuck=True) * np.repeat(closed, d)
         if not held.rigid_by(springs):
             continue
-        force = np.zeros(springs.size)  # of the normal springs where v = 0
+        force = 0.0 - share * springs * sliders  # of the springs where u = v = 0
         force[d - 1 :: d] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
         stiffness = np.diag(held.stiffness) + (held.ports * springs) @ held.ports.T
         unit = 1.0 / np.sqrt(stiffness.diagonal())

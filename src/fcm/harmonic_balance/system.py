@@ -114,7 +114,7 @@ class System(Frozen):
         """The greatest preload, where the other curves of a sweep may be the same but for that; else 0."""
         scene = self.scene
         swept = [key.startswith("contact.") and key.endswith(".n_0") for key in scene.parameters]
-        plain = type(self.linear) is Linear and self.corrected and not scene.loads and not self.own_laws
+        plain = type(self.linear) is Linear and self.corrected and not scene.strained and not self.own_laws
         preloads = [abs(one.n_0) for one in scene.contacts]
         return max(preloads, default=0.0) if plain and swept and all(swept) and all(preloads) else 0.0
 
@@ -149,14 +149,14 @@ class System(Frozen):
 
     @cached_property
     def _at_rest(self) -> AtRest:
-        """The equilibrium under static loads, see `harmonic_balance.static_equilibrium`."""
+        """The equilibrium at rest, see `harmonic_balance.static_equilibrium`."""
         from fcm.harmonic_balance.static_equilibrium import equilibrium  # which balances a system
 
         return equilibrium(self)
 
     @property
     def rest(self) -> FloatArray:
-        """Displacements (port,) at rest under the static loads."""
+        """Displacements (port,) at rest, as unknowns of the balance."""
         return self._at_rest.ports
 
     @property
@@ -215,7 +215,8 @@ class System(Frozen):
     def new_balance(self, loaded: bool = True) -> Balance:
         """A new balance, to be followed in the frequency.
 
-        loaded: whether with the static loads.
+        loaded: whether with the static loads. The unknowns are displacements from where contacts start
+        unstressed, see `Scene.sliders`.
         """
         low, high = self.scene.frequency_range
         linear = self.linear
@@ -229,9 +230,11 @@ class System(Frozen):
             answer = ModalCompliance(receptance, linear.flexibility)
             stuck, yields, counted = self.springs(stuck=True), self.modal_compliance, linear.counted
             balance.condense(CondensedSystem(answer, tangent, yields, stuck, counted, options))
-        if self.scene.loads and loaded:
-            modes = linear.flexibility @ linear.load + self.adrift_at_rest
-            balance.rest[:], displacements.rest[:] = linear.ports.T @ modes, linear.dofs.T @ modes
+        if self.scene.strained and loaded:
+            modes, sliders = linear.flexibility @ linear.load + self.adrift_at_rest, self.scene.sliders()
+            balance.rest[:] = linear.ports.T @ modes - sliders
+            of_ports = np.asarray(displacements.attached).T @ sliders + 0.0
+            displacements.rest[:] = np.where(displacements.without_modes, linear.dofs.T @ modes, of_ports)
         return balance
 
     @cached_property
@@ -341,7 +344,7 @@ def _workspace_of(system: System) -> _Workspace:
     """The workspace for a system: if it is small, that of a system before it, as in a sweep."""
     scene, kept = system.scene, _WORKSPACES.by_key
     large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.max_size
-    if scene.ring is not None or scene.loads or system.own_laws or large:
+    if scene.ring is not None or scene.strained or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, scene.reported, system.harmonics, *approximate)

@@ -60,6 +60,8 @@ class Contact(Frozen):
     n_0: float  # preload, negative for a gap
     second: FloatArray | None = None  # (dof,) at right angles to the other, of a contact in a plane
     law: ContactLaw | None = None  # of its own; the numbers then are of what resembles it, to begin with
+    # displacements along its tangential directions at which it starts unstressed, by the scene's [start]
+    slider: tuple[float, ...] = ()
 
     @property
     def directions(self) -> tuple[FloatArray, ...]:
@@ -110,6 +112,18 @@ class Start(Frozen):
     velocity: FloatArray  # (mode,) modal
     friction: FloatArray  # (contact,) friction forces
     angle: float  # omega t of the external forces [rad]
+    second: FloatArray | None = None  # (contact,) those along second directions, with contacts in a plane
+
+    @property
+    def forces(self) -> tuple[FloatArray, ...]:
+        """Friction forces (contact,) along each direction in which contacts slide."""
+        return (self.friction,) if self.second is None else (self.friction, self.second)
+
+    @property
+    def friction_size(self) -> FloatArray:
+        """Sizes (contact,) of the friction forces."""
+        found: FloatArray = np.linalg.norm(self.forces, axis=0)
+        return found
 
 
 class HeldContact(Frozen):
@@ -226,7 +240,7 @@ class Scene(Frozen):
     accuracy: float | None = None  # that is to choose them, if the scene says so
     frequency_unit: str = "rad/s"  # the unit of the scene's file and of results: "rad/s" or "Hz"
     schedule: tuple[Phase, ...] = ()
-    start: Start | None = None  # of the schedule; None is rest
+    start: Start | None = None  # of the schedule, and of contacts that never slip; None is rest
     parameters: dict[str, float] = field(default_factory=dict)  # the swept values of this curve
     curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
     name: str = ""  # file or bundled name, for messages
@@ -357,8 +371,45 @@ class Scene(Frozen):
         return {one.name: of_pairs.get(one.name, "") for one in self.contacts}
 
     def _with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
+        for one in self.contacts:
+            if one.name in laws and one.slider:
+                raise ValueError(
+                    f"the law of {quoted(one.name)} has no residual friction that [start] could set"
+                )
         contacts = tuple(replace(one, law=laws.get(one.name, one.law)) for one in self.contacts)
         return replace(self, contacts=contacts)
+
+    def started(self) -> Scene:
+        """The scene with the sliders of its contacts where [start] has them.
+
+        There the friction force is k_u (u - slider), with the displacement u that the scene starts with.
+        """
+        start = self.start
+        if start is None:
+            return self
+        displacement = self.modal.shapes.T @ start.displacement
+        contacts = []
+        for one, *friction in zip(self.contacts, *start.forces, strict=True):
+            pairs = zip(one.directions[:-1], friction, strict=False)
+            at = [float(way @ displacement) - f / one.k_u for way, f in pairs if one.k_u > 0.0]
+            contacts.append(replace(one, slider=tuple(at) if any(at) else ()))
+        return replace(self, contacts=tuple(contacts))
+
+    def unstressed(self) -> Scene:
+        """The scene with contacts that start unstressed at rest."""
+        return replace(self, contacts=tuple(replace(one, slider=()) for one in self.contacts))
+
+    @cached_property
+    def strained(self) -> bool:
+        """Whether something strains it at rest: static loads, or friction that contacts start with."""
+        return bool(self.loads) or any(one.slider for one in self.contacts)
+
+    def sliders(self) -> FloatArray:
+        """Displacements (port,) of contacts' directions at which they start unstressed, 0 along normals."""
+        found = np.zeros((len(self.contacts), self.directions_of_contact))
+        for row, one in zip(found, self.contacts, strict=True):
+            row[: len(one.slider)] = one.slider
+        return found.ravel()
 
     def whole(self) -> Scene:
         """The scene with no contact held."""

@@ -42,7 +42,8 @@ def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> t
         return ()
     theta = 2.0 * np.pi * np.arange(REDUCTION.cycle_angles) / REDUCTION.cycle_angles
     x = z[:, :-1].reshape(z.shape[0], len(scene.contacts), -1)
-    motion = np.repeat(x[:, :, :2, None], REDUCTION.cycle_angles, axis=-1)
+    mean = x[:, :, :2] + scene.sliders().reshape(-1, 2)
+    motion = np.repeat(mean[..., None], REDUCTION.cycle_angles, axis=-1)
     for i, h in enumerate(harmonics):
         wave = x[:, :, 2 + 4 * i : 6 + 4 * i, None]
         motion += wave[:, :, ::2] * np.cos(h * theta) - wave[:, :, 1::2] * np.sin(h * theta)

@@ -81,13 +81,14 @@ def _amplitudes(curve: Curve, at: IntArray) -> npt.NDArray[np.complex128]:
 
 def unknowns(curve: Curve, scene: Scene, at: IntArray, harmonics: tuple[int, ...]) -> FloatArray:
     """z (point, unknown + 1) of all contacts at points of a curve, from its displacements."""
+    sliders = scene.sliders()
     places = [curve.harmonics.index(h) for h in harmonics] if curve.harmonics else slice(len(harmonics))
     X = _amplitudes(curve, at)[:, places]
     layout = Layout(len(scene.contacts), scene.directions_of_contact, len(harmonics))
     x = np.empty((at.size, layout.unknowns))
     for port, direction in enumerate(scene.directions_of_contacts()):
         amplitude, rows = X @ direction, layout.waves_at[:, port]
-        x[:, layout.mean_at[port]] = curve.mean[at] @ direction
+        x[:, layout.mean_at[port]] = curve.mean[at] @ direction - sliders[port]
         x[:, rows], x[:, rows + 1] = amplitude.real, amplitude.imag
     return np.column_stack((x, curve.frequency[at]))
 

@@ -43,6 +43,7 @@ def on_means(lighter: ReducedScenes) -> list[str]:
     if adrift == 0:
         return []
     what = counted(adrift, "rigid-body mode")
-    if any(scene.loads for scene in lighter.exact):
-        return [f"the mean of {what}, given as at rest under the static loads: friction alone holds it there"]
+    if any(scene.strained for scene in lighter.exact):
+        loads = " under the static loads" if any(scene.loads for scene in lighter.exact) else ""
+        return [f"the mean of {what}, given as at rest{loads}: friction alone holds it there"]
     return [f"the mean of {what}, given as 0: no contact holds it along its normal, so nothing depends on it"]

@@ -53,7 +53,9 @@ def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
         "contact_harmonic": Field(("contact_harmonic",), np.array(numbers), {"long_name": "harmonic"}),
         **in_plane,
         "contact_mean": Field(
-            of[:4], by_point(curves, means), {"long_name": "mean displacement across the contact"}
+            of[:4],
+            by_point(curves, means),
+            {"long_name": "mean displacement across the contact, from where it starts unstressed"},
         ),
         "contact_amplitude": Field(
             of,

@@ -49,7 +49,7 @@ class Draft(Frozen):
             changed["forces"] = forces_of(draft)
         if draft["load"] is not parts["load"]:
             changed["loads"] = tuple(map(load_of, draft["load"]))
-        return replace(scene, parameters=dict(values), **changed)
+        return replace(scene, parameters=dict(values), **changed).started()
 
     def values(self, scene: Scene, addresses: tuple[Address, ...]) -> list[Any]:
         """Values at addresses in a curve of the scene."""

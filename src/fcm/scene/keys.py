@@ -60,7 +60,8 @@ TABLES: dict[str, dict[str, Key]] = {
         "optimum": Key("numbers that are chosen so that a peak is least", "[optimum]", "nothing is chosen"),
         "fit": Key("numbers that are fitted to measured data", "[fit]", "nothing is fitted"),
         "schedule": Key("phases of a simulation in time", "[[schedule]]", "none"),
-        "start": Key("the state that the schedule starts from", "[start]", "rest"),
+        "start": Key("the state that the schedule starts from, and friction of contacts that never slip",
+                     "[start]", "rest"),
     },
     "modal": {
         "file": Key("of modes; keys beside it go before its own", ".npz, .mat, .uff or .unv", "none"),
@@ -213,8 +214,9 @@ TABLES: dict[str, dict[str, Key]] = {
     "start": {
         "displacement": Key("modal, one number for each mode", "list of numbers", "zeros"),
         "velocity": Key("modal, one number for each mode", "list of numbers", "zeros"),
-        "friction": Key("friction forces, one for each contact; of one that never slips, of exact curves too",
-                        "list of numbers", "zeros"),
+        "friction": Key("friction forces of the contacts with the structure undisplaced; of one that never "
+                        "slips also on curves. A pair for one in a plane",
+                        "list of numbers and pairs", "zeros"),
         "angle": Key("of the forces, omega t", RULES["phase"], "0"),
     },
     "sweep": {

@@ -242,7 +242,7 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None, solved
         forces=forces_of(draft.parts),
         loads=tuple(map(load_of, draft.parts["load"])),
         **fields,
-    )
+    ).started()
     if notices is not None:
         notices.curves(scene, curves_of(draft.swept))
     curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))

@@ -1,17 +1,21 @@
-"""The time simulation of a scene: the phases of its schedule and the state that they start from."""
+"""The time simulation of a scene: the phases of its schedule and the state that they start from.
+
+The friction of that state is of contacts that never slip on curves, too.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Phase, Scene, Start
+from fcm.scene.errors import quoted
 from fcm.scene.keys import names
 from fcm.scene.options import LIMITS, MESSAGES
 from fcm.scene.rules import ANY, POSITIVE, RULES
-from fcm.scene.section import Section
+from fcm.scene.section import Section, described
 from fcm.units import UNIT
 
 
@@ -53,7 +57,7 @@ def _whole(cycles: float) -> float:
 def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
     """The state that the schedule starts from; None, which is rest, without a [start] table.
 
-    Its friction alone also says which motion is meant where a contact never slips, of which there are many.
+    Its friction also says which motion is meant where a contact never slips, of which there are many.
     """
     section = top.table("start", "") if "start" in top.data else None
     if section is None:
@@ -63,12 +67,61 @@ def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
         _without_schedule(section)
     frequency = parts["modal"]["frequency"]
     modes = None if frequency is None else len(frequency)
-    return Start(
-        _vector(section, "displacement", modes, "mode"),
-        _vector(section, "velocity", modes, "mode"),
-        _vector(section, "friction", len(parts["contact"]), "contact"),
-        section.number("angle", RULES["phase"], default=0.0),
+    displacement, velocity = (_vector(section, key, modes, "mode") for key in ("displacement", "velocity"))
+    angle = section.number("angle", RULES["phase"], default=0.0)
+    if any("second" in one for one in parts["contact"]):
+        first, second = _planar_friction(section, parts["contact"]).T
+        return Start(displacement, velocity, first, angle, second)
+    return Start(displacement, velocity, _friction(section, parts["contact"]), angle)
+
+
+def _friction(section: Section, contacts: Sequence[Mapping[str, Any]]) -> FloatArray:
+    """Friction forces (contact,) of contacts on a line."""
+    given = section.data.get("friction")
+    for i, one in enumerate(given if isinstance(given, list) else ()):
+        if isinstance(one, list) and i < len(contacts):
+            _on_a_line(section, i, contacts[i], one)
+            return np.zeros(len(contacts))
+    return _vector(section, "friction", len(contacts), "contact")
+
+
+def _on_a_line(section: Section, i: int, contact: Mapping[str, Any], given: object) -> None:
+    section.wrong(
+        f"friction[{i}]",
+        f"must be one number, is {described(given)}: contact {quoted(contact['name'])} slides on a line",
     )
+
+
+def _planar_friction(section: Section, contacts: Sequence[Mapping[str, Any]]) -> FloatArray:
+    """Friction forces (contact, 2) beside contacts in a plane, of which each has a pair of numbers."""
+    found = np.zeros((len(contacts), 2))
+    given = section.data.get("friction", [[0.0, 0.0] if "second" in one else 0.0 for one in contacts])
+    given = given.tolist() if isinstance(given, np.ndarray) else given
+    right = "a list with a number for each contact on a line, and a pair [x, y] for each in a plane"
+    if not isinstance(given, list | tuple):
+        section.wrong("friction", f"must be {right}, is {described(given)}")
+        return found
+    if len(given) != len(contacts):
+        section.wrong("friction", f"must be {right}, {len(contacts)} in all, has {len(given)}")
+        return found
+    for i, (one, contact) in enumerate(zip(given, contacts, strict=True)):
+        path = f"friction[{i}]"
+        several = isinstance(one, list | tuple)
+        if "second" not in contact:
+            if several:
+                _on_a_line(section, i, contact, one)
+            else:
+                found[i, 0] = section.checked(one, section.at(path), ANY)
+        elif several and len(one) == 2:
+            found[i] = [section.checked(f, section.at(f"{path}[{k}]"), ANY) for k, f in enumerate(one)]
+        else:
+            what = f"is a list of {len(one)}" if several else f"is {described(one)}"
+            section.wrong(
+                path,
+                f"must be a pair of numbers, as [0.1, 0.0], {what}: contact {quoted(contact['name'])} slides "
+                "in a plane",
+            )
+    return found
 
 
 def _without_schedule(section: Section) -> None:
@@ -98,10 +151,11 @@ def _beyond(scene: Scene) -> dict[int, list[tuple[Scene, float]]]:
     found = dict[int, list[tuple[Scene, float]]]()
     for curve in scene.each_curve():
         start = curve.start
-        for place, contact in enumerate(curve.contacts if start is not None and start.friction.any() else ()):
-            assert start is not None
-            limit = _limit(curve, contact, start)
-            if abs(start.friction[place]) > limit * (1.0 + MESSAGES.start_rounding):
+        if start is None:
+            continue
+        for place in np.flatnonzero(start.friction_size).tolist():
+            limit = _limit(curve, curve.contacts[place], start)
+            if start.friction_size[place] > limit * (1.0 + MESSAGES.start_rounding):
                 found.setdefault(place, []).append((curve, limit))
     return found
 
@@ -122,8 +176,10 @@ def _sentence(scene: Scene, place: int, beyond: list[tuple[Scene, float]]) -> st
     where = f" in {count} curves, the first with {swept}," if swept else ""
     begins = "A [[schedule]] starts from the limit. " if scene.schedule else ""
     contact = first.contacts[place]
+    ways = zip(contact.directions[:-1], first.start.forces, strict=False)
+    given = ", ".join(f"{force[place]:g}" for _, force in ways)
     return (
-        f"start.friction[{place}]: {first.start.friction[place]:g} is beyond what {contact.name} can carry "
-        f"there,{where} mu n = {limit:g}. {begins}Exact curves take that residual friction where the motion "
-        "itself holds it, else the nearest"
+        f"start.friction[{place}]: {given} is beyond what {contact.name} can carry there,{where} "
+        f"mu n = {limit:g}. {begins}Curves take that residual friction where the motion itself holds it, "
+        "else the nearest"
     )

@@ -36,9 +36,11 @@ ARRAYS = ("natural", "damping", "ports", "dofs", "force", "square", "load", "fle
 
 
 class Rates(Frozen):
-    """Rates of a number's system: of mu, k_u, k_v, n_0 (contact, 4), and of the structure's arrays."""
+    """Rates of a number's system: of mu, k_u, k_v, n_0 (contact, 4), of the displacements (port,) at which
+    contacts start unstressed, and of the structure's arrays."""
 
     contact: FloatArray
+    sliders: FloatArray
     linear: Linear  # of rates, not a structure
     system: System
     options: SensitivityOptions = SENSITIVITY
@@ -54,6 +56,12 @@ class Rates(Frozen):
 
     def here(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
         """Rates of residual and displacements as of `at`, where the balance was evaluated last."""
+        residual, displacements = self._without_sliders(balance, z)
+        if self.sliders.any():
+            residual[balance.layout.mean_at] += self.sliders
+        return residual, displacements
+
+    def _without_sliders(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
         if self._of_laws:
             return self._at_laws(balance, z)
         if self._of_forces:
@@ -212,15 +220,19 @@ def rates_of(system: System, address: str, options: SensitivityOptions = SENSITI
     number = number_of(system.scene, address)
     contact = np.zeros((len(system.scene.contacts), 4))
     total = {name: np.zeros_like(getattr(system.linear, name)) for name in ARRAYS}
+    sliders = np.zeros(system.layout.ports)
     for one, value, weight in number.each(system.scene):
         contact += weight * (
             contact_numbers(one.put(system.scene, 1.0)) - contact_numbers(one.put(system.scene, 0.0))
         )
         for name, rate in _linear(system, one, value, options):
             total[name] = total[name] + weight * rate
-    return Rates(
-        contact, Linear(**total, adrift=system.linear.adrift, driven=system.linear.driven), system, options
-    )
+        if system.scene.start is not None:
+            step = options.number * (abs(value) or 1.0)
+            around = {k: one.put(system.scene, value + k * step).sliders() for k in (-3, -2, -1, 1, 2, 3)}
+            sliders += weight * sum(part / step * (around[k] - around[-k]) for k, part in STENCIL)
+    structure = Linear(**total, adrift=system.linear.adrift, driven=system.linear.driven)
+    return Rates(contact, sliders, structure, system, options)
 
 
 def contact_numbers(scene: Scene) -> FloatArray:

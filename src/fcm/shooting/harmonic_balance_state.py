@@ -63,7 +63,8 @@ def harmonic_state(
     friction = np.zeros(len(scene.contacts))
     for j, contact in enumerate(scene.contacts):
         along, across = contact.tangential, contact.normal
-        at = float(along @ average), float(across @ average)
+        start = sum(contact.slider)  # of a contact on a line there is one, or none
+        at = float(along @ average) - start, float(across @ average)
         pair, means, friction[j] = _forces(contact, along @ x, across @ x, *at)
         wave = wave - system.tangential[j] * pair[0] - system.normal[j] * pair[1]
         steady -= system.tangential[j] * means[0] + system.normal[j] * means[1]

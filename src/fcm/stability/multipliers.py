@@ -108,14 +108,15 @@ class Multipliers:
 
     def take(self, system: System) -> None:
         """Take another system with the same structure and harmonics, whose contacts may differ."""
-        same = system.scene.frequency_range == self.system.scene.frequency_range and not system.scene.loads
+        before, scene = self.system.scene, system.scene
+        same = scene.frequency_range == before.frequency_range and not (scene.strained or before.strained)
         self.system, self.further = system, self.further if same else None
-        before = self.contact[:, :3].copy()
+        known = self.contact[:, :3].copy()
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
         for law, c in zip(self.finer.laws, system.scene.contacts, strict=True):
             law.set_parameters(c.mu, c.k_u, c.k_v, c.n_0)
-        if not np.array_equal(self.contact[:, :3], before):  # what is known of the states is of others
+        if not np.array_equal(self.contact[:, :3], known):  # what is known of the states is of others
             self.fine, self.plain = self._followed()
 
     def _followed(self) -> list[VariationalProblem]:

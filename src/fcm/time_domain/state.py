@@ -45,7 +45,7 @@ class State(Frozen):
         if not scene.loads:
             return still
         try:
-            displacement, friction = rest_of(scene.whole())
+            displacement, friction = rest_of(scene.whole().unstressed())
         except RestError as error:
             raise SimulationError(str(error)) from None
         return State(displacement, still.velocity, friction[scene.computed()])
