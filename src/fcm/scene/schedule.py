@@ -178,6 +178,7 @@ def _sentence(scene: Scene, place: int, beyond: list[tuple[Scene, float]]) -> st
     contact = first.contacts[place]
     ways = zip(contact.directions[:-1], first.start.forces, strict=False)
     given = ", ".join(f"{force[place]:g}" for _, force in ways)
+    given = given if contact.second is None else f"[{given}]"
     return (
         f"start.friction[{place}]: {given} is beyond what {contact.name} can carry there,{where} "
         f"mu n = {limit:g}. {begins}Curves take that residual friction where the motion itself holds it, "

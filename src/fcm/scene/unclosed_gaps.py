@@ -63,7 +63,7 @@ def questions_of_gaps(scene: Scene) -> list[str]:
     """
     (length, _), contacts = scene.units, scene.contacts
     gap = np.array([max(-one.n_0 / one.k_v, 0.0) if one.k_v > 0.0 else 0.0 for one in contacts])
-    if not length or scene.ring is not None or scene.loads or not scene.has_range or not gap.any():
+    if not length or scene.ring is not None or scene.strained or not scene.has_range or not gap.any():
         return []
     if varies(scene, ".n_0", ".gap", ".amplitude") or varies(scene, "level"):
         return []
