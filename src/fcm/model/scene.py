@@ -106,7 +106,7 @@ class Phase(Frozen):
 
 
 class Start(Frozen):
-    """The state that a time simulation starts from."""
+    """The state that a time simulation starts from, and the friction of contacts that never slip."""
 
     displacement: FloatArray  # (mode,) modal
     velocity: FloatArray  # (mode,) modal
