@@ -89,9 +89,8 @@ class VariedBalance:
         fields = {address[-1] for number in line.numbers for address in number.addresses}
         rigid = bool((system.linear.natural == 0.0).any())
         self.structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
-        self.structure |= (
-            "k_u" in fields and system.scene.start is not None
-        )  # where contacts start depends on it
+        # where contacts start unstressed depends on their stiffness
+        self.structure |= "k_u" in fields and system.scene.start is not None
         # of one number, or of those that no product of two makes, the contacts' rates are the same everywhere
         self._constant = len(line.numbers) == 1 or "gap" not in fields
         excited = tables <= {"force", "base"} and fields <= {"amplitude", "acceleration"}
