@@ -1,21 +1,29 @@
 """Friction forces that contacts start with choose the member of a family of motions in the balance."""
 
+import json
+
 import numpy as np
 import pytest
+import xarray
 
 import fcm
 from fcm.branches.trace import traced
+from fcm.cli.loop_cases import PlanarCase
 from fcm.contact.contact_law import ContactLaw
 from fcm.harmonic_balance.modal_condensation import CondensationOptions
 from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.reduction.restore import unknowns
+from fcm.response import trace
+from fcm.results.output import write_netcdf
 from fcm.scene import SceneError, scene_from_dict
 from fcm.scene.draft import number_of
 from fcm.sensitivity.parameter_derivatives import rates_of
 from fcm.shooting.harmonic_balance_state import harmonic_state
 from fcm.shooting.residual_traction import resting_at
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
+
+from ..program import called
 
 DOFS = ["x", "y", "z"]
 SHAPES = [[0.8, 0.25, 0.2], [-0.3, 1.0, -0.35], [0.25, 0.4, 0.95]]
@@ -240,6 +248,34 @@ def test_a_point_of_a_curve_is_a_solution_and_a_state_with_that_friction():
     assert at == pytest.approx([-0.3 / A["k_u"], 0.35 / B["k_u"]], abs=1e-6)
 
 
+def test_the_loop_in_a_plane_is_of_the_displacement_and_of_that_friction(tmp_path):
+    """Where the contact sticks, f = f_0 + k_u u, with the displacements of the structure in the file."""
+    write_netcdf(trace(made(IN_PLANE, [[0.2, -0.25], 0.3], 0.12, harmonics=1)), tmp_path / "a.nc")
+    data = xarray.open_dataset(tmp_path / "a.nc").isel(curve=0)
+    k = int(np.argmin(abs(data.frequency.values - 1.2)))
+    one = data.isel(point=k)
+    assert one.contact_mean.isel(contact=0).values == pytest.approx(one["mean"].values, abs=1e-12)
+    assert data.contact_start.isel(contact=0).values == pytest.approx([-0.2 / 0.7, 0.25 / 0.7, 0.0])
+    args = "--contact", "a", "--at", float(one.frequency), "--json"
+    (told,) = json.loads(called("plot", "loop", tmp_path / "a.nc", *args, "-o", tmp_path / "a.svg").out)[
+        "loops"
+    ]
+    theta = np.linspace(0.0, 2.0 * np.pi, 20001)[:, None]
+    u = one["mean"].values[:2] + one.amplitude.values[:2] * np.sin(theta + one.phase.values[:2])
+    expected = np.hypot(*(np.array([0.2, -0.25]) + 0.7 * u).T).max()
+    assert told["sequence"] == "E"
+    assert told["greatest_friction_force"] == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_dimensionless_loop_in_a_plane_starts_as_it_did():
+    start, theta = (-0.3, 0.4), np.linspace(0.0, 6.0, 13)
+    motion = [0.1, 0.2], [-0.1, 0.15j], [0.0, 0.3]
+    loop = fcm.planar_loop(*motion, 0.5, 0.7, 1.0, 2.0, start_x=start[0], start_y=start[1])
+    scaled = PlanarCase(loop, start, ("x", "y"), (), "", {"a": 2.0, "k_u a": 1.4}, None).dimensionless()
+    assert 1.4 * scaled.force(theta) == pytest.approx(loop.force(theta), abs=1e-12)
+    assert 2.0 * scaled.slider(theta) == pytest.approx(np.tile(start, (13, 1)), abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("contact", "friction", "message"),
     [
@@ -256,8 +292,8 @@ def test_a_point_of_a_curve_is_a_solution_and_a_state_with_that_friction():
         (IN_PLANE, [[0.2], 0.1], "friction[0]: must be a pair of numbers, as [0.1, 0.0], is a list of 1"),
         (IN_PLANE, [[0.2, "b"], 0.1], "friction[0][1]: must be a number"),
         (IN_PLANE, [[0.2, 0.1], [0.1, 0.0]], "friction[1]: must be one number"),
-        (IN_PLANE, [[0.2, 0.1]], "and a pair [x, y] for each in a plane, 2 in all, has 1"),
-        (IN_PLANE, 0.3, "and a pair [x, y] for each in a plane, is 0.3"),
+        (IN_PLANE, [[0.2, 0.1]], "or a pair if it slides in a plane, 2 in all, has 1"),
+        (IN_PLANE, 0.3, "or a pair if it slides in a plane, is 0.3"),
     ],
 )
 def test_mistakes_in_friction(contact, friction, message):

@@ -73,6 +73,7 @@ class PlanarCase(Frozen):
     """The loop of a contact that slides in a plane."""
 
     loop: PlanarLoop
+    start: tuple[float, float]  # displacements at which it starts unstressed
     directions: tuple[str, str]
     names: tuple[Name, ...]
     note: str
@@ -87,7 +88,10 @@ class PlanarCase(Frozen):
         if not (a > 0.0 and force > 0.0):
             raise click.UsageError("--dimensionless: k_u or the motion in the plane is zero.")
         motion = (loop.u_x / a, loop.u_y / a, loop.v / a)
-        return planar_loop(*motion, loop.mu, 1.0, loop.k_v / loop.k_u, loop.n_0 / force)
+        x, y = self.start
+        return planar_loop(
+            *motion, loop.mu, 1.0, loop.k_v / loop.k_u, loop.n_0 / force, start_x=x / a, start_y=y / a
+        )
 
     def record(self, _from_greatest: bool) -> dict[str, Any]:
         """Output of ``--json`` for the loop in a plane."""
@@ -296,8 +300,9 @@ def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile, asked: Name) 
     names, note, facts = _said(point, file, asked)
     u_x, u_y, v = plane.motion
     mu, k_u, k_v, n_0 = plane.law
-    loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0)
-    return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions)
+    start_x, start_y = plane.start
+    loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0, start_x=start_x, start_y=start_y)
+    return PlanarCase(loop, plane.start, plane.directions, names, note, facts, file.dimensions)
 
 
 def _without_friction(point: LoopPoint, normal: NormalPoint, file: LoopFile, asked: Name) -> NormalCase:

@@ -1,5 +1,5 @@
 cdef int OPEN, CLOSED, MIXED, UNKNOWN, STUCK, UNSOLVED
-cdef double LEAST
+cdef double SMALLEST, SMALLEST_SHARE
 
 cdef class ContactParameters:
     cdef public double mu, k_u, k_v, n_0, start_x, start_y

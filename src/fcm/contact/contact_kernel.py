@@ -28,8 +28,9 @@ UNKNOWN = cython.declare(cython.int, 3)  # a number is not finite
 STUCK = cython.declare(cython.int, 4)
 UNSOLVED = cython.declare(cython.int, 5)  # no steady cycle was found
 
-LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothing
-FAINT = cython.declare(cython.double, 1e-150)  # as motion does that is smaller than its mean by that
+# Of the format of doubles, which ends at 1e-308: scales are at least that, and such a share of the mean
+SMALLEST = cython.declare(cython.double, 1e-290)
+SMALLEST_SHARE = cython.declare(cython.double, 1e-150)
 
 
 @cython.cclass
@@ -125,9 +126,9 @@ class HarmonicMotion:
         if not (isfinite(x[first + self.directions - 1]) and isfinite(contact.n_0) and isfinite(contact.mu)):
             return False
         self.preload = contact.n_0 + contact.k_v * float(x[first + self.directions - 1])
-        self.load_scale = max(contact.k_v * variation, FAINT * fabs(self.preload), LEAST)
+        self.load_scale = max(contact.k_v * variation, SMALLEST_SHARE * fabs(self.preload), SMALLEST)
         self.scale = max(
-            contact.k_u * motion, contact.mu * self.load_scale, FAINT * contact.k_u * mean, LEAST
+            contact.k_u * motion, contact.mu * self.load_scale, SMALLEST_SHARE * contact.k_u * mean, SMALLEST
         )
         self.ratio = contact.mu * (self.load_scale / self.scale) if contact.mu > 0.0 else 0.0
         return bool(

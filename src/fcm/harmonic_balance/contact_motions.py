@@ -16,6 +16,7 @@ class ContactMotions(Frozen):
     motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic) across the contacts
     friction: FloatArray | None  # (point, contact, 2) amplitude of the fundamental of that in a plane
     law: FloatArray  # (contact, 4) mu, k_u, k_v, n_0
+    start: FloatArray  # (contact, direction) displacements at which they start unstressed
 
     def at(self, rows: npt.NDArray[np.intp]) -> ContactMotions:
         """The motions of some points, with a gap where an index is -1."""
@@ -23,7 +24,7 @@ class ContactMotions(Frozen):
         motion[rows < 0] = np.nan
         if friction is not None:
             friction[rows < 0] = np.nan
-        return ContactMotions(motion, friction, self.law)
+        return ContactMotions(motion, friction, self.law, self.start)
 
 
 def contact_motions(system: System, z: FloatArray) -> ContactMotions | None:
@@ -37,8 +38,10 @@ def contact_motions(system: System, z: FloatArray) -> ContactMotions | None:
         return None
     shape = (len(z), layout.contacts, layout.directions, -1)
     motion = np.stack([layout.complex_ports(one) for one in z]).reshape(shape)
+    start = scene.sliders().reshape(layout.contacts, layout.directions)
+    motion[..., 0] += start
     law = np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts])
-    return ContactMotions(motion, _friction(system, z) if scene.planar else None, law)
+    return ContactMotions(motion, _friction(system, z) if scene.planar else None, law, start)
 
 
 def _friction(system: System, z: FloatArray) -> FloatArray:

@@ -37,9 +37,8 @@ FLOATING = (
     "closed contacts hold them: give contacts a preload (n_0 above 0), or a static load that closes them"
 )
 NO_EQUILIBRIUM = (
-    "no equilibrium with the static loads, and the friction of [start], was found. Contacts may not be able "
-    "to hold them: they push "
-    "and do not pull, and friction is at most mu n"
+    "no equilibrium with the static loads was found, or with the friction of [start]. The contacts may not "
+    "be able to hold them: they push and do not pull, and friction is at most mu n"
 )
 
 

@@ -23,6 +23,7 @@ _LAYOUT = {
     "contact_position": ("contact", "axis"),
     "contact_harmonic": ("contact_harmonic",),
     "contact_mean": (*_CONTACT, "direction"),
+    "contact_start": ("curve", "contact", "direction"),
     **dict.fromkeys(("contact_amplitude", "contact_phase"), (*_CONTACT, "direction", "contact_harmonic")),
     **dict.fromkeys(("contact_mu", "contact_k_u", "contact_k_v", "contact_n_0"), ("curve", "contact")),
     **dict.fromkeys(("peak_amplitude", "peak_frequency", "peak_stable", "peak_at_end", "peak_kind"), _PEAK),

@@ -29,6 +29,7 @@ _ALSO = (
     _ENERGY,
     "harmonic",
     "regime",
+    "contact_start",
 )
 _MOTION = (
     "contact_harmonic", "contact_mean", "contact_amplitude", "contact_phase",
@@ -42,6 +43,7 @@ class PlanePoint(Frozen):
 
     motion: npt.NDArray[np.complex128]  # (direction, harmonic), the mean first
     law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
+    start: tuple[float, float]  # displacements at which it starts unstressed
     directions: tuple[str, str]
 
 
@@ -78,6 +80,7 @@ class MotionFile(Frozen):
     phase: FloatArray
     harmonics: tuple[int, ...]
     law: FloatArray  # (4, curve, contact)
+    start: FloatArray  # (curve, contact, direction) displacements at which they start unstressed
     directions: dict[str, Any]  # of each contact in a plane, by x, y and normal
 
     def at(self, index: PointIndex, contact: str) -> PlanePoint | LinePoint | NormalPoint | None:
@@ -93,7 +96,8 @@ class MotionFile(Frozen):
             return NormalPoint(motion[-1], (k_v, n_0))
         if isinstance(names, dict):
             axes = str(names.get("x", "x")), str(names.get("y", "y"))
-            return PlanePoint(motion, (mu, k_u, k_v, n_0), axes)
+            x, y, _ = self.start[index.curve, index.contact].tolist()
+            return PlanePoint(motion, (mu, k_u, k_v, n_0), (x, y), axes)
         if np.isnan(mean).any() or self.harmonics == (1,):
             return None
         if not np.isfinite(law).all():
@@ -212,7 +216,9 @@ def _motions(data: Any) -> MotionFile | None:
     law = np.stack([floats(data[name]) for name in _MOTION[4:]])
     mean, amplitude, phase = (floats(data[name]) for name in _MOTION[1:4])
     harmonics = tuple(int(h) for h in orders)
-    return MotionFile(mean, amplitude, phase, harmonics, law, names if isinstance(names, dict) else {})
+    unstressed = np.zeros((*mean.shape[:1], *mean.shape[2:]))  # as files without it are
+    start = floats(data["contact_start"]) if "contact_start" in data.variables else unstressed
+    return MotionFile(mean, amplitude, phase, harmonics, law, start, names if isinstance(names, dict) else {})
 
 
 def points_at(

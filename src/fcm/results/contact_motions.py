@@ -38,7 +38,8 @@ def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
         nothing = np.full((curve.frequency.size, contacts, directions), np.nan)
         return nothing if curve.across is None else curve.across.motion[..., 0].real
 
-    law = np.array([known.law if one.across is None else one.across.law for one in curves])
+    each = [known if one.across is None else one.across for one in curves]
+    law, start = np.array([one.law for one in each]), np.array([one.start for one in each])
     at, of = ("curve", "point", "contact"), ("curve", "point", "contact", "direction", "contact_harmonic")
     about = "amplitude of the fundamental of the friction force along the {} direction of a contact"
     sine = "as contact_amplitude * sin(harmonic omega t + contact_phase)"
@@ -55,7 +56,7 @@ def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
         "contact_mean": Field(
             of[:4],
             by_point(curves, means),
-            {"long_name": "mean displacement across the contact, from where it starts unstressed"},
+            {"long_name": "mean displacement across the contact"},
         ),
         "contact_amplitude": Field(
             of,
@@ -66,6 +67,11 @@ def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
             of,
             by_point(curves, lambda c: np.angle(waves(c))),
             {"long_name": f"its phase, {sine}", "units": "radian"},
+        ),
+        "contact_start": Field(
+            ("curve", "contact", "direction"),
+            start,
+            {"long_name": "displacement across the contact at which it starts unstressed"},
         ),
         **{
             f"contact_{name}": Field(

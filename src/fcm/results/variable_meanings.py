@@ -71,7 +71,8 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "contact_amplitude", "contact_mean", "slip_path", "peak_slip_path",
+    "harmonic_amplitude", "contact_amplitude", "contact_mean", "contact_start", "slip_path",
+    "peak_slip_path",
     "peak_percentile", "peak_percentile_low", "peak_percentile_high", "tracked_amplitude", "optimum_peak",
     "contact_position",
 )  # fmt: skip

@@ -59,13 +59,7 @@ def converted(found: dict[str, Any], name: str, own: FileUnits, units: tuple[str
     if found["shapes"][:, turning].any() and not isclose(rotation, 1.0):
         found["shapes"] = np.where(turning, rotation, 1.0) * found["shapes"]
         said.append(f"rotations times {rotation:g}")
-    how = (
-        ": " + ", ".join(said)
-        if said
-        else ", in which its numbers are the same"
-        if isclose(mass, 1.0)
-        else ""
-    )
+    how = f": {', '.join(said)}" if said else ", in which its numbers are the same" * isclose(mass, 1.0)
     note = f"modal: {name} is in {own.label()}, converted to {units[0]} and {units[1]}{how}"
     return Converted(mass, rotation, [note])
 

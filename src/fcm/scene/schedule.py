@@ -69,59 +69,48 @@ def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
     modes = None if frequency is None else len(frequency)
     displacement, velocity = (_vector(section, key, modes, "mode") for key in ("displacement", "velocity"))
     angle = section.number("angle", RULES["phase"], default=0.0)
-    if any("second" in one for one in parts["contact"]):
-        first, second = _planar_friction(section, parts["contact"]).T
-        return Start(displacement, velocity, first, angle, second)
-    return Start(displacement, velocity, _friction(section, parts["contact"]), angle)
+    first, second = _friction(section, parts["contact"]).T
+    in_plane = any("second" in one for one in parts["contact"])
+    return Start(displacement, velocity, first, angle, second if in_plane else None)
 
 
 def _friction(section: Section, contacts: Sequence[Mapping[str, Any]]) -> FloatArray:
-    """Friction forces (contact,) of contacts on a line."""
-    given = section.data.get("friction")
-    for i, one in enumerate(given if isinstance(given, list) else ()):
-        if isinstance(one, list) and i < len(contacts):
-            _on_a_line(section, i, contacts[i], one)
-            return np.zeros(len(contacts))
-    return _vector(section, "friction", len(contacts), "contact")
-
-
-def _on_a_line(section: Section, i: int, contact: Mapping[str, Any], given: object) -> None:
-    section.wrong(
-        f"friction[{i}]",
-        f"must be one number, is {described(given)}: contact {quoted(contact['name'])} slides on a line",
-    )
-
-
-def _planar_friction(section: Section, contacts: Sequence[Mapping[str, Any]]) -> FloatArray:
-    """Friction forces (contact, 2) beside contacts in a plane, of which each has a pair of numbers."""
+    """Friction forces (contact, 2): a number for each contact on a line, a pair for each in a plane."""
     found = np.zeros((len(contacts), 2))
-    given = section.data.get("friction", [[0.0, 0.0] if "second" in one else 0.0 for one in contacts])
+    found.flags.writeable = False
+    if "friction" not in section.data:
+        return found
+    given = section.data["friction"]
     given = given.tolist() if isinstance(given, np.ndarray) else given
-    right = "a list with a number for each contact on a line, and a pair [x, y] for each in a plane"
+    pairs = ", or a pair if it slides in a plane" if any("second" in one for one in contacts) else ""
     if not isinstance(given, list | tuple):
-        section.wrong("friction", f"must be {right}, is {described(given)}")
-        return found
-    if len(given) != len(contacts):
-        section.wrong("friction", f"must be {right}, {len(contacts)} in all, has {len(given)}")
-        return found
-    for i, (one, contact) in enumerate(zip(given, contacts, strict=True)):
-        path = f"friction[{i}]"
-        several = isinstance(one, list | tuple)
-        if "second" not in contact:
-            if several:
-                _on_a_line(section, i, contact, one)
-            else:
-                found[i, 0] = section.checked(one, section.at(path), ANY)
-        elif several and len(one) == 2:
-            found[i] = [section.checked(f, section.at(f"{path}[{k}]"), ANY) for k, f in enumerate(one)]
-        else:
-            what = f"is a list of {len(one)}" if several else f"is {described(one)}"
-            section.wrong(
-                path,
-                f"must be a pair of numbers, as [0.1, 0.0], {what}: contact {quoted(contact['name'])} slides "
-                "in a plane",
-            )
+        section.wrong(
+            "friction", f"must be a list with one number for each contact{pairs}, is {described(given)}"
+        )
+    elif len(given) != len(contacts):
+        right = f"must have one number for each contact{pairs}, {len(contacts)} in all"
+        section.wrong("friction", f"{right}, has {len(given)}")
+    else:
+        each = zip(given, contacts, strict=True)
+        found = np.array([_of_contact(section, i, one, contact) for i, (one, contact) in enumerate(each)])
+        found = found.reshape(-1, 2)
     return found
+
+
+def _of_contact(section: Section, i: int, given: object, contact: Mapping[str, Any]) -> tuple[float, float]:
+    """The friction force of a contact, along its one direction or both; 0 after a mistake."""
+    path, several, name = f"friction[{i}]", isinstance(given, list | tuple), quoted(contact["name"])
+    if "second" not in contact:
+        if not several:
+            return section.checked(given, section.at(path), ANY), 0.0
+        section.wrong(path, f"must be one number, is {described(given)}: contact {name} slides on a line")
+    elif isinstance(given, list | tuple) and len(given) == 2:
+        x, y = (section.checked(one, section.at(f"{path}[{k}]"), ANY) for k, one in enumerate(given))
+        return x, y
+    else:
+        what = f"must be a pair of numbers, as [0.1, 0.0], is {described(given)}"
+        section.wrong(path, f"{what}: contact {name} slides in a plane")
+    return 0.0, 0.0
 
 
 def _without_schedule(section: Section) -> None:
