@@ -271,7 +271,7 @@ def test_a_dimensionless_loop_in_a_plane_starts_as_it_did():
     start, theta = (-0.3, 0.4), np.linspace(0.0, 6.0, 13)
     motion = [0.1, 0.2], [-0.1, 0.15j], [0.0, 0.3]
     loop = fcm.planar_loop(*motion, 0.5, 0.7, 1.0, 2.0, start_x=start[0], start_y=start[1])
-    scaled = PlanarCase(loop, start, ("x", "y"), (), "", {"a": 2.0, "k_u a": 1.4}, None).dimensionless()
+    scaled = PlanarCase(loop, ("x", "y"), (), "", {"a": 2.0, "k_u a": 1.4}, None, start).dimensionless()
     assert 1.4 * scaled.force(theta) == pytest.approx(loop.force(theta), abs=1e-12)
     assert 2.0 * scaled.slider(theta) == pytest.approx(np.tile(start, (13, 1)), abs=1e-12)
 

@@ -73,12 +73,12 @@ class PlanarCase(Frozen):
     """The loop of a contact that slides in a plane."""
 
     loop: PlanarLoop
-    start: tuple[float, float]  # displacements at which it starts unstressed
     directions: tuple[str, str]
     names: tuple[Name, ...]
     note: str
     facts: dict[str, Any]
     units: tuple[str, str] | None
+    start: tuple[float, float] = (0.0, 0.0)  # displacements at which it starts unstressed
 
     def dimensionless(self) -> PlanarLoop:
         """The loop with displacements as parts of the amplitude a and forces as parts of k_u a."""
@@ -302,7 +302,7 @@ def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile, asked: Name) 
     mu, k_u, k_v, n_0 = plane.law
     start_x, start_y = plane.start
     loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0, start_x=start_x, start_y=start_y)
-    return PlanarCase(loop, plane.start, plane.directions, names, note, facts, file.dimensions)
+    return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions, plane.start)
 
 
 def _without_friction(point: LoopPoint, normal: NormalPoint, file: LoopFile, asked: Name) -> NormalCase:
