@@ -18,8 +18,8 @@ from unit import SINE, seconds, sine
 
 import fcm
 from fcm.contact.closed_form import __file__ as kernel
-from fcm.contact.periodic.forces import PeriodicContact
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.periodic.cycle import PeriodicContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.model.scene import Scene
 from fcm.response import trace
 from fcm.run import Execution

@@ -6,7 +6,7 @@ import numpy as np
 
 from fcm import planar_forces, planar_gradients
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.contact.plane.options import FINE
 
 from .motions import decaying

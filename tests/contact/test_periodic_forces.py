@@ -5,7 +5,7 @@ import pytest
 
 from fcm import fourier_coefficients, normal_coefficients, periodic_forces, periodic_gradients
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import PeriodicContact
 
 from . import periodic_march
 from .cases import all_boundaries, points

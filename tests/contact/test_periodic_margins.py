@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import PeriodicContact
 from fcm.contact.periodic.margins import Measures
 from fcm.harmonic_balance.contact_law import LineLaw
 

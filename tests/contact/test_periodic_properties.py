@@ -9,7 +9,7 @@ import pytest
 import fcm
 from fcm import fourier_coefficients, hysteresis_loop, periodic_forces, periodic_loop
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import PeriodicContact
 
 from ..program import python
 from .cases import points
@@ -160,8 +160,8 @@ AS_PYTHON = """
 import sys, warnings
 warnings.simplefilter("ignore")
 import numpy as np
-from fcm.contact.periodic import cycle, forces, margins, motion
-kernels = cycle, forces, margins, motion
+from fcm.contact.periodic import cycle, margins, motion
+kernels = cycle, margins, motion
 assert all(m.__file__.endswith(".py") for m in kernels)
 import fcm
 data = np.load(sys.argv[1])

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 
 from fcm import periodic_gradients, planar_gradients
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.contact.plane.options import FINEST, OPTIONS
 
 from ..scale import SCALE

@@ -14,7 +14,7 @@ import numpy as np
 
 import fcm
 from fcm.contact.contact_kernel import ContactParameters
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.contact.plane.options import PlanarOptions
 from fcm.plot.loop import STATES
 from fcm.plot.style import house_style, new_figure

@@ -69,7 +69,7 @@ def test_the_level_scales_the_external_forces(harmonics):
 @pytest.mark.parametrize("seed", range(3))
 def test_one_harmonic_by_the_closed_form_is_the_general_case(seed):
     """The kernel for any harmonics, given one, has the forces of the paper's closed form."""
-    from fcm.contact.periodic.forces import PeriodicContact
+    from fcm.contact.periodic.cycle import PeriodicContact
     from fcm.harmonic_balance.contact_law import LineLaw
 
     for scene in SCENES.values():

@@ -7,10 +7,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from fcm.contact.options import KERNELS
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import PeriodicContact
 
 if TYPE_CHECKING:
-    from fcm.contact.plane.forces import PlanarContact
+    from fcm.contact.plane.cycle import PlanarContact
 
 
 class _Kernels(threading.local):
@@ -36,7 +36,7 @@ def _periodic(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PeriodicC
 
 
 def _planar(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PlanarContact:
-    from fcm.contact.plane.forces import PlanarContact  # most scenes have no contacts in a plane
+    from fcm.contact.plane.cycle import PlanarContact  # most scenes have no contacts in a plane
 
     return PlanarContact(list(harmonics), list(outputs))
 

@@ -18,7 +18,7 @@ import numpy as np
 from cython.cimports.libc.math import atan2, hypot, sqrt
 
 from fcm.contact.closed_form import CoefficientLaw
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import PeriodicContact
 from fcm.contact.periodic.margins import Margins, Measures, RegimeMargins
 from fcm.harmonic_balance import options
 from fcm.model.scene import Contact

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures
 from fcm.harmonic_balance.contact_law import KernelLaw
 from fcm.model.scene import Contact

@@ -1,5 +1,5 @@
 from fcm.contact.contact_kernel cimport ContactParameters
-from fcm.contact.plane.forces cimport PlanarContact
+from fcm.contact.plane.cycle cimport PlanarContact
 
 cdef class PlanarSequence:
     cdef readonly int contacts, width, moving, held, capacity, highest

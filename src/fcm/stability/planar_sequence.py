@@ -19,7 +19,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.contact_kernel import UNKNOWN, UNSOLVED, ContactParameters
     from cython.cimports.fcm.contact.periodic.cycle import SEPARATION, STICK, join_states
     from cython.cimports.fcm.contact.periodic.motion import TWO_PI
-    from cython.cimports.fcm.contact.plane.forces import PlanarContact
+    from cython.cimports.fcm.contact.plane.cycle import PlanarContact
     from cython.cimports.fcm.contact.plane.panel import STAGES
     from cython.cimports.fcm.contact.plane.slider import SLIP
     from cython.cimports.fcm.stability.state_sequence import FREE
@@ -27,7 +27,7 @@ else:
     from fcm.contact.contact_kernel import UNKNOWN, UNSOLVED, ContactParameters
     from fcm.contact.periodic.cycle import SEPARATION, STICK, join_states
     from fcm.contact.periodic.motion import TWO_PI
-    from fcm.contact.plane.forces import PlanarContact
+    from fcm.contact.plane.cycle import PlanarContact
     from fcm.contact.plane.radau import STAGES
     from fcm.contact.plane.slider import SLIP
     from fcm.stability.state_sequence import FREE

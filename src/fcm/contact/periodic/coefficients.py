@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy.typing as npt
 
 from fcm.contact.kernel_arguments import ComplexArray, KernelArguments
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import PeriodicContact
 
 
 class PeriodicGradients(NamedTuple):

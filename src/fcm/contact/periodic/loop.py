@@ -10,8 +10,7 @@ import numpy.typing as npt
 from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
 from fcm.contact.options import PERIODIC
-from fcm.contact.periodic.cycle import LineCycle, join_states
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.cycle import LineCycle, PeriodicContact, join_states
 from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import LoadedPieces, Piece, friction, from_piece, transitions_of, waves_at
 from fcm.frozen import Frozen

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy.typing as npt
 
 from fcm.contact.kernel_arguments import ComplexArray, KernelArguments
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.contact.plane.options import FINE
 
 

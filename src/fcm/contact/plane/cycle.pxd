@@ -1,4 +1,6 @@
+from fcm.contact.contact_kernel cimport ContactKernel
 from fcm.contact.periodic.motion cimport ZeroCrossings
+from fcm.contact.plane.integrals cimport PlanarDerivatives, PlanarIntegrals
 from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 from fcm.contact.plane.slider cimport Slider
@@ -21,3 +23,13 @@ cdef class PlanarCycle:
     cdef void gather(self, bint gradient) noexcept nogil
     cdef bint bracket(self, double w_x, double w_y) noexcept nogil
     cdef bint between(self, double w_x, double w_y) noexcept nogil
+
+cdef class PlanarContact(ContactKernel):
+    cdef readonly PlanarCycle cycle
+    cdef readonly PlanarIntegrals integrals
+    cdef readonly PlanarDerivatives derivatives
+    cdef void stick(self) noexcept nogil
+    cdef void slip(self) noexcept nogil
+    cdef void stick_gradient(self, double s_x, double s_y) noexcept nogil
+    cdef void held_by_one(self, double s_x, double s_y) noexcept nogil
+    cdef void held_by_two(self) noexcept nogil

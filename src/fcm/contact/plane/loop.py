@@ -11,7 +11,7 @@ from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
 from fcm.contact.periodic.cycle import join_states
 from fcm.contact.pieces import LoadedPieces, Piece, from_piece, transitions_of, waves_at
-from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.cycle import PlanarContact
 from fcm.contact.plane.options import FINEST, LOOP
 from fcm.contact.plane.radau import STAGES, radau
 from fcm.frozen import Frozen
