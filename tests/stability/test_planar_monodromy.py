@@ -11,8 +11,7 @@ from scipy.integrate import solve_ivp
 
 import fcm
 from fcm.stability.options import STABILITY
-from fcm.stability.planar_monodromy import PlanarMonodromy
-from fcm.stability.planar_sequence import PlanarSequence
+from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.quasi_static_modes import PortModes
 
 OMEGA = 1.1

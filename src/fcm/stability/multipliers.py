@@ -42,8 +42,7 @@ from fcm.stability.rebalanced import Rebalancing
 from fcm.stability.state_sequence import BalancedSequence
 
 if TYPE_CHECKING:
-    from fcm.stability.planar_monodromy import PlanarMonodromy
-    from fcm.stability.planar_sequence import PlanarSequence
+    from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 
 
 class VariationalProblem(NamedTuple):
@@ -92,7 +91,7 @@ class Multipliers:
         self.far = far
         self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
         if system.scene.planar:
-            from fcm.stability.planar_sequence import PlanarSequence  # most scenes do without
+            from fcm.stability.planar_monodromy import PlanarSequence  # most scenes do without
 
             self.states = (
                 PlanarSequence(contact, tuple(finer), options.planar),
@@ -127,8 +126,7 @@ class Multipliers:
                 _many_contacts if len(self.contact) >= self.options.structure.many_contacts else _few_contacts
             )
             return make(self.system, self.far, self.contact, (fine, plain), self.options)
-        from fcm.stability.planar_monodromy import PlanarMonodromy
-        from fcm.stability.planar_sequence import PlanarSequence
+        from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 
         linear = self.system.linear
         modes = PortModes(linear.ports, linear.natural, linear.damping, self.far)

@@ -24,8 +24,7 @@ from fcm.stability.disturbance import Stiffness
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.planar_monodromy import RingPlanarMonodromy
-from fcm.stability.planar_sequence import PlanarSequence
+from fcm.stability.planar_monodromy import PlanarSequence, RingPlanarMonodromy
 from fcm.stability.quasi_static_modes import PortModes, quasi_static_modes
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.structure.ring import RingLinear

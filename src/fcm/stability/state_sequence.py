@@ -3,7 +3,7 @@
 The small disturbances of a motion, balanced or exact, depend on these alone.
 
 Of a balanced motion they come from the located events of its contacts (`BalancedSequence`); of contacts in a
-plane see `planar_sequence`.
+plane see `planar_monodromy`.
 """
 
 from __future__ import annotations
