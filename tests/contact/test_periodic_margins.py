@@ -13,7 +13,7 @@ import pytest
 from fcm.contact.contact_kernel import ContactParameters
 from fcm.contact.periodic.cycle import PeriodicContact
 from fcm.contact.periodic.margins import Measures
-from fcm.harmonic_balance.contact_law import LineLaw
+from fcm.harmonic_balance.contact_law import laws_on_a_line
 
 from .motions import SINE, STILL, Case, random_cases
 
@@ -127,7 +127,7 @@ def test_measures_of_a_contact_that_is_open_or_never_moves():
 def test_another_extreme_of_a_limit_comes_to_hold_a_slider(side):
     """u = side (5 + c cos(theta) + cos(2 theta)) under a load 4: the limit is furthest at 0, or at pi."""
     contact, law = PeriodicContact([1, 2], [1, 2]), {"mu": 0.5, "k_u": 1.0, "k_v": 0.0, "n_0": 4.0}
-    bounds, margins = LineLaw(contact, SimpleNamespace(**law)), []
+    (bounds,), margins = laws_on_a_line(contact, [SimpleNamespace(**law)]), []
     for c in (1e-7, -1e-7):
         x = side * np.array([5.0, 0.0, c, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
         contact.at(x, ContactParameters(**law))

@@ -70,14 +70,14 @@ def test_the_level_scales_the_external_forces(harmonics):
 def test_one_harmonic_by_the_closed_form_is_the_general_case(seed):
     """The kernel for any harmonics, given one, has the forces of the paper's closed form."""
     from fcm.contact.periodic.cycle import PeriodicContact
-    from fcm.harmonic_balance.contact_law import LineLaw
+    from fcm.harmonic_balance.contact_law import laws_on_a_line
 
     for scene in SCENES.values():
         system = System(scene, (1,))
         z = some_motion(system, seed, 3.0)
         single, periodic = (system.new_balance() for _ in range(2))
         kernel = PeriodicContact([1], [1])
-        periodic.laws = [LineLaw(kernel, c) for c in scene.contacts]
+        periodic.laws = laws_on_a_line(kernel, scene.contacts)
         single.evaluate(z)
         periodic.evaluate(z)
         scale = np.abs(z[:-1]).max()

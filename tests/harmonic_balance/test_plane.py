@@ -17,8 +17,7 @@ from fcm.branches.force_level import solutions
 from fcm.branches.trace import traced
 from fcm.contact.kernels import periodic_contact, planar_contact
 from fcm.continuation import Mark, Status
-from fcm.harmonic_balance.contact_law import LineLaw
-from fcm.harmonic_balance.planar_law import PlanarLaw
+from fcm.harmonic_balance.contact_law import laws_in_a_plane, laws_on_a_line
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
@@ -348,10 +347,10 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
         kernel, width = planar_contact(harmonics, harmonics), 3 + 6 * len(harmonics)
         for kind in ("slip", "start"):
             x = rng.standard_normal(width)
-            found = onset(PlanarLaw(kernel, SimpleNamespace(**numbers)), x, kind, harmonics)
+            found = onset(*laws_in_a_plane(kernel, [SimpleNamespace(**numbers)]), x, kind, harmonics)
 
             def value(at, kind=kind, harmonics=harmonics, kernel=kernel, **other):
-                law = PlanarLaw(kernel, SimpleNamespace(**(numbers | other)))
+                (law,) = laws_in_a_plane(kernel, [SimpleNamespace(**(numbers | other))])
                 return onset(law, at, kind, harmonics).value
 
             h = 1e-6
@@ -364,9 +363,9 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
 def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
     x = np.array([0.1, 0.3, 1.0, 0.2, 0.4, -0.5])
     contact = SimpleNamespace(mu=0.5, k_u=1.3, k_v=0.7, n_0=4.0)
-    line = onset(LineLaw(periodic_contact((1,), (1,)), contact), x, "slip", (1,))
+    line = onset(*laws_on_a_line(periodic_contact((1,), (1,)), [contact]), x, "slip", (1,))
     oblique = np.array([0.06, 0.08, 0.3, 0.6, 0.12, 0.8, 0.16, 0.4, -0.5])
-    plane = onset(PlanarLaw(planar_contact((1,), (1,)), contact), oblique, "slip", (1,))
+    plane = onset(*laws_in_a_plane(planar_contact((1,), (1,)), [contact]), oblique, "slip", (1,))
     assert plane.value == pytest.approx(line.value, rel=1e-12)
     assert plane.by_number == pytest.approx(line.by_number, abs=1e-7)
 

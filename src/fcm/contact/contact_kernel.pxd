@@ -45,7 +45,15 @@ cdef class ContactKernel:
     cdef readonly double[::1] forces
     cdef readonly double[:, ::1] jacobian
     cdef int evaluate(self, double[::1] x, Py_ssize_t first, ContactParameters contact, bint gradient) noexcept nogil
+    cdef int solve(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
+    cdef void resist(self, ContactParameters contact, double[:, ::1] resistance) noexcept nogil
     cdef void clear(self, double value) noexcept nogil
     cdef void take_waves(self, int direction, int row) noexcept nogil
     cdef void press(self, int row) noexcept nogil
     cdef void rescale(self) noexcept nogil
+
+cdef class CycleMeasures:
+    cdef readonly double greatest_load, greatest_friction, dissipation, slip_path
+    cdef readonly int pieces
+    cdef readonly int[::1] state
+    cdef void bear(self, ContactParameters contact) noexcept nogil

@@ -338,6 +338,15 @@ class ContactKernel:
         """
         return UNKNOWN
 
+    def solve(
+        self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters
+    ) -> cython.int:
+        """Solves the cycle of the motion x[first:], if that costs less without its forces; returns `kind`."""
+        return self.evaluate(x, first, contact, False)
+
+    def resist(self, contact: ContactParameters, resistance: cython.double[:, ::1]) -> None:
+        """Fills the derivatives of the forces by the displacements, in the mean over the present cycle."""
+
     def at(self, x: cython.double[::1], contact: ContactParameters, gradient: bool = True) -> int:
         """Calls `evaluate` from Python."""
         kind: int = self.evaluate(x, 0, contact, gradient)
@@ -405,3 +414,26 @@ class ContactKernel:
                 self.forces[i] *= self.motion.load_scale
             else:
                 self.forces[i] *= self.motion.scale
+
+
+@cython.cclass
+class CycleMeasures:
+    """Forces, energy and states of the cycle that a contact has solved last, in the units of its arguments.
+
+    Attributes
+    ----------
+    greatest_load, greatest_friction
+        Greatest normal force, and magnitude of the friction force [force].
+    dissipation, slip_path
+        Energy that friction takes in a cycle [force length], never negative, and the way of the slider while
+        it slips [length].
+    pieces, state (piece,)
+        The states in their order.
+    """
+
+    def __init__(self, state: cython.int[::1]) -> None:
+        self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0
+        self.pieces, self.state = 0, state
+
+    def bear(self, contact: ContactParameters) -> None:
+        """Computes all attributes of the present cycle."""

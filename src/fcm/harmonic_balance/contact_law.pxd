@@ -1,7 +1,6 @@
 from fcm.contact.closed_form cimport CoefficientLaw
-from fcm.contact.contact_kernel cimport ContactKernel, ContactParameters
-from fcm.contact.periodic.cycle cimport LineCycle
-from fcm.contact.periodic.margins cimport Measures, RegimeMargins
+from fcm.contact.contact_kernel cimport ContactKernel, ContactParameters, CycleMeasures
+from fcm.contact.periodic.margins cimport RegimeMargins
 
 cdef int KINDS
 
@@ -29,11 +28,8 @@ cdef class Law(ContactParameters):
 cdef class KernelLaw(Law):
     cdef public ContactKernel kernel
     cdef public RegimeMargins bounds
+    cdef public CycleMeasures measures
     cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1
-
-cdef class LineLaw(KernelLaw):
-    cdef LineCycle steady
-    cdef Measures measures
 
 cdef class SingleHarmonicLaw(Law):
     cdef public CoefficientLaw coefficients

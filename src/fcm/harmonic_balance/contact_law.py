@@ -6,12 +6,15 @@ alike: the friction along its tangential directions, and n - max(n_0, 0) along i
 out, as it is in equilibrium with the structure at rest.
 
 How many directions there are, which harmonics its forces have, and where they are not smooth is for the law
-to say; nothing else knows. The laws of a contact on a line (`LineLaw`) and in a plane (`PlanarLaw`) are exact
-for a mean and any harmonics. That of a contact on a line with a mean and one harmonic (`SingleHarmonicLaw`)
+to say; nothing else knows. The law of a kernel (`KernelLaw`), on a line or in a plane, is exact for a mean
+and any harmonics. That of a contact on a line with a mean and one harmonic (`SingleHarmonicLaw`)
 is a closed form (section 4 of the paper).
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import cython
 import numpy as np
@@ -19,7 +22,7 @@ from cython.cimports.libc.math import atan2, hypot, sqrt
 
 from fcm.contact.closed_form import CoefficientLaw
 from fcm.contact.periodic.cycle import PeriodicContact
-from fcm.contact.periodic.margins import Margins, Measures, RegimeMargins
+from fcm.contact.periodic.margins import Margins, Measures
 from fcm.harmonic_balance import options
 from fcm.model.scene import Contact
 
@@ -31,19 +34,25 @@ if cython.compiled:
         STUCK,
         ContactKernel,
         ContactParameters,
+        CycleMeasures,
     )
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
-    from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
+    from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS, RegimeMargins
     from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.closed_form import PI
-    from fcm.contact.contact_kernel import CLOSED, MIXED, STUCK, ContactKernel, ContactParameters
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
-    from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
-    from fcm.contact.periodic.motion import TWO_PI
+    from fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        STUCK,
+        ContactKernel,
+        ContactParameters,
+        CycleMeasures,
+    )
+    from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS, RegimeMargins
     from fcm.continuation.problem import NONE
 
+if TYPE_CHECKING:
+    from fcm.contact.plane.cycle import PlanarContact
 
 KINDS = cython.declare(cython.int, 9)  # of margins, at most
 
@@ -137,15 +146,17 @@ class Law(ContactParameters):
 class KernelLaw(Law):
     """A law with the forces of a kernel, exact for a motion of any harmonics.
 
-    The kernel is a workspace that contacts may share; the tangent is its array.
+    The kernel is a workspace that contacts may share, with the margins and the measures of its cycle; the
+    tangent is its array.
     """
 
     def __init__(
-        self, kernel: ContactKernel, directions: cython.int, bounds: RegimeMargins, contact: Contact
+        self, kernel: ContactKernel, bounds: RegimeMargins, measures: CycleMeasures, contact: Contact
     ) -> None:
-        Law.__init__(self, kernel.unknowns, directions, bounds.most, contact)
-        self.kernel, self.bounds = kernel, bounds
+        Law.__init__(self, kernel.unknowns, kernel.motion.directions, bounds.most, contact)
+        self.kernel, self.bounds, self.measures = kernel, bounds, measures
         self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
+        self.state = measures.state
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -193,54 +204,50 @@ class KernelLaw(Law):
         self.angle[:] = self.bounds.angle
         return 0
 
-
-def kind_of(law: Law, i: int, contact: int) -> int:
-    """The kind of the margin i of a contact among those of all contacts; for problems in Python."""
-    return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)
-
-
-@cython.cclass
-class LineLaw(KernelLaw):
-    """The law of a contact on a line."""
-
-    def __init__(self, kernel: PeriodicContact, contact: Contact) -> None:
-        KernelLaw.__init__(self, kernel, 2, Margins(kernel.cycle), contact)
-        self.steady, self.state = kernel.cycle, kernel.cycle.state
-        self.measures: Measures | None = None  # made when it is asked for
+    @cython.ccall
+    @cython.exceptval(-1.0, check=True)
+    def squared_margin(
+        self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t
+    ) -> cython.double:
+        return self.bounds.squared(kind, x, first, self)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def compute_resistance(self) -> cython.int:
-        p: cython.int
-        stick: cython.double = 0.0
-        closed: cython.double = 0.0
-        pushed: cython.double = 0.0
-        for p in range(self.steady.pieces):
-            state: cython.int = self.steady.state[p]
-            length: cython.double = self.steady.length(p) / TWO_PI
-            closed += length if state != SEPARATION else 0.0
-            stick += length if state == STICK else 0.0
-            pushed += length if state == POSITIVE else -length if state == NEGATIVE else 0.0
-        self.resistance[0, 0] = stick * self.k_u if self.mu > 0.0 else 0.0
-        self.resistance[0, 1] = pushed * self.mu * self.k_v
-        self.resistance[1, 1] = closed * self.k_v
+        self.kernel.resist(self, self.resistance)
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        if self.measures is None:
-            self.measures = Measures(self.steady)
-        self.steady.take(x, first, self)
-        self.pieces = self.steady.pieces
-        self.measures.bear(self.k_u)
-        self.contact_loads[0] = max(self.measures.greatest_load, 0.0)
-        self.contact_loads[1], self.contact_loads[2] = (
+        self.kernel.solve(x, first, self)
+        self.measures.bear(self)
+        self.pieces = self.measures.pieces
+        self.contact_loads[0], self.contact_loads[1] = (
+            self.measures.greatest_load,
             self.measures.greatest_friction,
-            self.measures.slip_path,
         )
-        self.contact_loads[3] = self.measures.dissipation
+        self.contact_loads[2], self.contact_loads[3] = self.measures.slip_path, self.measures.dissipation
         return 0
+
+
+def laws_on_a_line(kernel: PeriodicContact, contacts: Iterable[Contact]) -> list[KernelLaw]:
+    """Laws of contacts on a line, which share a kernel."""
+    bounds, measures = Margins(kernel.cycle), Measures(kernel.cycle)
+    return [KernelLaw(kernel, bounds, measures, c) for c in contacts]
+
+
+def laws_in_a_plane(kernel: PlanarContact, contacts: Iterable[Contact]) -> list[KernelLaw]:
+    """Laws of contacts that slide in a plane, which share a kernel."""
+    from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures  # most scenes have none
+
+    bounds, measures = PlanarMargins(kernel.cycle), PlanarMeasures(kernel.cycle)
+    return [KernelLaw(kernel, bounds, measures, c) for c in contacts]
+
+
+def kind_of(law: Law, i: int, contact: int) -> int:
+    """The kind of the margin i of a contact among those of all contacts; for problems in Python."""
+    return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)
 
 
 @cython.cclass

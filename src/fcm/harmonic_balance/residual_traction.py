@@ -21,22 +21,17 @@ On a line t_i is a number and its limits an interval; in a plane it is a vector,
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.contact_kernel import ContactParameters
 from fcm.continuation.corrector import Newton
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.contact_law import Law, LineLaw
+from fcm.harmonic_balance.contact_law import KernelLaw, Law
 from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
-
-if TYPE_CHECKING:
-    from fcm.harmonic_balance.planar_law import PlanarLaw
 
 BoolArray = npt.NDArray[np.bool_]
 _End = tuple[float, float, FloatArray]  # of a stretch of a curve: length, slope of the amplitude, point
@@ -87,7 +82,7 @@ TRACTION = TractionOptions()
 class FixedTractionContact(Law):
     """A contact that always sticks, with a mean friction force (direction,) that is given."""
 
-    def __init__(self, contact: Contact, law: LineLaw | PlanarLaw) -> None:
+    def __init__(self, contact: Contact, law: KernelLaw) -> None:
         super().__init__(law.width, law.directions, law.margins, contact)
         self.kernel, self.mean = law.kernel, np.zeros(law.directions - 1)
         springs = np.append(np.full(law.directions - 1, law.k_u), law.k_v)

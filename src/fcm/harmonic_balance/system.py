@@ -16,7 +16,7 @@ from fcm.contact.closed_form import ClosedForm, CoefficientLaw
 from fcm.contact.kernels import periodic_contact, planar_contact
 from fcm.continuation.step_control import Stepper
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.contact_law import Law, LineLaw, SingleHarmonicLaw
+from fcm.harmonic_balance.contact_law import Law, SingleHarmonicLaw, laws_in_a_plane, laws_on_a_line
 from fcm.harmonic_balance.displacement import Displacements, TravellingDisplacements
 from fcm.harmonic_balance.modal_condensation import (
     CONDENSATION,
@@ -277,13 +277,9 @@ class System(Frozen):
         """Contact laws with the exact forces of a motion with other harmonics."""
         found: list[Law] = []
         if self.scene.planar:  # one on a line is one in whose second direction nothing moves
-            from fcm.harmonic_balance.planar_law import PlanarLaw  # most scenes have no contacts in a plane
-
-            in_plane = planar_contact(harmonics, outputs)
-            found += [PlanarLaw(in_plane, c) for c in self.scene.contacts]
+            found += laws_in_a_plane(planar_contact(harmonics, outputs), self.scene.contacts)
         else:
-            kernel = periodic_contact(harmonics, outputs)
-            found += [LineLaw(kernel, c) for c in self.scene.contacts]
+            found += laws_on_a_line(periodic_contact(harmonics, outputs), self.scene.contacts)
         directions = self.scene.directions_of_contact
         for i, c in enumerate(self.scene.contacts):
             if c.law is not None:

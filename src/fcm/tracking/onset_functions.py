@@ -25,8 +25,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.planar_law import PlanarLaw
+from fcm.contact.plane.margins import PlanarMargins
+from fcm.harmonic_balance.contact_law import KernelLaw, Law
 from fcm.model.scene import FloatArray
 from fcm.structure.layout import layout_of
 from fcm.tracking.options import TRACKING, TrackingOptions
@@ -50,12 +50,19 @@ class Onset(NamedTuple):
     by_number: FloatArray
 
 
+def _discs(law: Law) -> PlanarMargins | None:
+    """The discs that hold the slider of a contact in a plane; None on a line."""
+    bounds = law.bounds if isinstance(law, KernelLaw) else None
+    return bounds if isinstance(bounds, PlanarMargins) else None
+
+
 def onset(
     law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> Onset:
     """One of the onset functions of a contact at its unknowns, see `kinds_of`."""
-    if isinstance(law, PlanarLaw) and kind in ("slip", START):
-        return _in_plane(law, x, kind, harmonics)
+    discs = _discs(law)
+    if discs is not None and kind in ("slip", START):
+        return _in_plane(law, discs, x, kind, harmonics)
     load = _polynomial(x, law, NORMAL) * law.k_v
     load[0] += law.n_0
     if kind == "slip" or kind in LIMITS:
@@ -93,7 +100,7 @@ def values(
     """
     if not laws:
         return np.zeros(0)
-    if isinstance(laws[0], PlanarLaw):
+    if _discs(laws[0]) is not None:
         return np.concatenate([_values_in_plane(law, x, i, harmonics, options) for i, law in enumerate(laws)])
     blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
     numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
@@ -141,14 +148,14 @@ def _values_in_plane(
     return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
 
 
-def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+def _in_plane(law: Law, discs: PlanarMargins, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
     """The onset function of the discs that hold a slider in a plane.
 
     Those that hold the place which all miss least do so with weights by which their directions vanish, and
     with the same weights the distances change; the place may move, and makes no difference.
     """
-    grown = law.discs.overlap(np.ascontiguousarray(x), law, kind == START)
-    resting, motion = law.discs.resting, law.discs.motion
+    grown = discs.overlap(np.ascontiguousarray(x), law, kind == START)
+    resting, motion = discs.resting, discs.motion
     if kind == START:
         angles, place = np.array([resting.angle]), -np.array([motion.mean_x, motion.mean_y])
     else:
@@ -184,7 +191,7 @@ def _weights(e: FloatArray) -> FloatArray:
 
 def kinds_of(law: Law) -> tuple[str, ...]:
     """The kinds of onset functions that a contact can have."""
-    if isinstance(law, PlanarLaw):
+    if _discs(law) is not None:
         return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
 

@@ -54,5 +54,7 @@ cdef class PeriodicContact(ContactKernel):
     cdef readonly LineCycle cycle
     cdef readonly LineIntegrals integrals
     cdef readonly LineDerivatives derivatives
+    cdef int solve(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
+    cdef void resist(self, ContactParameters contact, double[:, ::1] resistance) noexcept nogil
     cdef void stick(self) noexcept nogil
     cdef void slip(self) noexcept nogil

@@ -640,6 +640,26 @@ class PeriodicContact(ContactKernel):
                 self.derivatives.rescale(contact)
         return self.kind
 
+    def solve(
+        self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters
+    ) -> cython.int:
+        return self.cycle.take(x, first, contact)
+
+    def resist(self, contact: ContactParameters, resistance: cython.double[:, ::1]) -> None:
+        p: cython.int
+        stick: float = 0.0
+        closed: float = 0.0
+        pushed: float = 0.0
+        for p in range(self.cycle.pieces):
+            state: cython.int = self.cycle.state[p]
+            length: float = self.cycle.length(p) / TWO_PI
+            closed += length if state != SEPARATION else 0.0
+            stick += length if state == STICK else 0.0
+            pushed += length if state == POSITIVE else -length if state == NEGATIVE else 0.0
+        resistance[0, 0] = stick * contact.k_u if contact.mu > 0.0 else 0.0
+        resistance[0, 1] = pushed * contact.mu * contact.k_v
+        resistance[1, 1] = closed * contact.k_v
+
     def stick(self) -> None:
         """Sets the forces of a sticking contact.
 

@@ -1,4 +1,4 @@
-from fcm.contact.contact_kernel cimport ContactParameters
+from fcm.contact.contact_kernel cimport ContactParameters, CycleMeasures
 from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport ZeroCrossings, LineMotion
 
@@ -13,6 +13,7 @@ cdef class RegimeMargins:
     cdef readonly int[::1] kind
     cdef void find(self, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void note(self, int kind, double angle, double value) noexcept nogil
+    cdef double squared(self, int kind, double[::1] x, Py_ssize_t first, ContactParameters contact) noexcept nogil
     cdef void loads(self, int behaviour) noexcept nogil
 
 cdef class Margins(RegimeMargins):
@@ -22,15 +23,14 @@ cdef class Margins(RegimeMargins):
 
 cdef double greatest_load(ZeroCrossings crossings) noexcept nogil
 
-cdef class Measures:
+cdef class Measures(CycleMeasures):
     cdef readonly LineMotion motion
     cdef readonly LineCycle cycle
     cdef readonly ZeroCrossings crossings
-    cdef readonly double least_load, greatest_load, overlap, greatest_friction, dissipation, slip_path
+    cdef readonly double least_load, overlap
     cdef double piece_energy, piece_path
     cdef readonly double[::1] value
     cdef double[::1] points, weights, turn_cos, turn_sin
-    cdef void bear(self, double k_u) noexcept nogil
     cdef void extremes(self) noexcept nogil
     cdef void friction(self) noexcept nogil
     cdef int piece(self, double theta) noexcept nogil

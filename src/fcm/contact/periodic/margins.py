@@ -23,6 +23,7 @@ from cython.cimports.libc.math import cos, fabs, sin
 from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.closed_form import NAN
     from cython.cimports.fcm.contact.contact_kernel import (
         CLOSED,
         MIXED,
@@ -30,6 +31,7 @@ if cython.compiled:
         STUCK,
         UNKNOWN,
         ContactParameters,
+        CycleMeasures,
     )
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, LineCycle
     from cython.cimports.fcm.contact.periodic.motion import (
@@ -49,7 +51,16 @@ if cython.compiled:
         ZeroCrossings,
     )
 else:
-    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, ContactParameters
+    from fcm.contact.closed_form import NAN
+    from fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        OPEN,
+        STUCK,
+        UNKNOWN,
+        ContactParameters,
+        CycleMeasures,
+    )
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, LineCycle
     from fcm.contact.periodic.motion import (
         BOTTOM,
@@ -102,6 +113,13 @@ class RegimeMargins:
         if self.count < self.most:
             self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
             self.count += 1
+
+    def squared(
+        self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters
+    ) -> float:
+        """The smooth function of the motion whose root the margin of a kind is; NaN if that is none."""
+        none: float = NAN
+        return none
 
     def loads(self, behaviour: cython.int) -> None:
         """Appends the margins of closing and opening, from the extremes of the load, which is sampled.
@@ -204,32 +222,25 @@ def greatest_load(crossings: ZeroCrossings) -> float:
 
 
 @cython.cclass
-class Measures:
-    """Forces and energy of the cycle that a contact has solved last, in the units of its
-    arguments.
+class Measures(CycleMeasures):
+    """Measures of the cycle of a contact on a line.
 
     Attributes
     ----------
     least_load, greatest_load
-        Extremes of n_0 + k_v v [force]: the first is positive where the contact never opens, the second
-        negative where it never closes.
+        Extremes of n_0 + k_v v [force]: the first is positive where the contact never opens, the second, by
+        `measure`, negative where it never closes.
     overlap
         Greatest lower limit less least upper limit of k_u w [force]: negative where the contact never slips,
         equation (25); of a contact that opens it is positive.
-    greatest_friction
-        Greatest magnitude of the friction force [force].
-    dissipation
-        Energy that friction takes in a cycle [force length], never negative.
-    slip_path
-        Way of the slider while it slips, in a cycle [length].
     """
 
     def __init__(self, cycle: LineCycle) -> None:
+        CycleMeasures.__init__(self, cycle.state)
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = ZeroCrossings(cycle.motion)
         self.value = np.zeros(self.crossings.capacity)
-        self.least_load = self.greatest_load = self.overlap = self.greatest_friction = 0.0
-        self.dissipation = self.slip_path = self.piece_energy = self.piece_path = 0.0
+        self.least_load = self.overlap = self.piece_energy = self.piece_path = 0.0
         self.points, self.weights = _GAUSS
         self.turn_cos, self.turn_sin = np.zeros((2, POINTS))
 
@@ -240,13 +251,14 @@ class Measures:
         self.extremes()
         self.slips(k_u)
 
-    def bear(self, k_u: float) -> None:
-        """Computes only greatest load and friction, energy and slip path, which costs less than `measure`."""
+    def bear(self, contact: ContactParameters) -> None:
+        """Computes what there is of any contact, which costs less than `measure`."""
+        self.pieces = self.cycle.pieces
         self.motion.sample()
         self.friction()
         # of the extremes that `friction` has found
-        self.greatest_load = greatest_load(self.crossings) * self.motion.load_scale
-        self.slips(k_u)
+        self.greatest_load = max(greatest_load(self.crossings) * self.motion.load_scale, 0.0)
+        self.slips(contact.k_u)
 
     def extremes(self) -> None:
         """Computes the extremes of the load and of both limits, as if the contact never opened."""

@@ -1,4 +1,4 @@
-from fcm.contact.contact_kernel cimport ContactKernel
+from fcm.contact.contact_kernel cimport ContactKernel, ContactParameters
 from fcm.contact.periodic.motion cimport ZeroCrossings
 from fcm.contact.plane.integrals cimport PlanarDerivatives, PlanarIntegrals
 from fcm.contact.plane.panel cimport PlaneMotion
@@ -28,6 +28,7 @@ cdef class PlanarContact(ContactKernel):
     cdef readonly PlanarCycle cycle
     cdef readonly PlanarIntegrals integrals
     cdef readonly PlanarDerivatives derivatives
+    cdef void resist(self, ContactParameters contact, double[:, ::1] resistance) noexcept nogil
     cdef void stick(self) noexcept nogil
     cdef void slip(self) noexcept nogil
     cdef void stick_gradient(self, double s_x, double s_y) noexcept nogil

@@ -379,6 +379,25 @@ class PlanarContact(ContactKernel):
             self.derivatives.fill(nothing)
         return self.kind
 
+    def resist(self, contact: ContactParameters, resistance: cython.double[:, ::1]) -> None:
+        """That along a direction is k_u in stick, and mu k_v, by the normal displacement, in slip."""
+        rubs: cython.bint = contact.mu * contact.k_u > 0.0
+        stick: float = 0.0
+        closed: float = 0.0
+        x: float = 0.0
+        y: float = 0.0
+        if self.kind == STUCK:
+            stick = closed = 1.0
+        elif self.kind == MIXED:
+            closed = self.integrals.cos_sum[CONTACT, 0] / TWO_PI
+            if rubs:
+                stick = self.integrals.cos_sum[STICKS, 0] / TWO_PI
+                x = self.integrals.cos_sum[SLIPS_X, 0] / TWO_PI
+                y = self.integrals.cos_sum[SLIPS_Y, 0] / TWO_PI
+        resistance[0, 0] = resistance[1, 1] = stick * contact.k_u if rubs else 0.0
+        resistance[0, 2], resistance[1, 2] = x * contact.mu * contact.k_v, y * contact.mu * contact.k_v
+        resistance[2, 2] = closed * contact.k_v
+
     def stick(self) -> None:
         """Sets the forces of a contact whose slider rests."""
         self.forces[0], self.forces[1] = -self.cycle.slider.w_x, -self.cycle.slider.w_y

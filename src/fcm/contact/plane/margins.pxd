@@ -1,4 +1,4 @@
-from fcm.contact.contact_kernel cimport ContactParameters
+from fcm.contact.contact_kernel cimport ContactParameters, CycleMeasures
 from fcm.contact.periodic.margins cimport RegimeMargins
 from fcm.contact.periodic.motion cimport ZeroCrossings
 from fcm.contact.plane.cycle cimport PlanarCycle
@@ -10,7 +10,7 @@ cdef class PlanarMargins(RegimeMargins):
     cdef readonly PlaneMotion motion
     cdef readonly PlanarCycle cycle
     cdef readonly Resting resting
-    cdef void hold(self, double[::1] x, ContactParameters contact, bint start) noexcept nogil
+    cdef void hold(self, double[::1] x, Py_ssize_t first, ContactParameters contact, bint start) noexcept nogil
     cdef void rests(self, double s_x, double s_y) noexcept nogil
     cdef double other(self) noexcept nogil
     cdef double weaker(self, double s_x, double s_y) noexcept nogil
@@ -18,16 +18,12 @@ cdef class PlanarMargins(RegimeMargins):
     cdef void within(self, int p, double end) noexcept nogil
     cdef double outside(self, int p, double theta) noexcept nogil
 
-cdef class PlanarMeasures:
+cdef class PlanarMeasures(CycleMeasures):
     cdef double invisible, steps, growth
     cdef readonly PlaneMotion motion
     cdef readonly PlanarCycle cycle
     cdef readonly ZeroCrossings crossings
-    cdef readonly double greatest_load, greatest_friction, dissipation, slip_path
-    cdef readonly int pieces
-    cdef readonly int[::1] state
     cdef int[::1] piece
-    cdef void bear(self, ContactParameters contact) noexcept nogil
     cdef void loads(self) noexcept nogil
     cdef void friction(self) noexcept nogil
     cdef double top(self, int p, double low, double high, double before) noexcept nogil

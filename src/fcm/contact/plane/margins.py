@@ -20,6 +20,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.closed_form import NAN
     from cython.cimports.fcm.contact.contact_kernel import (
         CLOSED,
         MIXED,
@@ -28,6 +29,7 @@ if cython.compiled:
         UNKNOWN,
         UNSOLVED,
         ContactParameters,
+        CycleMeasures,
     )
     from cython.cimports.fcm.contact.periodic.cycle import join_states
     from cython.cimports.fcm.contact.periodic.margins import (
@@ -43,7 +45,17 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.resting import FAR
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
-    from fcm.contact.contact_kernel import CLOSED, MIXED, OPEN, STUCK, UNKNOWN, UNSOLVED, ContactParameters
+    from fcm.contact.closed_form import NAN
+    from fcm.contact.contact_kernel import (
+        CLOSED,
+        MIXED,
+        OPEN,
+        STUCK,
+        UNKNOWN,
+        UNSOLVED,
+        ContactParameters,
+        CycleMeasures,
+    )
     from fcm.contact.periodic.cycle import join_states
     from fcm.contact.periodic.margins import GREATEST_LOAD, PAST, SLIPS, RegimeMargins, greatest_load
     from fcm.contact.periodic.motion import LOAD_RATE, ZeroCrossings
@@ -98,14 +110,30 @@ class PlanarMargins(RegimeMargins):
 
         With `start` the discs must contain the place where the slider began.
         """
-        self.hold(x, contact, start)
+        self.hold(x, 0, contact, start)
         reach: float = self.resting.beyond if start else self.resting.overlap
         grown: float = reach * self.motion.scale
         return grown
 
-    def hold(self, x: cython.double[::1], contact: ContactParameters, start: cython.bint) -> None:
+    def squared(
+        self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters
+    ) -> float:
+        grown: float = NAN
+        if kind == SLIPS:
+            self.hold(x, first, contact, False)
+            if self.resting.brief():
+                grown = self.resting.overlap * self.motion.scale
+        return grown
+
+    def hold(
+        self,
+        x: cython.double[::1],
+        first: cython.Py_ssize_t,
+        contact: ContactParameters,
+        start: cython.bint,
+    ) -> None:
         """Lets `resting` examine a motion."""
-        self.motion.load(x, 0, contact)
+        self.motion.load(x, first, contact)
         self.resting.sampled = False
         if start:
             self.resting.sample()
@@ -209,31 +237,18 @@ class PlanarMargins(RegimeMargins):
 
 
 @cython.cclass
-class PlanarMeasures:
-    """Forces, energy and states of the cycle that a contact has solved last, in the units of its arguments.
-
-    Attributes
-    ----------
-    greatest_load, greatest_friction
-        Greatest normal force, and magnitude of the friction force [force].
-    dissipation, slip_path
-        Energy that friction takes in a cycle [force length], and the way of the slider [length].
-    pieces, state (piece,)
-        The states in their order, from the first stick if there is one: STICK, SLIP, SEPARATION.
-    """
+class PlanarMeasures(CycleMeasures):
+    """Measures of the cycle of a contact in its plane; states begin with the first stick if there is one."""
 
     def __init__(self, cycle: PlanarCycle) -> None:
+        CycleMeasures.__init__(self, np.zeros(cycle.slider.capacity + 1, dtype=np.intc))
         given = cycle.motion.options
         self.invisible, self.steps = given.min_state_length, given.samples_per_radian
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = ZeroCrossings(cycle.motion.normal)
-        self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0
-        self.growth = 0.0
-        self.pieces, most = 0, cycle.slider.capacity + 1
-        self.state, self.piece = np.zeros(most, dtype=np.intc), np.zeros(most, dtype=np.intc)
+        self.growth, self.piece = 0.0, np.zeros(cycle.slider.capacity + 1, dtype=np.intc)
 
     def bear(self, contact: ContactParameters) -> None:
-        """Computes all attributes of the present cycle."""
         rubs: cython.bint = contact.mu * contact.k_u > 0.0
         length: float = self.motion.scale / contact.k_u if contact.k_u > 0.0 else 0.0
         self.greatest_friction = self.dissipation = self.slip_path = 0.0
