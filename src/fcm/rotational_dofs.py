@@ -18,10 +18,10 @@ def is_rotation(dof: str) -> bool:
     return _ROTATION.fullmatch(dof) is not None
 
 
-def unit_of(dof: str, length: str) -> str:
+def dof_unit(dof: str, length: str) -> str:
     """The unit of a displacement where lengths have one: a rotation is in radians.
 
-    >>> unit_of("40z", "mm"), unit_of("40rz", "mm"), unit_of("40rz", "")
+    >>> dof_unit("40z", "mm"), dof_unit("40rz", "mm"), dof_unit("40rz", "")
     ('mm', 'rad', '')
     """
     return "rad" if length and is_rotation(dof) else length

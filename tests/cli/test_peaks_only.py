@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fcm.response import trace
-from fcm.results.options import FileOptions
+from fcm.results.options import NetcdfOptions
 from fcm.results.output import write_netcdf
 from fcm.scene import load_scene
 
@@ -168,7 +168,7 @@ def test_some_curves_at_a_time_make_the_same_file(scene, tmp_path):
     scene.write_text(scene.read_text() + SWEEP)
     response = trace(load_scene(scene), harmonics=2)
     write_netcdf(response, tmp_path / "whole.nc")
-    write_netcdf(response, tmp_path / "parts.nc", FileOptions(chunk=100, contiguous=0))
+    write_netcdf(response, tmp_path / "parts.nc", NetcdfOptions(chunk=100, contiguous=0))
     with netCDF4.Dataset(tmp_path / "whole.nc") as whole, netCDF4.Dataset(tmp_path / "parts.nc") as parts:
         assert parts["amplitude"].chunking()[0] == 1 and whole["amplitude"].chunking() == "contiguous"
         for name, variable in whole.variables.items():

@@ -16,7 +16,7 @@ from fcm.scene import scene_from_dict
 from fcm.scene.draft import number_of
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
-from fcm.tracking.parameter_line import VariedBalance, along
+from fcm.tracking.parameter_line import VariedBalance, line_along
 
 
 def stiffer(scene, factor):
@@ -89,7 +89,7 @@ def with_seven_modes():
 
 def test_multipliers_along_a_varied_stiffness_are_those_of_each_scene():
     scene = with_seven_modes()
-    varied = VariedBalance(System(scene, (1, 3)), along(number_of(scene, "contact.c.k_u")))
+    varied = VariedBalance(System(scene, (1, 3)), line_along(number_of(scene, "contact.c.k_u")))
     for k_u in (0.5, 2.0, 3.5, 6.5):
         varied.set_parameter(k_u)
         alone = System(replace(scene, contacts=(replace(scene.contacts[0], k_u=k_u),)), (1, 3))

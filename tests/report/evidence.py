@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from fcm.cli.messages import Messages, pass_messages
-from fcm.compare.tables import Rows, every
+from fcm.compare.tables import TextTable, every
 from fcm.files import replacing
 
 from . import extremes_table, others, published, recorded
@@ -105,7 +105,7 @@ def _scene(name: str, summary: dict[str, Any]) -> Section:
     )
 
 
-def _table(rows: Rows) -> Table:
+def _table(rows: TextTable) -> Table:
     return Table(tuple(rows[0]), [tuple(row) for row in rows[1:]])
 
 

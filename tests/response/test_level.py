@@ -22,7 +22,7 @@ from fcm.run import Execution
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.shooting import periodic
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 
 from ..harmonic_balance.scenes import isola, isola_stuck, up_to
 from ..harmonic_balance.truth import state
@@ -203,7 +203,7 @@ def test_responses_of_a_search_over_a_preload_share_curves_of_levels(monkeypatch
     monkeypatch.setattr(force_level, "level_curve", counted)
     clear()
     scene = load_scene("yang1998-n5")
-    system, line = System(scene, tuple(range(1, 8))), along(number_of(scene, "contact.shroud.n_0"))
+    system, line = System(scene, tuple(range(1, 8))), line_along(number_of(scene, "contact.shroud.n_0"))
     for n_0 in (4.0, 8.0, 6.0):
         assert solutions(system.with_scene(line.scene(scene, n_0)), 1.22).solutions
     assert len(followed) == 2 and followed[0][0] < followed[1][0] and followed[1][1] < followed[0][1]

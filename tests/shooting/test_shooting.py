@@ -9,7 +9,7 @@ import pytest
 
 from fcm.scene import Contact, Force, Modal, Scene
 from fcm.shooting import Shooting, periodic
-from fcm.shooting.period_derivative import along
+from fcm.shooting.period_derivative import displacement_rates
 from fcm.shooting.residual import Shot
 from fcm.time_domain import simulate
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
@@ -139,6 +139,6 @@ def test_the_change_along_a_direction_is_the_difference_of_two_motions(name, ome
         Shot(EquationsOfMotion(scene, omega + e * rate), shot.x + e * way).cycle.values(rows, times[order])
         for e in (-h, h)
     ]
-    found = along(shot.system, shot.segments, places, way, rate)[order]
+    found = displacement_rates(shot.system, shot.segments, places, way, rate)[order]
     expected = (ends[1] - ends[0]) / (2.0 * h)
     assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())

@@ -16,7 +16,7 @@ from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import extremes_by, measure
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.integrator import first_descent_of
-from fcm.time_domain.measures import Rows, Scan
+from fcm.time_domain.measures import Scan, SparseRows
 from fcm.time_domain.options import FlowOptions, TimeOptions
 
 from .cases import SCENES, one_mode, two_contacts, yang
@@ -165,7 +165,7 @@ def test_the_least_of_a_row_is_where_it_is_said_to_be():
     assert isinstance(cycle, Cycle) and cycle.states == ("E",)
     row = np.zeros((1, cycle.system.size - 2))
     row[0, cycle.system.f] = -1.0
-    scan = Scan(cycle.system.flows, Rows(row))
+    scan = Scan(cycle.system.flows, SparseRows(row))
     (found,), (highest,) = extremes_by(scan, cycle.system, cycle.segments)
     step = cycle.duration / cycle.segments.length[0]
     assert found.segment == 0 and len(cycle.segments) == 1

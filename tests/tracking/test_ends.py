@@ -15,7 +15,7 @@ from fcm.tracking import nonsmooth_continuation
 from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import TRACKING
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.tracked_point import Ending, TrackingSetup
 
 SPAN, RANGE = (0.5, 0.7), (1.45, 1.65)  # in which the peak of x0 turns back where steps are short
@@ -36,7 +36,9 @@ def followed(scene, what, span):
 def levels(scene, span, starts, **more):
     """All curves over the level, from so many values of it, with more options of them."""
     options = replace(TRACKING, curves=replace(TRACKING.curves, start_values=starts, **more))
-    return TrackingSetup(System(scene, (1, 2, 3)), along(number_of(scene, "level")), span, options=options)
+    return TrackingSetup(
+        System(scene, (1, 2, 3)), line_along(number_of(scene, "level")), span, options=options
+    )
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +87,7 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
     narrow = replace(scene, frequency_range=(1.45, 1.56))
     pieces = TRACKING.pieces
     few = replace(TRACKING, pieces=replace(pieces, step=replace(pieces.step, max_steps=25)))
-    setup = TrackingSetup(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
+    setup = TrackingSetup(System(narrow, (1, 2, 3)), line_along(number_of(scene, "level")), span, options=few)
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
         problem = setup.tracked(one.condition)

@@ -22,7 +22,7 @@ from fcm.scene.draft import number_of
 from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import SearchOptions
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.tracked_point import TrackingSetup
 
 from ..harmonic_balance.scenes import gap5
@@ -50,7 +50,7 @@ def frequencies(scene, key, value, mark):
 
 def grid(scene, what, key, span):
     """Values of the number at which curves were followed through, and their frequencies there."""
-    system, line = System(scene, (1,)), along(number_of(scene, key))
+    system, line = System(scene, (1,)), line_along(number_of(scene, key))
     found = tracked_curves(TrackingSetup(system, line, span), conditions_of(scene, what))
     assert not found.problems and all(curve.whole for curve in found.curves)
     for value in np.linspace(*span, 13)[::3]:
@@ -184,7 +184,7 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     """It is followed from a fold of the track, and is one of the branches of an ordinary run."""
     scene = gap5()
     gap, value = number_of(scene, "contact.c.gap"), 3.5
-    setup = TrackingSetup(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
+    setup = TrackingSetup(System(scene, (1, 3)), line_along(gap), (3.0, 4.0), (value,), 0.05)
     curves = tracked_curves(setup, [Condition(Kind.FOLD)], (value,)).curves
     turns = [(kind, curve.s[i]) for curve in curves for i, kind in curve.turns()]
     assert [kind for kind, _ in turns] == ["isola", "isola"]

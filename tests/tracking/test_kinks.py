@@ -15,7 +15,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.kinks import Circle
 from fcm.tracking.nonsmooth_continuation import SmoothPieces, land
 from fcm.tracking.options import TRACKING
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.start_points import special_points
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
@@ -27,7 +27,7 @@ PEAK = Condition(Kind.PEAK, 0)
 @pytest.fixture(scope="module")
 def setup():
     scene = load_scene("yang1998-n5")
-    return TrackingSetup(System(scene, (1,)), along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
+    return TrackingSetup(System(scene, (1,)), line_along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +99,7 @@ def test_a_peak_is_not_followed_along_a_corner_at_which_its_condition_jumps():
     """A contact of the blade begins another slip within its cycle there: no onset that is tracked."""
     blade = load_scene("blade")
     number = number_of(blade, "contact.*.n_0")
-    setup = TrackingSetup(System(number.freed(blade), (1, 2, 3)), along(number), (9.7, 9.8), step=0.05)
+    setup = TrackingSetup(System(number.freed(blade), (1, 2, 3)), line_along(number), (9.7, 9.8), step=0.05)
     condition = Condition(Kind.PEAK, blade.modal.dofs.index("40y"))
     here = setup.system.with_scene(setup.line.scene(setup.system.scene, 9.8))
     starts = [z for _, z in special_points(here, [condition]).points if 2240.0 < z[-1] < 2245.0]

@@ -13,7 +13,7 @@ from fcm.scene.load import scene_from_dict
 from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import TRACKING
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.tracked_point import TrackingSetup
 
 
@@ -37,7 +37,7 @@ def scene():
 
 def followed(scene, key, span, dof):
     options = replace(TRACKING, curves=replace(TRACKING.curves, start_values=3))
-    setup = TrackingSetup(System(scene, (1,)), along(number_of(scene, key)), span, options=options)
+    setup = TrackingSetup(System(scene, (1,)), line_along(number_of(scene, key)), span, options=options)
     return tracked_curves(setup, [Condition(Kind.PEAK, dof)]).curves
 
 

@@ -30,7 +30,7 @@ from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.options import TRACKING
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.peak_envelope import EnvelopeMinimum, PieceHeight
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
@@ -178,7 +178,7 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
 
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     """Twice the forces with twice the preload is twice the motion: levels are 5 / n_0."""
-    system, line = System(scene, (1,)), along(number_of(scene, "level"))
+    system, line = System(scene, (1,)), line_along(number_of(scene, "level"))
     levels = tracked_curves(TrackingSetup(system, line, (0.55, 2.5)), [Condition(Kind.FOLD)]).curves
     assert all(curve.whole for curve in levels)
     turns = np.sort([5.0 / curve.s[i] for curve in levels for i, _ in curve.turns()])

@@ -9,7 +9,7 @@ import fcm
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.scene.draft import number_of
-from fcm.tracking.parameter_line import ParameterLine, VariedBalance, along
+from fcm.tracking.parameter_line import ParameterLine, VariedBalance, line_along
 
 Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
 STEP = 1e-5
@@ -27,7 +27,7 @@ def residual(varied, s):
 )
 def test_rates_are_those_where_the_number_is(key, s):
     system = System(fcm.load_scene("yang1998-n5"))
-    varied = VariedBalance(system, along(number_of(system.scene, key)))
+    varied = VariedBalance(system, line_along(number_of(system.scene, key)))
     difference = (residual(varied, s + STEP) - residual(varied, s - STEP)) / (2.0 * STEP)
     residual(varied, s)
     assert np.abs(difference).max() > 0.01
@@ -47,7 +47,10 @@ def test_rates_are_those_where_the_number_is(key, s):
 def test_a_balance_whose_number_moved_is_that_of_the_scene_with_it(key, s):
     scene = fcm.load_scene("yang1998-n5")
     number = number_of(scene, key)
-    varied, there = VariedBalance(System(scene), along(number)), System(number.put(scene, s)).new_balance()
+    varied, there = (
+        VariedBalance(System(scene), line_along(number)),
+        System(number.put(scene, s)).new_balance(),
+    )
     residual(varied, 0.9)
     there.evaluate(Z)
     assert residual(varied, s) == pytest.approx(np.array(there.residual), rel=1e-14, abs=1e-15)

@@ -14,7 +14,7 @@ from fcm.scene.load import scene_from_dict
 from fcm.tracking.curve import both_ways
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.nonsmooth_continuation import land
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.start_points import special_points
 from fcm.tracking.tracked_point import Ending, TrackingSetup
 
@@ -44,7 +44,7 @@ def two_masses(detuning, k_u, damping, n_0=10.0):
 def test_the_peak_is_followed_to_where_the_contact_slips(values, dof):
     """It was followed back to where it came from, and lost."""
     scene, condition = two_masses(*values), Condition(Kind.PEAK, dof)
-    setup = TrackingSetup(System(scene, (1,)), along(number_of(scene, KEY)), SPAN, (), peaks_only=True)
+    setup = TrackingSetup(System(scene, (1,)), line_along(number_of(scene, KEY)), SPAN, (), peaks_only=True)
     here = setup.system.with_scene(setup.line.scene(scene, SPAN[1]))
     points = [z for _, z in special_points(here, [condition]).points]
     heights = [land(setup, condition, np.append(z, SPAN[1])) for z in points]

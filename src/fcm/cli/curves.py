@@ -28,7 +28,7 @@ from fcm.cli.columns import (
 )
 from fcm.cli.jump_table import is_seen, jump_table, resolution_of, stable_table, unknown_stability_table
 from fcm.cli.limits import SENTENCES
-from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
+from fcm.rotational_dofs import MOST_DOFS, dof_unit, greatest_first, is_rotation
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
@@ -422,7 +422,7 @@ def _which_are_shown(summary: Mapping[str, Any], dofs: list[str]) -> str:
 
 
 def _with_unit(dof: str, length: str) -> str:
-    unit = unit_of(dof, length)
+    unit = dof_unit(dof, length)
     return f"{dof} [{unit}]" if unit else dof
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fcm.cli.respond_options import Asked
     from fcm.mesh import Mesh
     from fcm.model.scene import Scene
-    from fcm.results.motions import Motion
+    from fcm.results.motions import ResponseMotion
     from fcm.results.result import Response
 
 UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
@@ -105,7 +105,7 @@ class Exporting:
     scene: Scene
     asked: Asked
     mesh: Mesh | None
-    motions: Sequence[Motion] = ()
+    motions: Sequence[ResponseMotion] = ()
 
     @property
     def files(self) -> list[tuple[Path, Callable[[Response, Path], None]]]:
@@ -116,7 +116,7 @@ class Exporting:
     def take(self, response: Response, scene: Scene) -> None:
         """The motions of a response, of a scene at the degrees of freedom in use."""
         from fcm.export import motions_of
-        from fcm.results.motions import Motions
+        from fcm.results.motions import ResponseMotions
 
         if response.tracking is not None and response.tracking.optima:
             from fcm.response.optimum import scenes_at
@@ -126,7 +126,7 @@ class Exporting:
             self.scene = replace(self.scene, curves=scenes_at(self.scene, optima))
         self.motions = motions_of(response, scene, self.asked.motion_at)
         forces = self.asked.contact_forces is not None
-        response.motions = Motions(tuple(self.motions), forces, self.asked.modal_amplitudes)
+        response.motions = ResponseMotions(tuple(self.motions), forces, self.asked.modal_amplitudes)
 
     def _forces(self, response: Response, path: Path) -> None:
         from fcm.export.forces_csv import write_forces
@@ -162,7 +162,7 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
     """
     if asked.export is None and asked.contact_forces is None and not asked.modal_amplitudes:
         return None
-    from fcm.export.rows import ExportError, Rows, check_library, check_mesh, check_nodes
+    from fcm.export.rows import ExportError, StructureRows, check_library, check_mesh, check_nodes
 
     if scene.fit is not None:
         raise ExportError(
@@ -178,7 +178,7 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
     mesh = None
     if asked.mesh is not None:
         mesh = _mesh(asked.mesh)
-        for note in check_mesh(Rows.of(scene), mesh, str(asked.mesh)):
+        for note in check_mesh(StructureRows.of(scene), mesh, str(asked.mesh)):
             messages.info(note)
         if not mesh.cells and asked.export is not None and asked.export.suffix.lower() == ".vtu":
             messages.info(
@@ -187,7 +187,7 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
             )
     if asked.export is not None:
         if asked.export.suffix.lower() in UNIVERSAL:
-            check_nodes(Rows.of(scene))
+            check_nodes(StructureRows.of(scene))
         check_library(asked.export.suffix.lower())
     return Exporting(messages, scene, asked, mesh)
 

@@ -16,7 +16,7 @@ from fcm.cli.drawing import not_at, shorten
 from fcm.cli.limits import SENTENCES
 from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
 from fcm.frozen import Frozen
-from fcm.rotational_dofs import unit_of as dof_unit
+from fcm.rotational_dofs import dof_unit
 
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop

@@ -23,7 +23,7 @@ from fcm.cli.columns import (
     swept,
 )
 from fcm.cli.limits import SENTENCES
-from fcm.rotational_dofs import greatest_first, unit_of
+from fcm.rotational_dofs import dof_unit, greatest_first
 
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by harmonic balance",
@@ -171,7 +171,7 @@ def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> st
     ]
     if not rows:
         return ""
-    each = [f"{dof} [{own}]" if (own := unit_of(dof, length)) else dof for dof in dofs]
+    each = [f"{dof} [{own}]" if (own := dof_unit(dof, length)) else dof for dof in dofs]
     header = [*names, "level", f"at {unit}", "damping", "modal amplitude", *each]
     peakless = any(row[len(names) + 1] == "-" for row in rows)
     return (
@@ -202,5 +202,5 @@ def _of_dofs(summary: Mapping[str, Any]) -> str:
     if first is None:
         return ""
     moved, length = first["displacement"], summary.get("units", {}).get("length", "")
-    each = (f"{dof} {moved[dof]:.4g} {unit_of(dof, length)}".rstrip() for dof in _shown(summary))
+    each = (f"{dof} {moved[dof]:.4g} {dof_unit(dof, length)}".rstrip() for dof in _shown(summary))
     return f"a modal amplitude of 1 means, at the least that was followed: {', '.join(each)}"

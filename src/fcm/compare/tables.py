@@ -8,7 +8,7 @@ from typing import Any
 from fcm.compare.errors import MEASURES, Shown
 from fcm.compare.methods import CLOSED_FORM, EXACT
 
-Rows = list[list[str]]  # the first is the header
+TextTable = list[list[str]]  # the first is the header
 Summary = Mapping[str, Any]
 NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
 HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
@@ -17,7 +17,7 @@ SAID = {"!": "! unstable: the motion does not stay at this peak", "?": "? stabil
 DIGITS = 6  # of amplitudes and frequencies
 
 
-def every(summary: Summary) -> list[Rows]:
+def every(summary: Summary) -> list[TextTable]:
     """All tables that have rows, in order."""
     makers = errors, contributions, peaks, costs, steps, references
     return [rows for rows in (maker(summary) for maker in makers) if len(rows) > 1]
@@ -29,7 +29,7 @@ def marked(summary: Summary) -> list[str]:
     return [text for mark, text in SAID.items() if mark in marks]
 
 
-def references(summary: Summary) -> Rows:
+def references(summary: Summary) -> TextTable:
     """Table of the references and of their own errors."""
     rows = [["errors of the references themselves", "max. step", *HEADS]]
     for name, one in summary["references"].items():
@@ -39,7 +39,7 @@ def references(summary: Summary) -> Rows:
     return rows
 
 
-def errors(summary: Summary) -> Rows:
+def errors(summary: Summary) -> TextTable:
     """Table of the errors of each method with the scene's own steps."""
     against = main_reference(summary)
     rows = [[f"errors against {NAMES[against]}", "left out", *HEADS]]
@@ -48,7 +48,7 @@ def errors(summary: Summary) -> Rows:
     return rows
 
 
-def costs(summary: Summary) -> Rows:
+def costs(summary: Summary) -> TextTable:
     """Table of the costs of each method with the scene's own steps."""
     header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "table [s]", "evaluations"]
     rows = [["costs", *header]]
@@ -71,7 +71,7 @@ def _left_out(one: Summary, summary: Summary) -> str:
     return "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing"
 
 
-def contributions(summary: Summary) -> Rows:
+def contributions(summary: Summary) -> TextTable:
     """Table of the contributions to the error."""
     rows = [["what the error consists of", "against", *HEADS]]
     for what, one in summary["contributions"].items():
@@ -79,7 +79,7 @@ def contributions(summary: Summary) -> Rows:
     return rows
 
 
-def peaks(summary: Summary) -> Rows:
+def peaks(summary: Summary) -> TextTable:
     """The estimate of what the single harmonic leaves out beside the true error, peak by peak."""
     found = summary["peaks"]
     if not found:
@@ -103,7 +103,7 @@ def peaks(summary: Summary) -> Rows:
     return rows
 
 
-def steps(summary: Summary) -> Rows:
+def steps(summary: Summary) -> TextTable:
     """Table of each method over its longest step."""
     against = list(dict.fromkeys((main_reference(summary), CLOSED_FORM)))
     rows = [["over the steps", "max. step", "points", "CPU [s]", *(f"curve, {name}" for name in against)]]

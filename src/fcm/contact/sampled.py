@@ -25,7 +25,7 @@ class Part(Frozen):
     limit: FloatArray  # (i,) mu n
 
 
-class Transition(Frozen):
+class LoopTransition(Frozen):
     """Where one state of the cycle ends and the next begins."""
 
     states: str  # both letters, the one that ends first
@@ -66,11 +66,11 @@ def shown_degrees(theta: float, from_greatest: bool = False) -> float:
     return degrees % 360.0
 
 
-def transitions(loop: Loop | PeriodicLoop) -> list[Transition]:
+def transitions(loop: Loop | PeriodicLoop) -> list[LoopTransition]:
     """Every transition of a cycle, in the order of the sequence; empty if there is one state only."""
     displacement, force = loop.displacement(loop.angles), loop.force(loop.angles)
     return [
-        Transition(
+        LoopTransition(
             loop.sequence[i - 1] + loop.sequence[i], float(theta), float(displacement[i]), float(force[i])
         )
         for i, theta in enumerate(loop.angles)

@@ -12,33 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import product
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fcm.continuation.options import LabelOptions
 from fcm.continuation.path import FloatArray, Mark, Status
-from fcm.continuation.problem import Point, PointStore
+from fcm.continuation.problem import PointStore
 from fcm.continuation.step_control import Stepper, next_corner
 
-
-class Follower(Protocol):
-    """The part of a curve's follower that `LabelledSwitching` needs."""
-
-    def acceptable(self) -> bool:
-        """Whether the curve was where it was predicted, and went on as it did."""
-
-    def fold_pair(self) -> float:
-        """Length at which the step passes by two folds; 0 if it does not."""
-
-    def accept_step(self) -> object:
-        """Go on to the end of the step; a status where the curve ends."""
-
-    def leave_corner(self, point: Point, at: float, past: float) -> object:
-        """Keep the corner, a point at a length from here, and take the direction beyond it."""
-
-    def limit_step(self, step: float, longer: bool) -> None:
-        """Make the next step no longer, or no shorter, than a length."""
+if TYPE_CHECKING:
+    from fcm.continuation.follow import Follower
 
 
 def step_factor(options: LabelOptions, error: float, cubic: bool) -> float:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fcm.results.motions import LINE, PLANE, Motion
+from fcm.results.motions import LINE, PLANE, ResponseMotion
 from fcm.results.result import Response
 from fcm.units import headed, in_unit
 
 
-def write_forces(motions: Sequence[Motion], response: Response, path: Path) -> None:
+def write_forces(motions: Sequence[ResponseMotion], response: Response, path: Path) -> None:
     """Write a row for each motion, contact, direction and harmonic; harmonic 0 is the mean.
 
     Columns: curve, swept values, peak of (or the mode), frequency, contact, force (friction or
@@ -33,7 +33,7 @@ def write_forces(motions: Sequence[Motion], response: Response, path: Path) -> N
             writer.writerows(_rows(motion, response))
 
 
-def _rows(motion: Motion, response: Response) -> Iterator[list[object]]:
+def _rows(motion: ResponseMotion, response: Response) -> Iterator[list[object]]:
     of = f"mode at {motion.amplitude:g}" if np.isfinite(motion.amplitude) else " ".join(motion.of)
     begin = [motion.curve, *motion.parameters.values(), of]
     begin += [repr(float(in_unit(motion.frequency, response.frequency_unit)))]

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from fcm.export.rows import Rows
+from fcm.export.rows import StructureRows
 from fcm.mesh import Mesh
 from fcm.model.scene import Scene
-from fcm.results.motions import Motion, harmonics_of
+from fcm.results.motions import ResponseMotion, harmonics_of
 from fcm.units import in_unit
 
 
-def write_hdf5(motions: Sequence[Motion], scene: Scene, mesh: Mesh | None, path: Path) -> None:
+def write_hdf5(motions: Sequence[ResponseMotion], scene: Scene, mesh: Mesh | None, path: Path) -> None:
     """Write displacements of all rows.
 
     Datasets: row (row,) names; displacement (motion, harmonic, row) complex, as Im(X exp(i h omega t)), NaN
@@ -23,7 +23,7 @@ def write_hdf5(motions: Sequence[Motion], scene: Scene, mesh: Mesh | None, path:
     """
     import h5py
 
-    rows, numbers = Rows.of(scene), harmonics_of(motions)
+    rows, numbers = StructureRows.of(scene), harmonics_of(motions)
     waves = np.full((len(motions), len(numbers), len(rows.names)), np.nan, dtype=np.complex128)
     mean = np.empty((len(motions), len(rows.names)))
     for i, motion in enumerate(motions):

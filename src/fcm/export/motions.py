@@ -20,7 +20,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Modal, Scene
 from fcm.reduction.restore import corrected, unknowns
 from fcm.response.request import ResponseError
-from fcm.results.motions import ComplexArray, Motion
+from fcm.results.motions import ComplexArray, ResponseMotion
 from fcm.results.result import Curve, Response
 from fcm.rotational_dofs import greatest_first
 from fcm.structure.linear import linear_of
@@ -29,7 +29,7 @@ from fcm.units import UNIT, in_unit
 
 def motions_of(
     response: Response, scene: Scene, at: Sequence[float] = (), options: ExportOptions = EXPORT
-) -> list[Motion]:
+) -> list[ResponseMotion]:
     """Motions of every curve: at the peaks, or where it passes some frequencies in the scene's unit.
 
     Of nonlinear modes those that were kept, see `fcm.response.mode.ModeRequest`; `at` are modal amplitudes.
@@ -61,7 +61,7 @@ def motions_of(
     """
     if any(curve.mode is not None for curve in response.curves):
         return _of_modes(response, scene, at)
-    found: list[Motion] = []
+    found: list[ResponseMotion] = []
     for number, (curve, own) in enumerate(zip(response.curves, scene.each_curve(), strict=True)):
         if not curve.points:
             continue
@@ -78,9 +78,9 @@ def motions_of(
     return found
 
 
-def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[Motion]:
+def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[ResponseMotion]:
     """The motions that nonlinear modes have for export."""
-    found: list[Motion] = []
+    found: list[ResponseMotion] = []
     for number, (curve, own) in enumerate(zip(response.curves, scene.each_curve(), strict=True)):
         if curve.mode is None or not curve.mode.motions:
             continue
@@ -88,7 +88,9 @@ def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[Mot
         swept, harmonics = dict(curve.parameters), curve.harmonics
         for one in curve.mode.motions:
             force, modal = contact_forces(system, one.contacts), turn.T @ one.modes
-            motion = Motion(number, swept, (), one.frequency, np.nan, harmonics, force, modal, one.amplitude)
+            motion = ResponseMotion(
+                number, swept, (), one.frequency, np.nan, harmonics, force, modal, one.amplitude
+            )
             motion = with_contacts(motion, system, one.contacts)
             found.append(motion)
     for amplitude in at:
@@ -114,7 +116,9 @@ class _Solver(Frozen):
         modal = None if scene.ring is not None else System(scene_in_modes(scene), curve.harmonics)
         return _Solver(scene, curve, Newton(system.new_balance()), system, modal)
 
-    def peaks(self, number: int, reported: Sequence[bool], options: ExportOptions) -> Iterator[Motion]:
+    def peaks(
+        self, number: int, reported: Sequence[bool], options: ExportOptions
+    ) -> Iterator[ResponseMotion]:
         """The motion of each peak; one that several degrees of freedom share is there once."""
         dofs, amplitude = self.scene.modal.dofs, self.curve.amplitude
         shown = [d for d, one in enumerate(reported) if one and np.isfinite(amplitude[:, d]).any()]
@@ -133,7 +137,7 @@ class _Solver(Frozen):
                 )
             yield self._motion(number, solved, float(self.curve.stable[point]), tuple(names))
 
-    def passing(self, number: int, omega: float) -> Iterator[Motion]:
+    def passing(self, number: int, omega: float) -> Iterator[ResponseMotion]:
         """The motions where the curve passes a frequency [rad/s]."""
         frequency = self.curve.frequency
         low, high = frequency[:-1], frequency[1:]
@@ -160,18 +164,18 @@ class _Solver(Frozen):
         z: FloatArray = unknowns(self.curve, self.scene, np.array([point]), self.curve.harmonics)[0]
         return z
 
-    def _motion(self, number: int, z: FloatArray, stable: float, of: tuple[str, ...]) -> Motion:
+    def _motion(self, number: int, z: FloatArray, stable: float, of: tuple[str, ...]) -> ResponseMotion:
         modal = None
         if self.in_modes is not None:
             X, mean = amplitudes_at(self.in_modes, z[None])
             modal = np.concatenate((mean[0, :, None], 1j * X[0].T), axis=1)
         force = contact_forces(self.system, z)
         swept, harmonics = dict(self.curve.parameters), self.system.harmonics
-        found = Motion(number, swept, of, float(z[-1]), stable, harmonics, force, modal)
+        found = ResponseMotion(number, swept, of, float(z[-1]), stable, harmonics, force, modal)
         return with_contacts(found, self.system, z)
 
 
-def with_contacts(motion: Motion, system: System, z: FloatArray) -> Motion:
+def with_contacts(motion: ResponseMotion, system: System, z: FloatArray) -> ResponseMotion:
     """The motion with the states and loads of its contacts over a cycle, at the point z (unknown + 1,)."""
     if not system.scene.contacts:
         return motion
@@ -222,12 +226,12 @@ def scene_in_modes(scene: Scene) -> Scene:
 _OTHER = re.compile(r"[^A-Za-z0-9_.+-]+")
 
 
-def labels_of(motions: Sequence[Motion], unit: str) -> list[str]:
+def labels_of(motions: Sequence[ResponseMotion], unit: str) -> list[str]:
     """A name for each motion, all different: its curve, its peak or frequency.
 
     >>> import numpy as np
     >>> nothing = np.zeros((0, 2, 2), dtype=complex)
-    >>> motion = Motion(0, {}, ("16y",), 2.5, 1.0, (1,), nothing, None)
+    >>> motion = ResponseMotion(0, {}, ("16y",), 2.5, 1.0, (1,), nothing, None)
     >>> labels_of([motion, motion], "rad/s")
     ['peak_16y_2.5_rad_s', 'peak_16y_2.5_rad_s_2']
     """

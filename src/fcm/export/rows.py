@@ -12,7 +12,7 @@ from fcm.frozen import Frozen
 from fcm.mesh import Mesh
 from fcm.model.ring import NEXT
 from fcm.model.scene import Scene
-from fcm.results.motions import ComplexArray, Motion
+from fcm.results.motions import ComplexArray, ResponseMotion
 from fcm.scene.errors import choices, counted
 from fcm.scene.linear import HIDDEN
 from fcm.scene.names import DIRECTIONS, at_node, motion_of
@@ -24,7 +24,7 @@ class ExportError(ValueError):
     """A mesh or structure of which motions cannot be exported; the message says why."""
 
 
-class Rows(Frozen):
+class StructureRows(Frozen):
     """The rows of a structure, by their names, with a node and a direction where the name says them.
 
     names (row,); node (row,), -1 where there is none; direction (row,) from 0 for x to 5 for rz.
@@ -36,11 +36,11 @@ class Rows(Frozen):
     direction: IntArray
 
     @staticmethod
-    def of(scene: Scene) -> Rows:
+    def of(scene: Scene) -> StructureRows:
         """The rows of a scene that was loaded with every row.
 
         >>> import fcm
-        >>> rows = Rows.of(fcm.load_scene("blade", every_row=True))
+        >>> rows = StructureRows.of(fcm.load_scene("blade", every_row=True))
         >>> rows.names[0], int(rows.node[0]), int(rows.direction[0])
         ('2x', 2, 0)
         """
@@ -49,7 +49,7 @@ class Rows(Frozen):
         letters = [word.lstrip("0123456789") for word in words]
         node = [int(word.removesuffix(end)) if word else -1 for word, end in zip(words, letters, strict=True)]
         direction = [DIRECTIONS.index(end) if end else -1 for end in letters]
-        return Rows(
+        return StructureRows(
             tuple(name for _, name in names),
             np.array([i for i, _ in names], dtype=np.intp),
             np.array(node, dtype=np.intp),
@@ -61,7 +61,7 @@ class Rows(Frozen):
         """The nodes that have rows, ascending."""
         return np.unique(self.node[self.node >= 0])
 
-    def displacements(self, motion: Motion, scene: Scene) -> ComplexArray:
+    def displacements(self, motion: ResponseMotion, scene: Scene) -> ComplexArray:
         """(1 + harmonic, row) of a motion of a curve of the scene, the mean first."""
         curve = scene.each_curve()[motion.curve]
         assert motion.modal is not None  # rings are refused before
@@ -72,7 +72,7 @@ class Rows(Frozen):
     def by_node(self, values: ComplexArray, nodes: Sequence[int] | IntArray) -> ComplexArray:
         """Values (..., row) as (..., node, 6) of some nodes; 0 where a node has no row.
 
-        >>> rows = Rows(("7y",), np.array([0]), np.array([7]), np.array([1]))
+        >>> rows = StructureRows(("7y",), np.array([0]), np.array([7]), np.array([1]))
         >>> rows.by_node(np.array([2.0 + 0j]), [3, 7]).real.tolist()[1]
         [0.0, 2.0, 0.0, 0.0, 0.0, 0.0]
         """
@@ -90,7 +90,7 @@ class Rows(Frozen):
         return bool((self.direction > 2).any())
 
 
-def check_nodes(rows: Rows) -> None:
+def check_nodes(rows: StructureRows) -> None:
     """Raise ExportError where no row is of a node."""
     if not rows.nodes.size:
         raise ExportError(
@@ -99,7 +99,7 @@ def check_nodes(rows: Rows) -> None:
         )
 
 
-def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
+def check_mesh(rows: StructureRows, mesh: Mesh, name: str) -> list[str]:
     """Notes on how the rows of a structure match a mesh.
 
     Raises

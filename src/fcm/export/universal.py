@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from fcm.export.motions import labels_of
-from fcm.export.rows import Rows
+from fcm.export.rows import StructureRows
 from fcm.mesh import Mesh
 from fcm.model.scene import FloatArray, Scene
-from fcm.results.motions import ComplexArray, Motion
+from fcm.results.motions import ComplexArray, ResponseMotion
 from fcm.results.result import Curve, Response
 from fcm.scene.names import DIRECTIONS, motion_of
 from fcm.units import in_unit
@@ -21,7 +21,7 @@ _SPECTRUM, _DOUBLE_COMPLEX, _FREQUENCY = 12, 6, 18
 
 
 def write_universal(
-    motions: Sequence[Motion], response: Response, scene: Scene, mesh: Mesh | None, path: Path
+    motions: Sequence[ResponseMotion], response: Response, scene: Scene, mesh: Mesh | None, path: Path
 ) -> None:
     """Write a universal file; frequencies in Hz, as its readers take them.
 
@@ -30,7 +30,7 @@ def write_universal(
     node and each stretch of a curve between two folds: the fundamental against the frequency, complex, in
     double precision; none of nonlinear modes. Phases are against sin(omega t), as those of the forces.
     """
-    rows = Rows.of(scene)
+    rows = StructureRows.of(scene)
     with path.open("w", encoding="ascii", newline="\n") as file:
         if mesh is not None:
             file.writelines(_dataset(2411, _nodes(mesh)))
@@ -64,7 +64,7 @@ def _nodes(mesh: Mesh) -> Iterator[str]:
         yield "".join(f"{x:25.16E}" for x in xyz).replace("E", "D")
 
 
-def _shape(rows: Rows, values: ComplexArray, name: str, hertz: float, step: int) -> Iterator[str]:
+def _shape(rows: StructureRows, values: ComplexArray, name: str, hertz: float, step: int) -> Iterator[str]:
     """Lines of a universal file for one complex shape of all nodes (node, 6)."""
     count = 6 if rows.turn else 3
     yield from (name[:80], "displacement, Im(X exp(i h omega t))", "NONE", "NONE", "NONE")

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from fcm.export.motions import labels_of
-from fcm.export.rows import IntArray, Rows
+from fcm.export.rows import IntArray, StructureRows
 from fcm.mesh import Mesh
 from fcm.model.scene import FloatArray, Scene
 from fcm.results.contact_states import contact_states
-from fcm.results.motions import Motion
+from fcm.results.motions import ResponseMotion
 
 
-def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -> None:
+def write_vtu(motions: Sequence[ResponseMotion], scene: Scene, mesh: Mesh, path: Path) -> None:
     """Write displacements of all nodes as point data of a VTU file.
 
     Of each motion and harmonic there are the arrays NAME_h1_real and NAME_h1_imag (node, 3), and NAME_mean;
@@ -31,7 +31,7 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
     """
     import meshio
 
-    rows = Rows.of(scene)
+    rows = StructureRows.of(scene)
     nodes = np.array(mesh.nodes)
     data: dict[str, Any] = {
         "node_number": nodes.astype(np.int64),
@@ -54,7 +54,7 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
     meshio.write(path, meshio.Mesh(mesh.xyz, cells, point_data=data), file_format="vtu")
 
 
-def _shares(scene: Scene, rows: Rows, nodes: IntArray) -> FloatArray:
+def _shares(scene: Scene, rows: StructureRows, nodes: IntArray) -> FloatArray:
     """Weights (contact, node) by which each node's motion enters that of its side of a contact.
 
     Those of the nodes of a side add up to 1, whatever the weights of rows are.
@@ -70,7 +70,7 @@ def _shares(scene: Scene, rows: Rows, nodes: IntArray) -> FloatArray:
     return found
 
 
-def _at_nodes(motion: Motion, share: FloatArray) -> dict[str, FloatArray]:
+def _at_nodes(motion: ResponseMotion, share: FloatArray) -> dict[str, FloatArray]:
     """The contact loads, and the states of the contacts, at the nodes that they join."""
     assert motion.contact_loads is not None
     normal, _, slip, energy = motion.contact_loads.T

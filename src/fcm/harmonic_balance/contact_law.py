@@ -245,7 +245,7 @@ def laws_in_a_plane(kernel: PlanarContact, contacts: Iterable[Contact]) -> list[
     return [KernelLaw(kernel, bounds, measures, c) for c in contacts]
 
 
-def kind_of(law: Law, i: int, contact: int) -> int:
+def margin_kind(law: Law, i: int, contact: int) -> int:
     """The kind of the margin i of a contact among those of all contacts; for problems in Python."""
     return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)
 

@@ -196,7 +196,7 @@ class Fit(Frozen):
     starts: int | None = None  # tried at most; None for the usual ones
 
 
-class SweptKey(Protocol):
+class SourceKey(Protocol):
     """A key of a sweep, and whether its values are random draws."""
 
     @property
@@ -213,7 +213,7 @@ class Source(Protocol):
     def parts(self) -> dict[str, Any]: ...
 
     @property
-    def swept(self) -> tuple[SweptKey, ...]: ...
+    def swept(self) -> tuple[SourceKey, ...]: ...
 
     def curve(
         self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}, fix: bool = False

@@ -29,7 +29,7 @@ import numpy.typing as npt
 from fcm.continuation import Problem
 from fcm.continuation.options import NewtonOptions
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.contact_law import kind_of
+from fcm.harmonic_balance.contact_law import margin_kind
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions
@@ -230,7 +230,7 @@ class AutonomousProblem(Problem):
             law.evaluate_margins(x, c * self.contacts.width)
             for i in range(law.margins):
                 self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
-                self.kind[at] = kind_of(law, i, c)
+                self.kind[at] = margin_kind(law, i, c)
                 at += 1
         return 0
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.plot.labels import symbols
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +54,7 @@ def say_scatter(axes: Axes, found: Sequence[DrawnSpread], peaks: Peaks, key: str
     said = f"random draws of {names}"
     if len(peaks.random) == len(peaks.parameters):
         (of_all,) = amplitudes
-        own = unit_of(peaks.dofs[column], peaks.length)
+        own = dof_unit(peaks.dofs[column], peaks.length)
         ends = f"{of_all.low:.4g} to {of_all.high:.4g} {own}".rstrip()
         said = f"{of_all.count} {said}:\nmedian {of_all.median:.4g}, " + (
             f"5 to 95 % are {ends}" if of_all.percents else f"all are {ends} ({few})"

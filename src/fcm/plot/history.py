@@ -11,7 +11,7 @@ from fcm.plot.history_file import DrawnHistory, DrawnMotion
 from fcm.plot.labels import curve_label, frequency_label, plain, power_to_label, with_unit
 from fcm.plot.read import FloatArray
 from fcm.plot.style import LAYOUT, house_style, new_figure
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +43,7 @@ def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
             axes.margins(y=0.05)
             axes.set_xlim(shown)
             axes.minorticks_on()
-            name = plain(with_unit(f"Displacement {history.dof}", unit_of(history.dof, history.length)))
+            name = plain(with_unit(f"Displacement {history.dof}", dof_unit(history.dof, history.length)))
             axes.set_ylabel(name)
         panels[-1].set_xlabel("Time (s)" if history.axis == "time" else "Cycles")
         _name_phases(panels[0], history, shown)

@@ -16,7 +16,7 @@ from fcm.plot.labels import with_unit
 from fcm.plot.options import READ
 from fcm.plot.style import LAYOUT
 from fcm.plot.summary import summary_of
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 from fcm.units import EXCITED, PER_TIME, QUANTITIES, UNIT, unit_of_number
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def as_measured(response: DrawnResponse, column: int) -> tuple[DrawnResponse, st
         for one in response.measured
     )
     name = f"{quantity.capitalize()} of {dof}, fundamental"
-    length = unit_of(dof, response.length)
+    length = dof_unit(dof, response.length)
     name = with_unit(name, f"{length}{PER_TIME[quantity]}" if length else "")
     return replace(response, curves=tuple(curves), measured=points), name
 

@@ -30,7 +30,7 @@ from fcm.plot.reader_process import apart
 from fcm.plot.style import DOTS, LAYOUT, house_style, new_figure, sequence_colours, split
 from fcm.plot.summary import summary_of
 from fcm.plot.unfinished import NO_SPAN, Unfinished, mark_unfinished, say_unfinished, unfinished_of
-from fcm.rotational_dofs import greatest_first, unit_of
+from fcm.rotational_dofs import dof_unit, greatest_first
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -259,7 +259,7 @@ def _amplitude_label(drawn: DrawnModes) -> str:
         return said
     dofs = list(found)
     dof = dofs[greatest_first(dofs, list(found.values()))[0]]
-    size = f"{found[dof]:.3g} {unit_of(dof, drawn.length)}".rstrip()
+    size = f"{found[dof]:.3g} {dof_unit(dof, drawn.length)}".rstrip()
     return f"{said}\n(1 means {size} of {dof}, at the least amplitude)"
 
 

@@ -22,7 +22,7 @@ from fcm.plot.read import BoolArray, FloatArray, drawn_keys, floats, opened, swe
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours, swept_axis
 from fcm.results.least_peak import least_peak
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 from fcm.units import EXCITED
 
 if TYPE_CHECKING:
@@ -259,7 +259,7 @@ def _finish_axes(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kn
     called = f"{what} amplitude of {dof}"
     if peaks.worst(column) is not None and peaks.blades is not None:
         called = f"Greatest peak of {dof} in {peaks.blades.sectors} sectors"
-    called = with_unit(called, unit_of(dof, peaks.length))
+    called = with_unit(called, dof_unit(dof, peaks.length))
     upper.set_ylabel(called, parse_math=False)
     lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", f"{what} frequency"))
     if peaks.damping is not None:
@@ -317,7 +317,7 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     where = curve_label(values, units=peaks.units)
     stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))
     what = "peak" if peaks.damping is None else "resonance"
-    height = f"{y:.4g} {unit_of(peaks.dofs[column], peaks.length)}".rstrip()
+    height = f"{y:.4g} {dof_unit(peaks.dofs[column], peaks.length)}".rstrip()
     said = f"least {what} {height}{stays} at {where}"
     if key not in _WHOLE and found.at_end_of_sweep:
         (symbol,) = symbols([key])

@@ -28,7 +28,7 @@ from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
 from fcm.plot.summary import jumps_of
 from fcm.plot.unfinished import NO_SPAN, Unfinished, unfinished_of
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 from fcm.units import CF_UNIT
 from fcm.unknown_stability import unknown_stability
 
@@ -110,7 +110,7 @@ class DrawnResponse(Frozen):
         name = f"Amplitude of {dof}"
         if place is not None and self.blades is not None:
             name = self.blades.amplitude_label(place)
-        return with_unit(name, unit_of(dof, self.length))
+        return with_unit(name, dof_unit(dof, self.length))
 
     @property
     def own_dofs(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ from fcm.plot.style import (
     swept_axis,
 )
 from fcm.plot.summary import summary_of
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -246,7 +246,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             heights += [float(drawn.tried[:, 1].min()), float(drawn.tried[:, 1].max())]
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
         one = of_one.pop() if len(of_one) == 1 else ""
-        unit = unit_of(one, drawn.length) if one else drawn.length
+        unit = dof_unit(one, drawn.length) if one else drawn.length
         height_called, frequency_called = "Peak amplitude", "Peak frequency"
         if onsets:
             height_called, frequency_called = "Amplitude", "Frequency"

@@ -103,7 +103,7 @@ class NotKeptError(Exception):
         self.places, self.reason = places, reason
 
 
-def check(shot: Shot) -> None:
+def check_kept(shot: Shot) -> None:
     """`NotKeptError` if a contact that is held would not have kept its state over a motion."""
     pairs = zip(shot.system.scene.held, shot.held_distances.tolist(), strict=True)
     lost = tuple(one.place for one, room in pairs if room <= 0.0)

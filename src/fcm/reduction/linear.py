@@ -43,7 +43,7 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
     linear, few = linear_of(full), linear_of(fewer)
     worst = 0.0
     for k, h in enumerate(linear.driven):
-        driven = DrivenModes(few, k, omega, springs)
+        driven = ModesWithSprings(few, k, omega, springs)
         ports = driven.response @ few.ports
         compliance = 1.0 / dynamic_stiffness(linear.natural, linear.damping, h * omega)
         moved = compliance * (_force(linear, k, omega) - (springs * ports) @ linear.ports.T)
@@ -57,7 +57,7 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
     return worst
 
 
-class DrivenModes:
+class ModesWithSprings:
     """The modes with springs (port,) for contacts at frequencies omega (frequency,).
 
     response (frequency, mode): their amplitudes under the forces number k, of harmonic `linear.driven[k]`.

@@ -26,7 +26,7 @@ from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_stea
 from fcm.shooting.periodic_orbit import Orbit, Poll, shoot, unloaded
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.steady_state import SteadyMotion, steady
-from fcm.shooting.trace import with_unit
+from fcm.shooting.trace import frequency_text
 from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import SimulationError
@@ -62,7 +62,7 @@ def coexisting_orbits(
         found = saved.get(omega)
         if found is None:
             poll()
-            report(1.0, f"other motions, {with_unit(scene, omega)}")
+            report(1.0, f"other motions, {frequency_text(scene, omega)}")
             here = [one for one in visited if one.frequency == omega]
             known, whole = balance_solutions(scene, omega, poll, options)
             guesses = [*known, *across.get(omega, ()), *started_states(scene, omega)]

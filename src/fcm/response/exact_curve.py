@@ -11,7 +11,7 @@ from fcm.frozen import Frozen
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, HeldContact, Scene
-from fcm.reduction.constant_state_contacts import NotKeptError, check, expected_constant
+from fcm.reduction.constant_state_contacts import NotKeptError, check_kept, expected_constant
 from fcm.response.coexisting_orbits import coexisting_orbits
 from fcm.response.coexisting_search import Search
 from fcm.response.curve_batches import Group, lost_curve
@@ -30,7 +30,7 @@ from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.period_doubling import DoubledPeriodProblem, doubled_paths
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.trace import explore, incomplete, stop_reason, with_unit
+from fcm.shooting.trace import explore, frequency_text, incomplete, stop_reason
 from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 
@@ -139,7 +139,7 @@ class _CurveFollower(Frozen):
         try:
             alone = peaks_only(scene, known, self.report, self.clock.poll, self.options)
         except (KeyboardInterrupt, TimeOver) as stop:
-            where = with_unit(scene, known[-1].frequency) if known else "the start"
+            where = frequency_text(scene, known[-1].frequency) if known else "the start"
             reason = _stop_prefix(stop, self.clock.limit) + where + self.stiff
             found = PeaksOnly(sorted(known, key=lambda one: one.frequency))
             return _finished(partial(peaks_curve, scene, found), reason, search, _cause(stop))
@@ -233,7 +233,7 @@ def _check_held_contacts(problem: OrbitProblem, z: FloatArray) -> None:
     """Raise `NotKeptError` if a held contact would not have kept its state in the motion at z."""
     shot = problem.shot(z)
     if shot is not None:
-        check(shot)
+        check_kept(shot)
 
 
 def _stop_prefix(stop: BaseException, limit: float | None) -> str:
@@ -276,7 +276,7 @@ def _visited(
         visitor.run(at, report)
         others.extend(coexisting_orbits(scene, at, visitor.points, looks, uncertain, shooting))
     except (KeyboardInterrupt, TimeOver) as stop:
-        where = with_unit(scene, visitor.points[-1].frequency) if visitor.points else "the start"
+        where = frequency_text(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason, cause = _stop_prefix(stop, limit) + where, _cause(stop)
     except SimulationError as error:
         reason = str(error)

@@ -25,7 +25,7 @@ from fcm.tracking.ending_peak import EndingPeak, ending_peak, leaves_range
 from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.minimax import PeakEnvelope, descend
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, Target
 from fcm.tracking.stability import stability_along
 from fcm.tracking.trials import by_trials, error_of_higher
@@ -206,7 +206,7 @@ def _harmonics_for_peaks(
 def _search(task: PeakTask, harmonics: tuple[int, ...]) -> LowestPeakSearch:
     (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
     system, options = task.system(task.scene, harmonics), task.options.optimum.search
-    return LowestPeakSearch(system, along(number), span, task.targets, options, task.steps)
+    return LowestPeakSearch(system, line_along(number), span, task.targets, options, task.steps)
 
 
 def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> Found:

@@ -37,7 +37,7 @@ from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
 from fcm.response.serial_sweep import Tell, one_by_one
-from fcm.response.trace import Rows, pick
+from fcm.response.trace import IntArray, pick
 from fcm.response.undetermined_traction import residual_changes_at_levels, undetermined
 from fcm.results.at_rest import without_rounding
 from fcm.results.cause import Cause
@@ -210,7 +210,7 @@ def _followed(system: System, omega: float, span: tuple[float, float], tell: Tel
     return curve
 
 
-def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str, Any]:
+def _points(system: System, path: Path, inside: IntArray, omega: float) -> dict[str, Any]:
     """Contents of a `Curve` at the points of a path inside the span, NaN where the path leaves it."""
     left = np.flatnonzero(np.diff(inside) > 1) + 1
     rows = np.insert(np.arange(inside.size), left, -1)  # -1: outside the span

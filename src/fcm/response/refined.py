@@ -28,7 +28,7 @@ from fcm.response.options import SWEEP
 from fcm.stability.bifurcations import stability, with_points
 from fcm.stability.options import STABILITY
 
-Rows = npt.NDArray[np.intp]
+IntArray = npt.NDArray[np.intp]
 Harmonics = tuple[int, ...]
 
 
@@ -211,7 +211,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     return replace(now, found=found, stable=stable, lost=lost, bifurcations=bifurcations)
 
 
-def _between(values: FloatArray, after: Rows) -> FloatArray:
+def _between(values: FloatArray, after: IntArray) -> FloatArray:
     """Values with the means of neighbours inserted after some rows."""
     means = 0.5 * (values[after] + values[np.minimum(after + 1, len(values) - 1)])
     return np.insert(values, after + 1, means, axis=0)

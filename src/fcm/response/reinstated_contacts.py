@@ -18,7 +18,7 @@ from fcm.continuation.problem import Points, Stored
 from fcm.continuation.step_control import Stepper
 from fcm.model.scene import FloatArray, has_friction
 from fcm.response.options import CONTACT_CHANGES
-from fcm.response.resumable_branches import SavedPath, kind_of
+from fcm.response.resumable_branches import SavedPath, problem_kind
 from fcm.shooting.problem import OrbitProblem
 
 
@@ -53,7 +53,7 @@ class ReinstatedContacts:
                 else self._checkpoint(saved.checkpoint)
             )
             if path is not None or checkpoint is not None:
-                yield SavedPath(saved.number, *kind_of(self.now), path, checkpoint)
+                yield SavedPath(saved.number, *problem_kind(self.now), path, checkpoint)
 
     def states_kept(self, points: Iterable[FloatArray]) -> bool:
         """Whether the contacts that are released have kept their state in motions z."""

@@ -172,7 +172,7 @@ class ResumablePaths:
         saved_paths = {_key(saved): saved for saved in self._known.values() if saved.path is not None}
         if self._passed is not None and _key(self._passed) not in saved_paths:
             saved_paths[_key(self._passed)] = self._passed
-        held, repeats = kind_of(problem)
+        held, repeats = problem_kind(problem)
         return [saved for saved in saved_paths.values() if (saved.held, saved.repeats) == (held, repeats)]
 
     def take(self, saved_paths: Iterable[SavedPath]) -> None:
@@ -196,7 +196,7 @@ class ResumablePaths:
 
     def paths(self, problem: OrbitProblem) -> list[Path]:
         """Saved parts of the curves of a problem, including those of an earlier run."""
-        held, repeats = kind_of(problem)
+        held, repeats = problem_kind(problem)
         saved_paths = [
             saved for saved in self._known.values() if (saved.held, saved.repeats) == (held, repeats)
         ]
@@ -207,7 +207,7 @@ class ResumablePaths:
         self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
     ) -> SavedPath:
         """The path that is followed now, as it is saved."""
-        return SavedPath(self.number, *kind_of(problem), path, checkpoint)
+        return SavedPath(self.number, *problem_kind(problem), path, checkpoint)
 
     def _save(self, saved: SavedPath) -> None:
         self._known[_key(saved)] = saved
@@ -230,6 +230,6 @@ def _key(saved: SavedPath) -> tuple[int, tuple[int, ...], int]:
     return saved.number, saved.held, saved.repeats
 
 
-def kind_of(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
+def problem_kind(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
     """The held contacts and the number of periods: curves with others are different."""
     return tuple(one.place for one in problem.scene.held), problem.repeats

@@ -26,7 +26,7 @@ from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_stea
 from fcm.shooting.periodic_orbit import Poll, never_interrupt, shoot
 from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.steady_state import SteadyMotion, steady
-from fcm.shooting.trace import with_unit
+from fcm.shooting.trace import frequency_text
 from fcm.time_domain.cycle_measures import Measure
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
 from fcm.time_domain.errors import CycleError, SimulationError
@@ -75,14 +75,14 @@ class SteppedSweep:
         done = self._go_on(report.saved, visits)
         for number, (sweep, omega) in enumerate(visits[done:], done):
             jumps = len(self.jumps)
-            report.begins(f"{sweep}, {with_unit(self.scene, omega)}")
+            report.begins(f"{sweep}, {frequency_text(self.scene, omega)}")
             self._step_to(omega, sweep)
             self._note(sweep)
             known = tuple(self.irregular), tuple(self.refused.items())
             went_on = self._here is not None
             new = tuple(self.jumps[jumps:])
             report.save(StepRecord(number, self._sample, self._state, went_on, new, *known))
-            report((number + 1) / len(visits), f"{sweep}, {with_unit(self.scene, omega)}")
+            report((number + 1) / len(visits), f"{sweep}, {frequency_text(self.scene, omega)}")
 
     def _note(self, sweep: str) -> None:
         """Note the motion at a frequency that was visited, if it is steady."""
@@ -138,22 +138,22 @@ class SteppedSweep:
             if here.frequency != omega:
                 self._simulate_sweep(here.frequency, omega)
                 self._settle(self._state, omega)
-        if self._sample is None and with_unit(self.scene, omega) not in self.refused:
-            self.irregular[with_unit(self.scene, omega)] = None
+        if self._sample is None and frequency_text(self.scene, omega) not in self.refused:
+            self.irregular[frequency_text(self.scene, omega)] = None
 
     def _begin(self, omega: float) -> None:
         """Begin where there is nothing to continue: a stable periodic solution, or the motion from rest."""
         try:
             orbit = solution_at(self.scene, omega, self.poll)
         except CycleError as error:
-            self.refused[with_unit(self.scene, omega)] = str(error)
+            self.refused[frequency_text(self.scene, omega)] = str(error)
             return
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
         try:
             z = first_point(self.problem, orbit, self.poll)
         except SimulationError as error:  # the motion is not determined, or not with this start
-            self.refused[with_unit(self.scene, omega)] = str(error)
+            self.refused[frequency_text(self.scene, omega)] = str(error)
             return
         if not (orbit.stable and self._continue_with(z)):
             self._settle(State.rest(self.scene), omega)

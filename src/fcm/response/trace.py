@@ -57,7 +57,7 @@ METHODS = ("table", "closed-form")
 NO_CHECKS = replace(
     PAIR, max_seconds=0.0, max_point_seconds=0.05, max_second_unknowns=0, max_seconds_elsewhere=0.0
 )  # where nobody waits any more
-Rows = npt.NDArray[np.intp]
+IntArray = npt.NDArray[np.intp]
 
 
 def traced_curve(
@@ -280,7 +280,7 @@ def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatA
     return contact_loads
 
 
-def _of_greatest(found: RefinedResponse, path: Rows, contact_loads: FloatArray) -> FloatArray:
+def _of_greatest(found: RefinedResponse, path: IntArray, contact_loads: FloatArray) -> FloatArray:
     """Errors (contact, 4) of the greatest contact loads of all paths, from `contact_loads`.
 
     Those are (point, contact, 4); an error is unknown where that of one nearly as great is.
@@ -331,7 +331,7 @@ def _rounding_of_peaks(points: PointRecord, rounding: FloatArray, computed: bool
     return found
 
 
-def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
+def pick(values: npt.NDArray[Any], rows: IntArray) -> npt.NDArray[Any]:
     """Rows of a curve at indices; gaps of NaN or '' where an index is -1."""
     if len(rows) == len(values):  # no gap
         return np.ascontiguousarray(values)

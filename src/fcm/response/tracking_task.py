@@ -35,7 +35,7 @@ from fcm.tracking.ending_peak import EndingPeak
 from fcm.tracking.error import error_points, truncation_error
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import KINDS as ONSETS
-from fcm.tracking.parameter_line import along
+from fcm.tracking.parameter_line import line_along
 from fcm.tracking.stability import stability_along
 from fcm.tracking.start_points import SpecialPoints
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
@@ -80,7 +80,7 @@ class TrackingTask(Frozen):
 
     def _one(self, scene: Scene, report: Report) -> TrackedScene:
         system = Request(self.harmonics, options=self.options).system(scene)
-        line, once = along(self.number), _SavedSteps(report)
+        line, once = line_along(self.number), _SavedSteps(report)
         shown = partial(report, text=self.number.key)
         setup = TrackingSetup(system, line, self.span, (), scene.max_step)
         found = tracked_curves(setup, conditions_of(scene, self.what), (), shown, once)

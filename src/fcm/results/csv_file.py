@@ -15,7 +15,7 @@ from fcm.results.contact_motions import csv_columns, csv_values
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Response
 from fcm.results.variable_meanings import CYCLE, ORBIT_KINDS
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 from fcm.units import headed, in_unit
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
@@ -81,7 +81,7 @@ def _columns(response: Response, dofs: Sequence[str]) -> list[str]:
     if any(curve.mode is not None for curve in response.curves):
         columns += ["modal_amplitude", "damping_ratio"]
     for dof in dofs:
-        own = unit_of(dof, response.units[0])
+        own = dof_unit(dof, response.units[0])
         units = {kind: f" [{own}]" if own and kind not in ERRORS else "" for kind in kinds}
         units["phase"] = " [rad]"
         columns += [f"{kind} {dof}{units[kind]}" for kind in kinds]
@@ -127,7 +127,7 @@ def write_tracked_csv(response: Response, path: str | Path) -> None:
     swept = list(tracking.curves[0].parameters) if tracking.curves else []
     keys = [headed(key, *response.units, response.frequency_unit) for key in (*swept, tracking.key)]
     shown = _shown(response)
-    units = {dof: unit_of(dof, response.units[0]) for dof in (response.dofs[i] for i in shown)}
+    units = {dof: dof_unit(dof, response.units[0]) for dof in (response.dofs[i] for i in shown)}
     amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
     header = ["track", "what", *keys, f"frequency [{response.frequency_unit}]", *amplitudes]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:

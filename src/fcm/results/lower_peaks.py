@@ -10,13 +10,13 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.local_maxima import local_maxima, prominence
-from fcm.results.options import RESULTS, PeakOptions
+from fcm.results.options import RESULTS, ListedPeakOptions
 
 _PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
 _SAMPLES = 129  # between two neighbours, the middle one among them
 
 
-def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> npt.NDArray[np.intp]:
+def lower_peaks(amplitude: FloatArray, options: ListedPeakOptions = RESULTS.peaks) -> npt.NDArray[np.intp]:
     """Places (peak, 2) of local maxima that are not the highest of their degree of freedom: dof and point.
 
     amplitude (point, dof) has rows of NaN between branches, whose ends are no maxima.

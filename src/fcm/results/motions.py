@@ -18,7 +18,7 @@ ON = "force of a contact, which acts on the structure against its direction"
 SINE = "amplitude * sin(harmonic omega t + phase)"
 
 
-class Motion(Frozen):
+class ResponseMotion(Frozen):
     """A steady motion, x = mean + Im(sum_h X_h exp(i h omega t)); arrays begin with the mean, which is real.
 
     The forces of a contact are those of `fcm.periodic_forces` along its directions, friction before normal:
@@ -44,20 +44,20 @@ class Motion(Frozen):
         )
 
 
-class Motions(Frozen):
+class ResponseMotions(Frozen):
     """Motions of a response, and what of them its netCDF file is to have."""
 
-    motions: tuple[Motion, ...]
+    motions: tuple[ResponseMotion, ...]
     forces: bool
     modes: bool
 
 
-def harmonics_of(motions: Sequence[Motion]) -> list[int]:
+def harmonics_of(motions: Sequence[ResponseMotion]) -> list[int]:
     """All harmonics that occur in some motions, in order."""
     return sorted({h for one in motions for h in one.harmonics})
 
 
-def motion_fields(found: Motions, unit: str) -> dict[str, Field]:
+def motion_fields(found: ResponseMotions, unit: str) -> dict[str, Field]:
     """The variables of a file: where the motions are, and what was asked for of them."""
     motions = found.motions
     if not motions or not (found.forces or found.modes):
@@ -91,7 +91,7 @@ def motion_fields(found: Motions, unit: str) -> dict[str, Field]:
     return out
 
 
-def _modal(motion: Motion) -> ComplexArray:
+def _modal(motion: ResponseMotion) -> ComplexArray:
     assert motion.modal is not None  # rings are refused before
     return motion.modal
 
@@ -111,7 +111,7 @@ def _waves(name: str, dims: tuple[str, ...], values: ComplexArray, what: str) ->
     }
 
 
-def _by_number(values: ComplexArray, motion: Motion, numbers: Sequence[int]) -> ComplexArray:
+def _by_number(values: ComplexArray, motion: ResponseMotion, numbers: Sequence[int]) -> ComplexArray:
     """(..., 1 + harmonic) with a place for every number; NaN for those that the motion has not."""
     out = np.full((*values.shape[:-1], 1 + len(numbers)), np.nan, dtype=np.complex128)
     out[..., [0, *(1 + numbers.index(h) for h in motion.harmonics)]] = values

@@ -45,7 +45,7 @@ class DrawOptions(Frozen):
     confidence: float = 0.9
 
 
-class FileOptions(Frozen):
+class NetcdfOptions(Frozen):
     """Options on how variables are laid out in a netCDF file.
 
     Attributes
@@ -61,7 +61,7 @@ class FileOptions(Frozen):
     contiguous: int = 1 << 16
 
 
-class PeakOptions(Frozen):
+class ListedPeakOptions(Frozen):
     """Options on which local maxima of a curve are listed as peaks beside the highest.
 
     Attributes
@@ -99,7 +99,7 @@ class ResultOptions(Frozen):
 
     Attributes
     ----------
-    jumps, draws, file, peaks : JumpOptions, DrawOptions, FileOptions, PeakOptions
+    jumps, draws, file, peaks : JumpOptions, DrawOptions, NetcdfOptions, ListedPeakOptions
         Options of the parts.
     point_errors : PointErrorOptions
         Options of ranges with large errors of points.
@@ -107,8 +107,8 @@ class ResultOptions(Frozen):
 
     jumps: JumpOptions = field(default_factory=JumpOptions)
     draws: DrawOptions = field(default_factory=DrawOptions)
-    file: FileOptions = field(default_factory=FileOptions)
-    peaks: PeakOptions = field(default_factory=PeakOptions)
+    file: NetcdfOptions = field(default_factory=NetcdfOptions)
+    peaks: ListedPeakOptions = field(default_factory=ListedPeakOptions)
     point_errors: PointErrorOptions = field(default_factory=PointErrorOptions)
 
 

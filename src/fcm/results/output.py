@@ -13,7 +13,7 @@ import numpy.typing as npt
 import fcm
 from fcm.files import replacing
 from fcm.results.fields import fields_of, swept_names
-from fcm.results.options import RESULTS, FileOptions
+from fcm.results.options import RESULTS, NetcdfOptions
 from fcm.results.padded_arrays import Field, Padded
 from fcm.results.result import Response
 from fcm.results.summary import summary
@@ -74,7 +74,7 @@ def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
     return [*swept, *(name for name in ("time", "cycles", "cycle_start") if name in fields)]
 
 
-def write_netcdf(response: Response, path: str | Path, options: FileOptions = RESULTS.file) -> None:
+def write_netcdf(response: Response, path: str | Path, options: NetcdfOptions = RESULTS.file) -> None:
     """Write the response as netCDF-4; the file appears only when it is complete.
 
     All variables are described before any is filled: between the one and the other the library goes through
@@ -94,7 +94,7 @@ def write_netcdf(response: Response, path: str | Path, options: FileOptions = RE
             _fill(file.variables[name], field.values, options.chunk)
 
 
-def _described(file: Any, name: str, field: Field, options: FileOptions) -> Any:
+def _described(file: Any, name: str, field: Field, options: NetcdfOptions) -> Any:
     """A variable of an open file, without values."""
     for dim, size in zip(field.dims, field.values.shape, strict=True):
         if dim not in file.dimensions:

@@ -25,7 +25,7 @@ from fcm.results.peak import Peak
 if TYPE_CHECKING:
     from fcm.harmonic_balance.contact_motions import ContactMotions
     from fcm.results.fitted import Fitted
-    from fcm.results.motions import Motions
+    from fcm.results.motions import ResponseMotions
     from fcm.results.nonlinear_mode import NonlinearMode
     from fcm.results.orbits import Orbits
     from fcm.results.tracked import Tracking
@@ -188,7 +188,7 @@ class Response:
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
     fitted: Fitted | None = None  # numbers fitted to measured data
     positions: dict[str, FloatArray] = field(default_factory=dict)  # (3,) of contacts of which that is known
-    motions: Motions | None = None  # at peaks or chosen frequencies, with contact forces and modes
+    motions: ResponseMotions | None = None  # at peaks or chosen frequencies, with contact forces and modes
     blades: Blades | None = None  # of a mistuned ring
     in_time: InTime = InTime.COMPUTED  # whether the exact motion of the scene is
     span: tuple[float, float] | None = None  # [rad/s] over which curves are traced; None for no such range

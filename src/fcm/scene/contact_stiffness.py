@@ -130,11 +130,11 @@ def _unequal(scene: Scene) -> str:
 def _stiffness_beside_structure(scene: Scene) -> FloatArray:
     """Ratio (contact,): the greater of k_u and k_v times the flexibility along the displacement."""
     springs = np.array([(one.k_u, one.k_v) for one in scene.contacts])
-    ratio: FloatArray = (springs * flexibility(scene)).max(axis=1)
+    ratio: FloatArray = (springs * contact_flexibility(scene)).max(axis=1)
     return ratio
 
 
-def flexibility(scene: Scene) -> FloatArray:
+def contact_flexibility(scene: Scene) -> FloatArray:
     """Displacement (contact, 2) per unit load, by elastic modes: where each contact slides, and its normal.
 
     Of a contact in a plane the greater one of both directions. Zero where it is rounding beside the greatest

@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.model.question import Question
 from fcm.model.scene import Fit, FloatArray, Measured
-from fcm.rotational_dofs import unit_of
+from fcm.rotational_dofs import dof_unit
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
@@ -198,7 +198,7 @@ def _function_of_table(
     """The function that a table with a unit of amplitudes is; None without one, or in the scene's own."""
     unit, backbone = read.units.get("amplitude", ""), "backbone" in section.data
     quantity = str(section.data.get("quantity", "displacement"))
-    length = unit_of(dof, scene.units[0])
+    length = dof_unit(dof, scene.units[0])
     if not unit or (length and unit == f"{length}{PER_TIME.get(quantity, '')}"):
         return None
     key = "backbone" if backbone else "file"

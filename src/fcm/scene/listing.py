@@ -10,7 +10,7 @@ from fcm.model.question import Question
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.contact_springs import stuck_stiffness
-from fcm.scene.contact_stiffness import flexibility
+from fcm.scene.contact_stiffness import contact_flexibility
 from fcm.scene.errors import counted
 from fcm.scene.open_modes import stuck_modes
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
@@ -92,7 +92,7 @@ def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[st
     and `elastic_normal` are those of elastic modes alone, None where no such mode moves along it.
     """
     found: dict[str, dict[str, float | None]] = {}
-    for contact, (along, across) in zip(scene.contacts, flexibility(scene).tolist(), strict=True):
+    for contact, (along, across) in zip(scene.contacts, contact_flexibility(scene).tolist(), strict=True):
         free = [
             shares[name] is None for name in shares if name.startswith(f"contact.{contact.name}.tangential")
         ]

@@ -160,7 +160,7 @@ def check_nodes(
             section.wrong("nodes", f"{what}; one that is held has no row")
 
 
-def along(weights: Mapping[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
+def relative_displacement(weights: Mapping[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
     """The relative displacement of a pair along a direction; None where it has none."""
     if dofs is None or not weights:
         return None

@@ -117,7 +117,7 @@ class LimitOptions(Frozen):
     mesh_rows: int = 100
 
 
-class FileOptions(Frozen):
+class InputFileOptions(Frozen):
     """Limits of files beside a scene, and of the process that reads them."""
 
     # [byte] largest file beside a scene, unpacked: what fits in any machine's memory twice
@@ -182,5 +182,5 @@ TOML = TomlOptions()
 FRICTION_DAMPING = FrictionDampingOptions()
 MESSAGES = MessageOptions()
 LIMITS = LimitOptions()
-FILES = FileOptions()
+FILES = InputFileOptions()
 TOLERANCES = ToleranceOptions()

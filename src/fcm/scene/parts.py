@@ -17,13 +17,13 @@ from fcm.scene.keys import names
 from fcm.scene.names import Names, same_names, starred, unfit_name
 from fcm.scene.node_pairs import (
     SHARED,
-    along,
     check_nodes,
     direction_in,
     load_key,
     read_direction,
     read_numbers,
     read_pairs,
+    relative_displacement,
     shares,
     totals_of,
 )
@@ -99,7 +99,7 @@ def _contacts(
     return [
         {key: values[i] for key, values in numbers.items()}
         | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i], TOTAL: totals, "sum": totals}
-        | {key: along(weights, pair, dofs) for key, weights in directions.items()}
+        | {key: relative_displacement(weights, pair, dofs) for key, weights in directions.items()}
         for i, pair in enumerate(table.pairs)
     ]
 

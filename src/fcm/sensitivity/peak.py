@@ -71,7 +71,7 @@ def moved_by(
     return ParameterStencil(found)
 
 
-class Peak:
+class PeakSolution:
     """One peak: its point, the direction of the curve there, and its kind."""
 
     def __init__(

@@ -26,7 +26,7 @@ from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import rates_of
-from fcm.sensitivity.peak import Peak, PeakKind, Unknown, moved_by
+from fcm.sensitivity.peak import PeakKind, PeakSolution, Unknown, moved_by
 
 
 class Sensitivities(Frozen):
@@ -100,7 +100,7 @@ def sensitivities(
     """
     scene = unswept(scene)
     system = System(scene, harmonics)
-    points = [Peak(system, d, z, edge, options) for d, z, edge in peaks]
+    points = [PeakSolution(system, d, z, edge, options) for d, z, edge in peaks]
     numbers = numbers_of(scene)
     height, frequency = (np.full((dofs, len(numbers)), np.nan) for _ in range(2))
     why_by_number = [[Unknown.NOTHING] * len(numbers) for _ in range(dofs)]

@@ -284,7 +284,7 @@ class PartlyStickingOptions(Frozen):
     cycles: tuple[int, ...] = (10, 40)
 
 
-class PeakOptions(Frozen):
+class LocatedPeakOptions(Frozen):
     """Peaks and folds that are located alone, from guesses.
 
     Attributes
@@ -451,7 +451,7 @@ class ShootingOptions(Frozen):
     level: ForceLevelOptions = ForceLevelOptions()
     linear: LinearOrbitOptions = LinearOrbitOptions()
     partly_sticking: PartlyStickingOptions = PartlyStickingOptions()
-    peaks: PeakOptions = PeakOptions()
+    peaks: LocatedPeakOptions = LocatedPeakOptions()
     traction: ResidualFrictionOptions = ResidualFrictionOptions()
     family: FamilyOptions = FamilyOptions()
     stability: StabilityChangeOptions = StabilityChangeOptions()

@@ -45,7 +45,7 @@ def period_derivative(
     return by_state, by_parameter
 
 
-def along(
+def displacement_rates(
     system: EquationsOfMotion, segments: Segments, places: FloatArray, way: FloatArray, rate: float
 ) -> FloatArray:
     """The derivative of the modal displacements along a way of x and the frequency, at places: (place, mode).

@@ -12,7 +12,7 @@ from fcm.continuation.nearby_solution import solution_near
 from fcm.continuation.problem import Problem
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.period_derivative import along
+from fcm.shooting.period_derivative import displacement_rates
 from fcm.shooting.residual import Shooting, Shot
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
@@ -173,7 +173,7 @@ class OrbitProblem(Problem):
         moves = amplitude > self.options.orbit.min_amplitude * amplitude.max(initial=0.0)
         way = np.zeros(self.shooting.size)
         way[self.free] = np.asarray(direction)[:-1]
-        rates = along(shot.system, shot.segments, places, way, float(direction[-1]))
+        rates = displacement_rates(shot.system, shot.segments, places, way, float(direction[-1]))
         change = 0.5 * ((rates[least.size :] - rates[: least.size]) * shapes.T).sum(axis=1)
         output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change, 0.0)
         return 0

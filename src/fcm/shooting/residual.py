@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.model.scene import FloatArray, Scene, has_friction
 from fcm.shooting.floquet_multipliers import floquet_of
 from fcm.shooting.period_derivative import period_derivative
-from fcm.shooting.residual_traction import Choice, choices, one_sided_slips, resting, stuck_of
+from fcm.shooting.residual_traction import Choice, one_sided_slips, resting, stuck_of, traction_choices
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Displaced, Scanned, displaced, scanned
 from fcm.time_domain.equations_of_motion import EquationsOfMotion
@@ -46,7 +46,7 @@ class Shot:
     def _choose(self, resting: FloatArray) -> None:
         """Let the closure of contacts that always stick be the distance from their chosen slip motions."""
         first, seen = self.system.f.start, self.segments.seen()
-        self.chosen = choices(self.system, self.segments, resting, stuck_of(self.system, seen))
+        self.chosen = traction_choices(self.system, self.segments, resting, stuck_of(self.system, seen))
         for choice in self.chosen:
             self.closure[first + choice.contact] = choice.gap
         for contact, missing in one_sided_slips(self.system, self.segments, seen):

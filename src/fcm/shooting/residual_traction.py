@@ -66,7 +66,7 @@ def stuck_of(system: EquationsOfMotion, seen: list[int]) -> list[int]:
     return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
 
 
-def choices(
+def traction_choices(
     system: EquationsOfMotion,
     segments: Segments,
     wanted: FloatArray,

@@ -151,8 +151,8 @@ def explore(
             omega for omega, height in search.unreached if not _reaches_height(problem, paths, omega, height)
         ]
     told = [
-        f"no exact motion was found from the stable branch of harmonic balance at {with_unit(scene, one)}"
-        for one in dict.fromkeys(lost)
+        f"no exact motion was found from the stable branch of harmonic balance at {one}"
+        for one in dict.fromkeys(frequency_text(scene, omega) for omega in lost)
     ]
     missing = "; ".join([*_by_cause([missed[end] for end in ends]), *told, *bounded.given_up])
     kept, mirrored = search.without_images(paths)
@@ -227,7 +227,7 @@ class _BranchSearch:
                 if one.out_of_time
                 else "cannot be followed"
             )
-            bounded.add_reason(f"at {with_unit(scene, one.omega)} the level of the forces {failed}")
+            bounded.add_reason(f"at {frequency_text(scene, one.omega)} the level of the forces {failed}")
         return paths
 
     def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:
@@ -353,7 +353,7 @@ def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
     """Reasons why the curve of some paths is not complete, else ''."""
     broken = [path for path in paths if not path.status.is_whole]
     reasons = dict.fromkeys(
-        f"stopped at {with_unit(scene, path.parameter[-1])}: {path.status.value}" for path in broken
+        f"stopped at {frequency_text(scene, path.parameter[-1])}: {path.status.value}" for path in broken
     )
     missing = [*reasons, *filter(None, [problem])]
     return "; ".join(missing) or ("" if paths else "no solution was found to start from")
@@ -365,10 +365,10 @@ def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
         return "the start"
     folds = sum(path.where(Mark.FOLD).size for path in paths)
     turns = f", after {folds} fold{'s' if folds > 1 else ''}" if folds else ""
-    return with_unit(scene, paths[-1].parameter[-1]) + turns
+    return frequency_text(scene, paths[-1].parameter[-1]) + turns
 
 
-def with_unit(scene: Scene, omega: float) -> str:
+def frequency_text(scene: Scene, omega: float) -> str:
     """A frequency [rad/s] as text in the scene's unit."""
     return f"{omega / UNIT[scene.frequency_unit]:.8g} {scene.frequency_unit}"
 

@@ -17,7 +17,7 @@ from fcm.stability.quasi_static_modes import quasi_static_modes
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class _WorkspaceCache(threading.local):
+class _LastMultipliers(threading.local):
     """The workspace for multipliers that each thread used last, with its key."""
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class _WorkspaceCache(threading.local):
         self.multipliers: Multipliers | None = None
 
 
-_WORKSPACES = _WorkspaceCache()
+_WORKSPACES = _LastMultipliers()
 
 
 def multipliers_of(

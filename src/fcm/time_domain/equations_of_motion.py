@@ -19,7 +19,7 @@ from fcm.time_domain.contact_states import Codes, made
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.flow import Flows
 from fcm.time_domain.integrator import March
-from fcm.time_domain.measures import MotionIntegrals, Powers, Rows, Scan
+from fcm.time_domain.measures import MotionIntegrals, Powers, Scan, SparseRows
 from fcm.time_domain.options import TIME, FlowOptions
 from fcm.time_domain.segments import Segments, Steps, Walk
 from fcm.time_domain.variational import Derivative, Directional
@@ -160,7 +160,7 @@ class EquationsOfMotion:
         displacements[:, self.q] = self.scene.modal.shapes.T
         parts = displacements, self._force_rows(), held_limits(self), held_rows(self)
         rows = displacements, self.limit_rows, np.concatenate(parts)
-        first, second, third = (Scan(self.flows, Rows(each)) for each in rows)
+        first, second, third = (Scan(self.flows, SparseRows(each)) for each in rows)
         ends = np.cumsum([0, *(len(part) for part in parts)]).tolist()
         return first, second, third, ReportedRows(*(slice(a, b) for a, b in pairwise(ends)))
 

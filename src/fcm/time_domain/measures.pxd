@@ -18,7 +18,7 @@ cdef class MotionIntegrals(Walk):
     cdef void _weigh(self, double length) noexcept nogil
     cdef void _take(self, Py_ssize_t slot, double[::1] y, int end, double one, double sine, double cosine) noexcept nogil
 
-cdef class Rows:
+cdef class SparseRows:
     cdef readonly Py_ssize_t count
     cdef double[::1] entry
     cdef double[:, ::1] dense
@@ -29,7 +29,7 @@ cdef class Rows:
 cdef class Scan(Walk):
     cdef readonly double[::1] greatest, least
     cdef readonly double[:, ::1] place
-    cdef Rows _rows
+    cdef SparseRows _rows
     cdef double[::1] _powers
     cdef double[:, ::1] _there, _terms, _path
     cdef double[:, :, ::1] _values

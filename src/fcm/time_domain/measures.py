@@ -11,7 +11,7 @@ Extremes are roots of velocities (`Scan`). Only steps that may hold one are expa
 velocity changes its sign from end to end, or has an extreme of its own beyond zero between ends of one sign.
 And the extreme may be beyond the values at the ends of many steps, which are looked at before.
 
-The rows are those of numbers with which the state vector is multiplied, of which most are zeros (`Rows`).
+The rows are those of numbers by which the state vector is multiplied, most of them zeros (`SparseRows`).
 """
 
 from __future__ import annotations
@@ -339,7 +339,7 @@ class MotionIntegrals(Walk):
 
 
 @cython.cclass
-class Rows:
+class SparseRows:
     """Sparse rows (row, linear) acting on the state vector without the forces' phases."""
 
     def __init__(self, rows: FloatArray) -> None:
@@ -397,7 +397,7 @@ class Scan(Walk):
     `place` (2 rows, 2) is where they are: segment and position of all the least, then of the greatest.
     """
 
-    def __init__(self, flows: Flows, rows: Rows) -> None:
+    def __init__(self, flows: Flows, rows: SparseRows) -> None:
         Walk.__init__(self, flows)
         self._rows = rows
         self.greatest, self.least = np.zeros(rows.count), np.zeros(rows.count)

@@ -48,7 +48,7 @@ class ParameterLine(NamedTuple):
         return replace(scene.draft.curve(scene, scene.parameters, every, fix=fix), parameters=swept)
 
 
-def along(number: Number) -> ParameterLine:
+def line_along(number: Number) -> ParameterLine:
     """The line on which the parameter is the number itself."""
     return ParameterLine((number,), np.zeros(1), np.ones(1))
 
