@@ -11,7 +11,7 @@ import fcm
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark
-from fcm.harmonic_balance.response_quantities import contact_loads_along
+from fcm.harmonic_balance.contact_cycles import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.response.level import LevelRequest, trace_levels

@@ -16,9 +16,9 @@ from fcm.accuracy.reference_stretch import StretchFollower
 from fcm.accuracy.refinement import with_given_harmonics
 from fcm.branches.trace import traced
 from fcm.continuation import Status
+from fcm.harmonic_balance.contact_cycles import ContactRecord
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, WorkOptions
 from fcm.harmonic_balance.reported_quantities import reported_quantities
-from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact

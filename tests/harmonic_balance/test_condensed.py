@@ -13,7 +13,7 @@ from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.modal_condensation import CondensationOptions
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, DigitOptions, HarmonicBalanceOptions
-from fcm.harmonic_balance.response_quantities import recorded
+from fcm.harmonic_balance.reported_quantities import recorded
 from fcm.harmonic_balance.rounding import moved_across_curve, with_precise_fundamental
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict

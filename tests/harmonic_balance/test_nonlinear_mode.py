@@ -9,7 +9,7 @@ import scipy.linalg
 from fcm import load_scene
 from fcm.branches.trace import traced
 from fcm.continuation import Mark, Status
-from fcm.harmonic_balance.response_quantities import cycles, loops
+from fcm.harmonic_balance.contact_cycles import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.nonlinear_modes.backbone import ModeError, linear_modes, nonlinear_mode, truncation
 from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem

@@ -6,7 +6,7 @@ import fcm
 from fcm.branches.trace import traced
 from fcm.continuation import Mark
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance.response_quantities import recorded, table_errors
+from fcm.harmonic_balance.reported_quantities import recorded, table_errors
 from fcm.harmonic_balance.system import System
 
 BESIDE_CORNERS = 8  # points, which are moved otherwise

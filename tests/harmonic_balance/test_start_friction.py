@@ -10,8 +10,8 @@ import fcm
 from fcm.branches.trace import traced
 from fcm.cli.loop_cases import PlanarCase
 from fcm.contact.contact_law import ContactLaw
+from fcm.harmonic_balance.contact_cycles import ContactRecord
 from fcm.harmonic_balance.modal_condensation import CondensationOptions
-from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.reduction.restore import unknowns
 from fcm.response import trace

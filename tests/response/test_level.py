@@ -12,7 +12,7 @@ from fcm.branches.force_level import LevelRange, level_curve, linear_resonances,
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.shared_levels import clear, shared_curve
 from fcm.continuation import Status
-from fcm.harmonic_balance.response_quantities import recorded_at_levels
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.level import LevelRequest, trace_levels
@@ -107,7 +107,7 @@ def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():
     )
     passings = path.z[path.parameter == level]
     passings[:, -1] = 1.5
-    amplitude = recorded_at_levels(system, passings, np.full(2, level))[2]
+    amplitude = reported_at(system, passings, level=np.full(2, level)).amplitude
     for z, each in zip(passings, amplitude, strict=True):  # and one more on the way to where all is linear
         exact = periodic(weak, 1.5, state(System(weak, up_to(5)), z))
         assert exact.states == ("SEP",)

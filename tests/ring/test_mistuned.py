@@ -11,7 +11,7 @@ import pytest
 
 import fcm
 from fcm.branches.force_level import solutions
-from fcm.harmonic_balance.response_quantities import amplitudes_at
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.options import ResponseOptions, SweepOptions
@@ -103,8 +103,8 @@ def test_the_balance_is_that_of_the_ring_written_out(sectors, order, contacts, h
         for name in ("residual", "jacobian"):
             values, wanted = (np.array(getattr(balance, name)) for balance in (found, expected))
             assert np.abs(values - wanted).max() < 1e-10 * np.abs(wanted).max()
-        (X,), (mean,) = amplitudes_at(one, z[None])
-        (ring_X,), (ring_mean,) = amplitudes_at(whole, z[None])
+        of_one, of_ring = reported_at(one, z[None]), reported_at(whole, z[None])
+        (X,), (mean,), (ring_X,), (ring_mean,) = of_one.X, of_one.mean, of_ring.X, of_ring.mean
         assert pytest.approx(ring_X, rel=1e-8, abs=1e-10 * np.abs(ring_X).max()) == X
         assert mean == pytest.approx(ring_mean, rel=1e-8, abs=1e-10 * np.abs(ring_X).max())
 

@@ -8,7 +8,8 @@ import pytest
 import fcm
 from fcm.branches.force_level import solutions
 from fcm.branches.trace import traced
-from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
+from fcm.harmonic_balance.contact_cycles import cycles, loops
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.stability.bifurcations import stability
@@ -42,8 +43,8 @@ def test_solutions_of_a_sector_solve_the_ring(sectors, order, contacts, harmonic
         balance = whole.new_balance()
         balance.evaluate(around)
         assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
-        (X,), (mean,) = amplitudes_at(one, z[None])
-        (ring_X,), (ring_mean,) = amplitudes_at(whole, around[None])
+        of_one, of_ring = reported_at(one, z[None]), reported_at(whole, around[None])
+        (X,), (mean,), (ring_X,), (ring_mean,) = of_one.X, of_one.mean, of_ring.X, of_ring.mean
         phase = 2.0 * np.pi * order / sectors * np.outer(range(sectors), harmonics)
         expected = np.exp(1j * phase)[..., None] * X[None, :, :3]
         found = ring_X.reshape(len(harmonics), sectors, 3).swapaxes(0, 1)
@@ -188,5 +189,5 @@ def test_a_base_that_moves_along_the_axis_shakes_all_sectors():
     balance = whole.new_balance()
     balance.evaluate(around)
     assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
-    (X,), (ring_X,) = (amplitudes_at(of, at[None])[0] for of, at in ((one, z), (whole, around)))
+    (X,), (ring_X,) = (reported_at(of, at[None]).X for of, at in ((one, z), (whole, around)))
     assert ring_X[:, :3] == pytest.approx(X[:, :3], rel=1e-9, abs=1e-11 * np.abs(X).max())

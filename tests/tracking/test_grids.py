@@ -11,7 +11,7 @@ from fcm.cli.track import as_table
 from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.options import HarmonicBalanceOptions, WorkOptions
-from fcm.harmonic_balance.response_quantities import recorded
+from fcm.harmonic_balance.reported_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise

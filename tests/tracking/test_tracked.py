@@ -14,7 +14,7 @@ from fcm.branches.trace import traced
 from fcm.cli.caveats import tracked_uncertain
 from fcm.continuation import Mark
 from fcm.continuation.options import StepOptions
-from fcm.harmonic_balance.response_quantities import recorded
+from fcm.harmonic_balance.reported_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise

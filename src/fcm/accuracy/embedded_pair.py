@@ -29,9 +29,9 @@ from fcm.accuracy.reference_pieces import CurvePiece, ReportedPath, distinct, le
 from fcm.continuation import Mark, Path
 from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.contact_cycles import ContactRecord
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
@@ -58,7 +58,7 @@ class PathErrors(Frozen):
     its amplitude without feedback, at peaks and folds, over the greatest amplitude of the degree of freedom
     to which it matters most.
     reference: the harmonics with which it is followed elsewhere.
-    contact_loads (point, contact, 4): of the contact loads, see `response_quantities.cycles`, each relative
+    contact_loads (point, contact, 4): of the contact loads, see `contact_cycles.cycles`, each relative
     to itself; infinite where it is 0, but not in the reference.
     greatest (contact, 4): of the greatest of each along the path.
     contacts: states and loads of the contacts of the path itself.

@@ -14,8 +14,9 @@ import numpy as np
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR, VALIDITY, PairOptions
 from fcm.accuracy.reference_harmonics import reference_harmonics
+from fcm.harmonic_balance.contact_cycles import contact_loads_along
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.harmonic_balance.response_quantities import contact_loads_along, recorded_at_levels
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
@@ -101,7 +102,7 @@ def _balanced(
         known[i] = newton.correct(1.0) and (newton.orientation * np.sign(newton.tangent[-1]) > 0.0) == even
         found[i] = newton.z
         found[i, -1] = one[-1]
-    amplitude = recorded_at_levels(finer, found, level)[2]
+    amplitude = reported_at(finer, found, level=level).amplitude
     contact_loads = contact_loads_along(finer, found)
     amplitude[~known], contact_loads[~known] = np.nan, np.nan
     return amplitude, contact_loads

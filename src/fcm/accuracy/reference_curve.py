@@ -34,10 +34,10 @@ from fcm.continuation import Mark, Path
 from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.consecutive_points import runs
+from fcm.harmonic_balance.contact_cycles import contact_loads_along
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.known_motions import KnownMotions

@@ -16,7 +16,7 @@ from fcm.branches.options import FRICTION, FrictionOptions
 from fcm.branches.shakedown import may_wedge, shakedown_at
 from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Problem, follow
-from fcm.harmonic_balance.response_quantities import ContactRecord
+from fcm.harmonic_balance.contact_cycles import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 

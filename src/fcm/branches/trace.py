@@ -20,7 +20,7 @@ from fcm.continuation.path import PathInterrupted
 from fcm.continuation.problem import Problem
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import charged_to_work
-from fcm.harmonic_balance.response_quantities import recorded
+from fcm.harmonic_balance.reported_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import undetermined
 from fcm.model.scene import FloatArray

@@ -15,7 +15,8 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.export.options import EXPORT, ExportOptions
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.response_quantities import ContactRecord, amplitudes_at
+from fcm.harmonic_balance.contact_cycles import ContactRecord
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Modal, Scene
 from fcm.reduction.restore import corrected, unknowns
@@ -167,7 +168,8 @@ class _Solver(Frozen):
     def _motion(self, number: int, z: FloatArray, stable: float, of: tuple[str, ...]) -> ResponseMotion:
         modal = None
         if self.in_modes is not None:
-            X, mean = amplitudes_at(self.in_modes, z[None])
+            in_modes = reported_at(self.in_modes, z[None])
+            X, mean = in_modes.X, in_modes.mean
             modal = np.concatenate((mean[0, :, None], 1j * X[0].T), axis=1)
         force = contact_forces(self.system, z)
         swept, harmonics = dict(self.curve.parameters), self.system.harmonics

@@ -26,8 +26,8 @@ from fcm.fit.least_squares_rows import ResidualRows
 from fcm.fit.options import NEAREST, FitOptions, NearestOptions
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.reported_quantities import recorded
 from fcm.harmonic_balance.residual import Balance
-from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.scene.address import LEVEL

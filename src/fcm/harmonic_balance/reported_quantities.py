@@ -1,17 +1,37 @@
-"""Quantities that are reported along a path: displacements, amplitudes, contact forces."""
+"""What is reported at the points of traced paths: displacements, amplitudes, contact forces."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
+from fcm.continuation.corrector import distances
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.residual import PointQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
+IntArray = npt.NDArray[np.intp]
 ComplexArray = npt.NDArray[np.complex128]
+
+
+class PointRecord(Frozen):
+    """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
+
+    path: IntArray  # (point,) number of the path
+    z: FloatArray  # (point, unknown + 1)
+    mark: npt.NDArray[np.int64]  # (point,)
+    X: ComplexArray  # (point, harmonic, dof)
+    mean: FloatArray  # (point, dof)
+    amplitude: FloatArray  # (point, dof) half the peak-to-peak
+    force: FloatArray  # (point, unknown) of the contacts, laid out as the unknowns
+    tangent: FloatArray  # (point, unknown + 1) along the path
+    orientation: FloatArray  # (point,)
+    linear: npt.NDArray[np.bool_]  # (point,) where no contact slips or separates
 
 
 class ReportedQuantities(Frozen):
@@ -28,12 +48,12 @@ class ReportedQuantities(Frozen):
     growth: FloatArray
     linear: npt.NDArray[np.bool_]
 
-    def with_rows(self, after: npt.NDArray[np.intp], other: ReportedQuantities) -> ReportedQuantities:
+    def with_rows(self, after: IntArray, other: ReportedQuantities) -> ReportedQuantities:
         """The quantities with those at the points of another inserted after some points."""
         rows = zip(vars(self).values(), vars(other).values(), strict=True)
         return ReportedQuantities(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
 
-    def part(self, rows: slice | npt.NDArray[np.intp]) -> ReportedQuantities:
+    def part(self, rows: slice | IntArray) -> ReportedQuantities:
         """The quantities at some points."""
         return ReportedQuantities(*(mine[rows] for mine in vars(self).values()))
 
@@ -43,10 +63,17 @@ def reported_quantities(system: System, path: Path) -> ReportedQuantities:
     return reported_at(system, path.z, path.direction)
 
 
-def reported_at(system: System, z: FloatArray, direction: FloatArray) -> ReportedQuantities:
-    """The reported quantities at points z with directions there, both (point, unknown + 1)."""
+def reported_at(
+    system: System, z: FloatArray, direction: FloatArray | None = None, level: FloatArray | None = None
+) -> ReportedQuantities:
+    """The reported quantities at points z (point, unknown + 1).
+
+    Without directions there, (point, unknown + 1), growth is 0. Forces are times level (point,), 1 without.
+    """
     points = PointQuantities(system.shared_balance, len(z))
-    points.evaluate(z, direction, np.ones(len(z)))
+    along = np.zeros_like(z) if direction is None else direction
+    times = np.ones(len(z)) if level is None else np.ascontiguousarray(level)
+    points.evaluate(np.ascontiguousarray(z), along, times)
     X = np.empty(np.shape(points.re), dtype=np.complex128)
     X.real, X.imag = points.re, points.im
     return ReportedQuantities(
@@ -57,3 +84,43 @@ def reported_at(system: System, z: FloatArray, direction: FloatArray) -> Reporte
         growth=np.asarray(points.growth),
         linear=np.asarray(points.linear) > 0,
     )
+
+
+def recorded(
+    system: System, paths: Sequence[Path], quantities: Sequence[ReportedQuantities] | None = None
+) -> PointRecord:
+    """The points of paths; quantities is what is reported along each, if it is known."""
+    z = np.concatenate([path.z for path in paths])
+    if quantities is None:
+        quantities = [reported_quantities(system, path) for path in paths]
+    X, mean, amplitude, force, linear = (
+        joined([getattr(one, name) for one in quantities])
+        for name in ("X", "mean", "amplitude", "force", "linear")
+    )
+    number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
+    names = ("mark", "direction", "orientation")
+    mark, tangent, orientation = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
+    return PointRecord(number, z, mark, X, mean, amplitude, force, tangent, orientation, linear)
+
+
+def table_errors(system: System, points: PointRecord) -> FloatArray:
+    """Relative errors (point,) of the table's own solutions: one Newton step of its balance.
+
+    Relative to the unknowns' size; 0 where no contact slips or separates, or no table is used.
+    """
+    error = np.zeros(points.path.size)
+    if system.table_balance is None:
+        return error
+    system.table_balance.reset_balance()
+    slips = ~points.linear
+    z, tangent = (np.ascontiguousarray(of[slips]) for of in (points.z, points.tangent))
+    # a unit of the unknowns is their size times the root of their number
+    error[slips] = distances(system.table_balance.shared_stepper.newton, z, tangent) * np.sqrt(
+        system.layout.ports
+    )
+    return error
+
+
+def joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """Arrays one after the other in one; a single one is not copied."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -21,8 +21,8 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.options import DigitOptions
+from fcm.harmonic_balance.reported_quantities import PointRecord
 from fcm.harmonic_balance.residual import Balance
-from fcm.harmonic_balance.response_quantities import PointRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Force
 from fcm.structure.linear import Linear, amplitudes, linear_of

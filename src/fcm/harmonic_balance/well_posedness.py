@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.response_quantities import cycles, loops
+from fcm.harmonic_balance.contact_cycles import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.structure.options import RIGID_BODY

@@ -13,7 +13,7 @@ from fcm.continuation.corrector import Newton
 from fcm.continuation.follow import Progress
 from fcm.continuation.nearby_solution import solution_near
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.response_quantities import contact_loads_along
+from fcm.harmonic_balance.contact_cycles import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem, ComplexArray, ModeGuess

@@ -7,8 +7,9 @@ import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
 from fcm.continuation.nearby_solution import begin_near
+from fcm.harmonic_balance.contact_cycles import cycles, loops
 from fcm.harmonic_balance.contact_motions import contact_motions
-from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.negligible_parts import ReducedScenes
@@ -117,7 +118,7 @@ def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
         moved = corrected(newton, z)
         if moved is None:
             return np.inf
-        X = amplitudes_at(system, moved[None])[0][0]
+        X = reported_at(system, moved[None]).X[0]
         change = np.abs(X - before).max() / np.abs(X).max()
         # what the correction moved along the frequency counts as well, relative to the range
         worst = max(worst, float(change + abs(moved[-1] - z[-1]) / (high - low)))

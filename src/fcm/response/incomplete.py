@@ -7,8 +7,8 @@ import numpy.typing as npt
 
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.continuation import Status
+from fcm.harmonic_balance.reported_quantities import PointRecord
 from fcm.harmonic_balance.residual import PointQuantities
-from fcm.harmonic_balance.response_quantities import PointRecord
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import REASONS, hold_unknown, undetermined

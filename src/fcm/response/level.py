@@ -23,9 +23,10 @@ from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.contact_cycles import cycles, loops
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
-from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.system import System
@@ -216,7 +217,8 @@ def _points(system: System, path: Path, inside: IntArray, omega: float) -> dict[
     rows = np.insert(np.arange(inside.size), left, -1)  # -1: outside the span
     level, z = path.parameter[inside], path.z[inside].copy()
     z[:, -1] = omega
-    X, mean, amplitude = recorded_at_levels(system, z, level)
+    reported = reported_at(system, z, level=level)
+    X, mean, amplitude = reported.X, reported.mean, reported.amplitude
     X = 1j * X
     first, parity = X[:, system.harmonics.index(1)], path.parity[inside]
     loop = loops(system, z)

@@ -14,9 +14,9 @@ from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.contact_cycles import cycles, loops
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
-from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene

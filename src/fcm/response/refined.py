@@ -20,8 +20,8 @@ from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.search import with_further_branches
 from fcm.branches.symmetry_loss import symmetry_loss
 from fcm.frozen import Frozen
+from fcm.harmonic_balance.contact_cycles import ContactRecord
 from fcm.harmonic_balance.reported_quantities import reported_at
-from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.master_dofs import with_all_dofs
 from fcm.response.options import SWEEP

@@ -28,9 +28,10 @@ from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark, Path, Status
 from fcm.continuation.follow import Progress
 from fcm.distinct_values import distinct_values
+from fcm.harmonic_balance.contact_cycles import ContactRecord
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
+from fcm.harmonic_balance.reported_quantities import PointRecord, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_precise_fundamental
 from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.stiff_contacts import too_stiff

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.options import VALIDITY, ValidityOptions
 from fcm.frozen import Frozen
-from fcm.harmonic_balance.response_quantities import cycles, loops
+from fcm.harmonic_balance.contact_cycles import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.incomplete import no_steady_states, reason_for

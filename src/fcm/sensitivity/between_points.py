@@ -89,7 +89,7 @@ class _Way:
         z = np.array([one for one in points if one is not None])
         if len(z) < len(x):
             return
-        amplitude = reported_at(self.system, z, np.zeros_like(z)).amplitude[:, self.columns[which]]
+        amplitude = reported_at(self.system, z).amplitude[:, self.columns[which]]
         of_amplitude, of_omega = (
             chebyshev.chebfit(x, amplitude, degree),
             chebyshev.chebfit(x, z[:, -1], degree),

@@ -1,20 +1,17 @@
-"""Quantities that are reported of the points of traced paths: displacements, loops, states, energies."""
+"""Loops, states over a cycle and loads of the contacts, at points of traced paths."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.loop import sequences
-from fcm.continuation import Path
-from fcm.continuation.corrector import distances
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.options import MIN_AMPLITUDE
-from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
-from fcm.harmonic_balance.residual import PointQuantities, cycles_of
+from fcm.harmonic_balance.reported_quantities import joined
+from fcm.harmonic_balance.residual import cycles_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
 
@@ -24,21 +21,6 @@ LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negativ
 
 IntArray = npt.NDArray[np.intp]
 ComplexArray = npt.NDArray[np.complex128]
-
-
-class PointRecord(Frozen):
-    """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
-
-    path: IntArray  # (point,) number of the path
-    z: FloatArray  # (point, unknown + 1)
-    mark: npt.NDArray[np.int64]  # (point,)
-    X: ComplexArray  # (point, harmonic, dof)
-    mean: FloatArray  # (point, dof)
-    amplitude: FloatArray  # (point, dof) half the peak-to-peak
-    force: FloatArray  # (point, unknown) of the contacts, laid out as the unknowns
-    tangent: FloatArray  # (point, unknown + 1) along the path
-    orientation: FloatArray  # (point,)
-    linear: npt.NDArray[np.bool_]  # (point,) where no contact slips or separates
 
 
 class ContactRecord(Frozen):
@@ -62,7 +44,7 @@ class ContactRecord(Frozen):
     def joined(cls, parts: Sequence[ContactRecord]) -> ContactRecord:
         """The record of the points of several records, one after the other."""
         return cls(
-            *(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
+            *(joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
         )
 
     def part(self, rows: IntArray) -> ContactRecord:
@@ -77,62 +59,6 @@ class ContactRecord(Frozen):
             np.insert(words, at, other.words, axis=0),
             np.insert(self.contact_loads, at, other.contact_loads, axis=0),
         )
-
-
-def recorded(
-    system: System, paths: Sequence[Path], quantities: Sequence[ReportedQuantities] | None = None
-) -> PointRecord:
-    """The points of paths; quantities is what is reported along each, if it is known."""
-    z = np.concatenate([path.z for path in paths])
-    if quantities is None:
-        quantities = [reported_quantities(system, path) for path in paths]
-    X, mean, amplitude, force, linear = (
-        _joined([getattr(one, name) for one in quantities])
-        for name in ("X", "mean", "amplitude", "force", "linear")
-    )
-    number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
-    names = ("mark", "direction", "orientation")
-    mark, tangent, orientation = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
-    return PointRecord(number, z, mark, X, mean, amplitude, force, tangent, orientation, linear)
-
-
-def table_errors(system: System, points: PointRecord) -> FloatArray:
-    """Relative errors (point,) of the table's own solutions: one Newton step of its balance.
-
-    Relative to the unknowns' size; 0 where no contact slips or separates, or no table is used.
-    """
-    error = np.zeros(points.path.size)
-    if system.table_balance is None:
-        return error
-    system.table_balance.reset_balance()
-    slips = ~points.linear
-    z, tangent = (np.ascontiguousarray(of[slips]) for of in (points.z, points.tangent))
-    # a unit of the unknowns is their size times the root of their number
-    error[slips] = distances(system.table_balance.shared_stepper.newton, z, tangent) * np.sqrt(
-        system.layout.ports
-    )
-    return error
-
-
-def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Arrays one after the other in one; a single one is not copied."""
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)
-
-
-def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
-    """Amplitudes (point, harmonic, dof) and means (point, dof) at points z (point, unknown + 1)."""
-    X, mean, _ = recorded_at_levels(system, z, np.ones(z.shape[0]))
-    return X, mean
-
-
-def recorded_at_levels(
-    system: System, z: FloatArray, level: FloatArray
-) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """X, mean and amplitude, as of a `PointRecord`, at points z with all forces times level (point,)."""
-    points = PointQuantities(system.shared_balance, z.shape[0])
-    points.evaluate(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
-    X = np.asarray(points.re) + 1j * np.asarray(points.im)
-    return X, np.asarray(points.mean), np.asarray(points.amplitude)
 
 
 def loops(system: System, z: FloatArray) -> FloatArray:
