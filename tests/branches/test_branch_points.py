@@ -7,7 +7,7 @@ import pytest
 
 from fcm.accuracy.refinement import every_branch
 from fcm.branches.branch_points import branch_points
-from fcm.branches.options import FoldOptions
+from fcm.branches.options import BranchingOptions, FoldOptions
 from fcm.branches.search import with_unsymmetric
 from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.symmetry_loss import SymmetryLoss, symmetry_loss
@@ -87,6 +87,8 @@ def test_symmetry_is_lost_by_even_harmonics_whatever_odd_ones_are_balanced():
     odd = System(scene, (1, 2, 3, 7))
     lost = symmetry_loss(odd, traced(odd))
     assert 4 in lost.harmonics and all(h % 2 == 0 for h in lost.harmonics)
+    none = System(scene, odd.harmonics, other_options=(BranchingOptions(even_factor=0.0),))
+    assert symmetry_loss(none, traced(none)) == SymmetryLoss()  # as no even harmonics are tried
     with_them = System(scene, tuple(sorted({1, 2, 3, 5, 7, *lost.harmonics})))
     assert symmetry_loss(with_them, traced(with_them)) == SymmetryLoss()
     unsymmetric = [

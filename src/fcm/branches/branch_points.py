@@ -44,13 +44,11 @@ class BranchPoint(Frozen):
     direction: FloatArray
 
 
-def branch_points(
-    system: System, paths: Sequence[Path], options: BranchingOptions = BRANCHING
-) -> Iterator[BranchPoint]:
+def branch_points(system: System, paths: Sequence[Path]) -> Iterator[BranchPoint]:
     """The branch points of paths of a system."""
     if any(sign_changes(path.orientation) for path in paths):
         balance = system.new_balance()
-        yield from branch_points_of(balance, partial(jacobian_of, balance), paths, options)
+        yield from branch_points_of(balance, partial(jacobian_of, balance), paths, system.option(BRANCHING))
 
 
 def branch_points_of(

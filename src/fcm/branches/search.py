@@ -10,7 +10,7 @@ from fcm.branches.force_level import level_frequencies, solutions_at
 from fcm.branches.friction_homotopy import with_friction_raised
 from fcm.branches.isolas import folds_to_follow, level_one_crossings
 from fcm.branches.mirror_images import symmetric_half
-from fcm.branches.options import BRANCHING, LEVEL_CURVE, BranchingOptions
+from fcm.branches.options import BRANCHING, LEVEL_CURVE
 from fcm.branches.prolongation import prolongated
 from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.symmetry_in_level import unsymmetric_solutions
@@ -90,16 +90,16 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
     return replace(found, symmetry_lost_in_level=tuple(lost)) if lost else found
 
 
-def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:
+def with_branching(system: System, found: Traced) -> Traced:
     """The branches with those that leave them at branch points, of two mirror images one."""
     if not system.scene.contacts:
         return found
     return with_leaving(
         found,
         lambda found: found.branches.paths,
-        partial(branch_points, system, options=options),
+        partial(branch_points, system),
         partial(_with_branches_of, system),
-        options,
+        system.option(BRANCHING),
     )
 
 

@@ -43,8 +43,9 @@ def parts_of(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     return parts[even], parts[~even]
 
 
-def is_symmetric(system: System, path: Path, options: BranchingOptions = BRANCHING) -> bool:
+def is_symmetric(system: System, path: Path) -> bool:
     """Whether the motions of a path are symmetric, and not all of them linear, of which each is."""
+    options = system.option(BRANCHING)
     some = np.arange(0, len(path.z), max(len(path.z) // options.symmetry_points, 1))
     for z in path.z[some]:
         even, odd = parts_of(system, z)
@@ -53,12 +54,10 @@ def is_symmetric(system: System, path: Path, options: BranchingOptions = BRANCHI
     return not reported_at(system, path.z[some], path.direction[some]).linear.all()
 
 
-def broken_symmetries(
-    system: System, symmetric: FloatArray, other: FloatArray, options: BranchingOptions = BRANCHING
-) -> Iterator[Symmetry]:
+def broken_symmetries(system: System, symmetric: FloatArray, other: FloatArray) -> Iterator[Symmetry]:
     """The symmetries of which a symmetric solution (unknown + 1,) is its own image, and the image of another
     one is a solution, and not the same."""
-    balance = system.new_balance()
+    balance, options = system.new_balance(), system.option(BRANCHING)
     for later in (True, False):
         symmetry = _symmetry_of(system, symmetric, later, options)
         if symmetry is None:

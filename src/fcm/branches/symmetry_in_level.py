@@ -50,22 +50,19 @@ class UnsymmetricSolutions(NamedTuple):
 
 
 def unsymmetric_solutions(
-    system: System,
-    found: Sequence[LevelSolutions],
-    paths: Sequence[Path],
-    options: BranchingOptions = BRANCHING,
+    system: System, found: Sequence[LevelSolutions], paths: Sequence[Path]
 ) -> UnsymmetricSolutions:
     """Unsymmetric solutions that curves of the level lead to where it was followed, if a path of a system is
     symmetric."""
     few = system.with_harmonics(tuple(range(1, few_harmonics(system) + 1)))
-    if len(few.harmonics) < 2 or not any(is_symmetric(system, path, options) for path in paths):
+    if len(few.harmonics) < 2 or not any(is_symmetric(system, path) for path in paths):
         return UnsymmetricSolutions()
     folds, work = system.option(FOLDS), system.work
     seconds = max(folds.work_fraction * work.seconds, folds.min_seconds)
     solutions, left = list[UnsymmetricSolution](), dict.fromkeys(one.omega for one in found)
     with suppress(WorkLimitError), work.limited_to(work.seconds + seconds):
         for omega in tuple(left):
-            new, whole = _past_branch_points(few, omega, options)
+            new, whole = _past_branch_points(few, omega, few.option(BRANCHING))
             solutions += new
             if whole:
                 del left[omega]

@@ -36,15 +36,18 @@ class SymmetryLoss(Frozen):
     harmonics: tuple[int, ...] = ()
 
 
-def symmetry_loss(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> SymmetryLoss:
+def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
     """Places where branches of a system leave symmetric ones by even harmonics that it lacks."""
-    few = len(system.scene.contacts) < system.option(LEVEL_REACH).min_contacts
+    few, options = (
+        len(system.scene.contacts) < system.option(LEVEL_REACH).min_contacts,
+        system.option(BRANCHING),
+    )
     most = int((options.even_factor if few else 1.0) * system.harmonics[-1])
     every = tuple(sorted({*system.harmonics, *range(2, most + 1, 2)}))
     if every == system.harmonics or not system.scene.contacts:
         return SymmetryLoss()
     frequencies, harmonics = list[float](), set[int]()
-    for path in (one for one in found.branches.paths if is_symmetric(system, one, options)):
+    for path in (one for one in found.branches.paths if is_symmetric(system, one)):
         omega, lacking = _loss_of(system, system.with_harmonics(every), path, options)
         frequencies += omega
         harmonics |= lacking

@@ -16,7 +16,7 @@ from scipy.interpolate import Akima1DInterpolator
 from scipy.spatial import cKDTree
 
 from fcm.compare.lines import FloatArray, Line
-from fcm.compare.options import COMPARE, ChainOptions
+from fcm.compare.options import COMPARE
 
 
 class Shape:
@@ -25,12 +25,10 @@ class Shape:
     smooth : by local cubics, which do not overshoot at corners (Akima); else straight, as lines are drawn.
     """
 
-    def __init__(
-        self, line: Line, size: FloatArray, smooth: bool, options: ChainOptions = COMPARE.chain
-    ) -> None:
+    def __init__(self, line: Line, size: FloatArray, smooth: bool) -> None:
         parts = [_coordinates(w, a, size) for w, a in line.branches()]
         self.points = np.concatenate([*parts, np.empty((0, size.size + 1))])
-        self.chains = [_fine(part, smooth, options) for part in parts]
+        self.chains = [_fine(part, smooth) for part in parts]
         chain = np.concatenate([*self.chains, np.empty((0, size.size + 1))])
         self.chain = chain
         if chain.size:
@@ -94,13 +92,14 @@ def _coordinates(frequency: FloatArray, amplitude: FloatArray, size: FloatArray)
     return np.column_stack((np.log(frequency), amplitude / (size * np.sqrt(size.size))))
 
 
-def _fine(points: FloatArray, smooth: bool, options: ChainOptions) -> FloatArray:
+def _fine(points: FloatArray, smooth: bool) -> FloatArray:
     length = np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1))
-    kept = points[np.concatenate(([True], length > options.distinct_length))]
+    chain = COMPARE.chain
+    kept = points[np.concatenate(([True], length > chain.distinct_length))]
     if kept.shape[0] < 2:
         return kept
     arc = np.concatenate(([0.0], np.cumsum(np.sqrt((np.diff(kept, axis=0) ** 2).sum(axis=1)))))
-    fine = min(max(options.chain_points // kept.shape[0], options.min_fineness), options.max_fineness)
+    fine = min(max(chain.chain_points // kept.shape[0], chain.min_fineness), chain.max_fineness)
     share = np.arange(fine) / fine
     at = np.append((arc[:-1, None] + share * np.diff(arc)[:, None]).ravel(), arc[-1])
     if smooth and kept.shape[0] > 2:

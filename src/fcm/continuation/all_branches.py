@@ -11,7 +11,7 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.continuation.events import Events
 from fcm.continuation.follow import follow
-from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
+from fcm.continuation.options import FOLLOW, PATH, FollowOptions
 from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
 from fcm.frozen import Frozen
@@ -155,12 +155,12 @@ def _has_ends_on(paths: Sequence[Path], path: Path, problem: Problem) -> bool:
     )
 
 
-def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> bool:
+def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
     """Whether a solution z (n + 1,) lies on a path; see `point_before`."""
-    return point_before(path, z, problem, options) is not None
+    return point_before(path, z, problem) is not None
 
 
-def point_before(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> int | None:
+def point_before(path: Path, z: FloatArray, problem: Problem) -> int | None:
     """The point of a path before a solution z (n + 1,) on it, -1 if that is the first; None if it is not.
 
     It does where it is a point of that. Between the points no distance tells, as branches come close to each
@@ -171,29 +171,29 @@ def point_before(path: Path, z: FloatArray, problem: Problem, options: PathOptio
     scale = np.array(problem.scale)
     points = (path.z - z) / scale
     square = (points * points).sum(axis=1)
-    if float(square.min()) < options.solution_tolerance**2:
+    if float(square.min()) < PATH.solution_tolerance**2:
         return int(square.argmin()) - 1
     newton = Newton(problem)
-    for i, part in _nearest_chords(points, options):
+    for i, part in _nearest_chords(points):
         row = points[i + 1] - points[i]
         newton.scale[:], newton.row[:] = scale, row / np.linalg.norm(row)
         newton.z[:] = path.z[i] + part * (path.z[i + 1] - path.z[i])
         if (
             newton.correct(1.0)
-            and np.linalg.norm((np.asarray(newton.z) - z) / scale) < options.solution_tolerance
+            and np.linalg.norm((np.asarray(newton.z) - z) / scale) < PATH.solution_tolerance
         ):
             return i
     return None
 
 
-def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]:
+def _nearest_chords(points: FloatArray) -> list[tuple[int, float]]:
     """The chords between points next to which the origin lies, the nearest first, and where on them."""
     length, part, off = distances_from_chords(points)
-    near = np.argsort(off)[: options.nearest_chords].tolist()
+    near = np.argsort(off)[: PATH.nearest_chords].tolist()
     return [
         (i, float(part[i]))
         for i in near
-        if options.solution_tolerance < length[i] and off[i] < options.max_distance_ratio * length[i]
+        if PATH.solution_tolerance < length[i] and off[i] < PATH.max_distance_ratio * length[i]
     ]
 
 

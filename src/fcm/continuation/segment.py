@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation.corrector import Newton
-from fcm.continuation.options import PATH, PathOptions
+from fcm.continuation.options import PATH
 from fcm.continuation.path import FloatArray, Path
 from fcm.continuation.problem import Problem
 from fcm.cubic import curve_between
@@ -28,8 +28,8 @@ class Segment:
     directions, another as far along the chord on that through the nearest points that have been found.
     """
 
-    def __init__(self, problem: Problem, path: Path, first: int, options: PathOptions = PATH) -> None:
-        self.newton, self._flat = Newton(problem), options.min_cosine
+    def __init__(self, problem: Problem, path: Path, first: int) -> None:
+        self.newton, self._flat = Newton(problem), PATH.min_cosine
         problem.evaluate_scale(np.ascontiguousarray(path.z[first]))
         self._scale = np.array(problem.scale)
         self._ends = path.z[first : first + 2] / self._scale

@@ -91,9 +91,7 @@ def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: floa
     return Paired(pairs, distance[within], alone, tuple(node for node in other if node not in taken))
 
 
-def nearest_partners(
-    mesh: Mesh, pairs: Sequence[tuple[int, int]], options: PairingOptions = PAIRING
-) -> list[int | None]:
+def nearest_partners(mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> list[int | None]:
     """Node that is nearer to a pair's first node than its second one, for each pair; None if there is none.
 
     It is looked for among the second nodes of all pairs.
@@ -109,7 +107,7 @@ def nearest_partners(
     far = np.linalg.norm(first - second, axis=1) - distance
     size = float(np.ptp(np.concatenate((first, second)), axis=0).max())
     return [
-        pairs[k][1] if beyond > options.side_tolerance * size and pairs[k][1] != pair[0] else None
+        pairs[k][1] if beyond > PAIRING.side_tolerance * size and pairs[k][1] != pair[0] else None
         for pair, k, beyond in zip(pairs, place.tolist(), far.tolist(), strict=True)
     ]
 
@@ -128,7 +126,7 @@ class Plane(Frozen):
     size: float
 
 
-def fitted_plane(points: FloatArray, options: PairingOptions = PAIRING) -> Plane:
+def fitted_plane(points: FloatArray) -> Plane:
     """The plane with the least sum of squared distances from points (point, 3); its directions by `across`.
 
     Raises
@@ -146,15 +144,15 @@ def fitted_plane(points: FloatArray, options: PairingOptions = PAIRING) -> Plane
         raise MeshError(f"a plane is fitted to three points at least, and there are {len(points)}")
     centre = points.mean(axis=0)
     _, sizes, axes = np.linalg.svd(points - centre, full_matrices=False)
-    if sizes[1] <= options.line_tolerance * sizes[0]:
+    if sizes[1] <= PAIRING.line_tolerance * sizes[0]:
         raise MeshError("the points lie on a line, which is in no one plane")
-    normal = np.where(np.abs(axes[2]) < options.normal_tolerance, 0.0, axes[2])
-    first, second = across(normal, options)
+    normal = np.where(np.abs(axes[2]) < PAIRING.normal_tolerance, 0.0, axes[2])
+    first, second = across(normal)
     off, size = float(np.abs((points - centre) @ normal).max()), float(np.ptp(points, axis=0).max())
     return Plane(normal, first, second, centre, off, size)
 
 
-def across(normal: FloatArray, options: PairingOptions = PAIRING) -> tuple[FloatArray, FloatArray]:
+def across(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit vectors (3,) orthogonal to a normal and to each other.
 
     The first is nearest to one of the axes, the second is normal x first.
@@ -167,7 +165,7 @@ def across(normal: FloatArray, options: PairingOptions = PAIRING) -> tuple[Float
     first = along[int(np.linalg.norm(along, axis=1).round(9).argmax())]
     first = first / np.linalg.norm(first)
     second = np.cross(unit, first)
-    first, second = (np.where(np.abs(x) < options.normal_tolerance, 0.0, x) for x in (first, second))
+    first, second = (np.where(np.abs(x) < PAIRING.normal_tolerance, 0.0, x) for x in (first, second))
     return first, second
 
 
@@ -195,7 +193,7 @@ def beyond(mesh: Mesh, nodes: Sequence[int], direction: FloatArray) -> float:
     return 0.0 if inner is None else float((mesh.xyz[places].mean(axis=0) - inner) @ direction)
 
 
-def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int], options: PairingOptions = PAIRING) -> Plane:
+def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int]) -> Plane:
     """The plane with the normal out of the elements at some nodes.
 
     Raises
@@ -204,12 +202,10 @@ def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int], options: PairingOpti
         If the mesh has no elements there, or they lie in the plane.
     """
     out = beyond(mesh, nodes, plane.normal)
-    return _with_side(plane, out, "the elements of the mesh do not show it", "out of the structure", options)
+    return _with_side(plane, out, "the elements of the mesh do not show it", "out of the structure")
 
 
-def turned(
-    plane: Plane, mesh: Mesh, pairs: Sequence[tuple[int, int]], options: PairingOptions = PAIRING
-) -> Plane:
+def turned(plane: Plane, mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> Plane:
     """The plane with the normal from the first side of pairs to the second; see `side`.
 
     Raises
@@ -219,12 +215,12 @@ def turned(
     """
     along = side(mesh, pairs, plane.normal)
     what = "neither gaps nor elements of the mesh show it"
-    return _with_side(plane, along, what, "from the first set to the second", options)
+    return _with_side(plane, along, what, "from the first set to the second")
 
 
-def _with_side(plane: Plane, along: float, what: str, way: str, options: PairingOptions) -> Plane:
+def _with_side(plane: Plane, along: float, what: str, way: str) -> Plane:
     """The plane whose normal points where something lies along it; MeshError if nothing does."""
-    if abs(along) <= options.side_tolerance * plane.size:
+    if abs(along) <= PAIRING.side_tolerance * plane.size:
         raise MeshError(
             f"which side is which is unknown: {what}. Give the normal, as "
             f"{{ x = {plane.normal[0]:.6g}, y = {plane.normal[1]:.6g}, z = {plane.normal[2]:.6g} }} "

@@ -22,7 +22,7 @@ from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
 from fcm.nonlinear_modes.forced_response import at_amplitude, flanks, modal_force, resonances, resonant_level
-from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions
+from fcm.nonlinear_modes.options import NONLINEAR_MODE
 from fcm.response.accuracy_shortfall import remedy
 from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
@@ -172,7 +172,7 @@ def _recorded(mode: Mode, asked: ModeRequest, error: FloatArray, theirs: FloatAr
     if path.z.shape[0] == 0:
         return empty
     X, mean = mode.displacements()
-    amplitude = half_peak_to_peak(X, system.harmonics)
+    amplitude = half_peak_to_peak(X, system.harmonics, system.options.extremes)
     X, rows, unknown = 1j * X, np.arange(mode.omega.size), np.full(mode.omega.size, np.nan)
     whole, loop = path.status is Status.COMPLETE, loops(system, mode.contacts)
     words, contact_loads = cycles(system, mode.contacts, loop)
@@ -227,14 +227,12 @@ def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> Non
     )
 
 
-def _internal_resonance(
-    mode: Mode, options: NonlinearModeOptions = NONLINEAR_MODE
-) -> InternalResonance | None:
+def _internal_resonance(mode: Mode) -> InternalResonance | None:
     """Where further harmonics than the first have much of a mode's power; None if nowhere."""
     harmonics, power = np.array(mode.system.harmonics), mode.power
     further = np.where(harmonics > 1, power, 0.0)
     share = further.sum(axis=1)
-    at = share > options.shared_power
+    at = share > NONLINEAR_MODE.shared_power
     if not at.any():
         return None
     a, omega, most = mode.amplitude[at], mode.omega[at], further[share.argmax()].argmax()
@@ -284,10 +282,11 @@ def _resonances(mode: Mode, level: float) -> list[Resonance]:
     found = resonances(mode, level)
     if found is None:
         return []
-    amplitude = half_peak_to_peak(found.displacements()[0], found.system.harmonics)
+    system = found.system
+    amplitude = half_peak_to_peak(found.displacements()[0], system.harmonics, system.options.extremes)
     square = 1.0 - 2.0 * found.damping**2  # damped more, it has no greatest amplitude
     frequency = found.omega * np.sqrt(np.where(square > 0.0, square, np.nan))
-    dofs = found.system.scene.modal.dofs
+    dofs = system.scene.modal.dofs
     return [
         Resonance(level, float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)), float(D))
         for w, a, x, D in zip(frequency, found.amplitude, amplitude, found.damping, strict=True)

@@ -368,8 +368,8 @@ class ResponseOptions(Frozen):
         How the periodic motions are calculated of which exact curves consist.
     others : tuple
         Options of what is computed from a balance, each of the class of its package: `FoldOptions`,
-        `LevelOptions`, `LevelCurveOptions` and `LevelReachOptions` of the branches, `ValidityOptions` and
-        `StabilityOptions`.
+        `BranchingOptions`, `LevelOptions`, `LevelCurveOptions` and `LevelReachOptions` of the branches,
+        `ValidityOptions` and `StabilityOptions`.
     """
 
     balance: HarmonicBalanceOptions = HARMONIC_BALANCE

@@ -19,12 +19,12 @@ from fcm.results.result import Curve
 BoolArray = npt.NDArray[np.bool_]
 
 
-def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
+def without_rounding(curve: Curve) -> Curve:
     """The curve with amplitudes of 0 where a degree of freedom moves by rounding alone.
 
     The peak of such a one is at no frequency, and has no error. Means stay: what is at rest may be displaced.
     """
-    rest = _at_rest(curve, options or RestOptions())
+    rest = _at_rest(curve)
     if not rest.any():
         return curve
     changed: dict[str, Any] = {
@@ -50,14 +50,14 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
     return replace(curve, **changed)
 
 
-def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
+def _at_rest(curve: Curve) -> BoolArray:
     """Mask (dof,) of the degrees of freedom that move by rounding alone, or not at all."""
     peaks = curve.peaks.values()  # between points they may be higher, and a nonlinear mode has none
     size = np.fmax.reduce(curve.amplitude, axis=0, initial=np.nan)
     size = np.fmax(size, [peak.amplitude for peak in peaks])
     rounding = np.array([peak.rounding for peak in peaks])
-    told = (size == 0.0) | (rounding >= options.uncertain)
-    return np.where(rounding < 0.0, at_rest(size, options), told)
+    told = (size == 0.0) | (rounding >= RestOptions().uncertain)
+    return np.where(rounding < 0.0, at_rest(size), told)
 
 
 def _extract(extract: CurveExtract, rest: BoolArray) -> CurveExtract:

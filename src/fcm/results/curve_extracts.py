@@ -14,7 +14,7 @@ from fcm.frozen import Frozen
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.results.jumps import FrequencySweep
 from fcm.results.lower_peaks import lower_peaks, rise_beside
-from fcm.results.options import RESULTS, PointErrorOptions
+from fcm.results.options import RESULTS
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
 if TYPE_CHECKING:
@@ -109,19 +109,17 @@ def _at_worst(curve: Curve) -> float:
     return float(curve.frequency[np.where(known, curve.truncation_error, -np.inf).argmax()])
 
 
-def _inaccurate_ranges(
-    curve: Curve, options: PointErrorOptions = RESULTS.point_errors
-) -> list[tuple[float, float, float]]:
+def _inaccurate_ranges(curve: Curve) -> list[tuple[float, float, float]]:
     """Ranges of frequency [rad/s] in which a branch has large errors, with the greatest error in each.
 
     Of a curve over the frequency, the widest range first.
     """
     if curve.level is not None or curve.mode is not None:
         return []
-    large = np.isfinite(curve.truncation_error) & (curve.truncation_error > options.least_error)
+    large = np.isfinite(curve.truncation_error) & (curve.truncation_error > RESULTS.point_errors.least_error)
     parts = [(curve.frequency[a:b], curve.truncation_error[a:b]) for a, b in runs(large)]
     ranges = [(float(at.min()), float(at.max()), float(error.max())) for at, error in parts]
-    wide = [one for one in ranges if one[1] - one[0] > options.least_width * one[1]]
+    wide = [one for one in ranges if one[1] - one[0] > RESULTS.point_errors.least_width * one[1]]
     return sorted(wide, key=lambda one: one[0] - one[1])
 
 

@@ -11,10 +11,11 @@ import numpy.typing as npt
 from fcm.distinct_values import distinct_values
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
-from fcm.results.options import RESULTS, JumpOptions
+from fcm.results.options import RESULTS
 from fcm.unknown_stability import unknown_stability
 
 BoolArray = npt.NDArray[np.bool_]
+JUMPS = RESULTS.jumps
 UNKNOWN = 0.5  # between unstable, 0, and stable, 1
 
 
@@ -44,10 +45,10 @@ class FrequencySweep(Frozen):
     jumps: list[Jump]
     unknown: list[UnknownStability]
 
-    def without_flips(self, options: JumpOptions = RESULTS.jumps) -> FrequencySweep:
+    def without_flips(self) -> FrequencySweep:
         """The sweep without jumps at which the period doubles and the amplitude hardly changes."""
         change = [
-            np.abs(one.after - one.before) > options.flip_tolerance * np.maximum(one.before, one.after)
+            np.abs(one.after - one.before) > JUMPS.flip_tolerance * np.maximum(one.before, one.after)
             for one in self.jumps
         ]
         kept = [
@@ -65,7 +66,6 @@ def swept(
     frequency: FloatArray,
     amplitude: FloatArray,
     stable: FloatArray,
-    options: JumpOptions = RESULTS.jumps,
     repeats: FloatArray | None = None,
 ) -> FrequencySweep:
     """Jumps of slow sweeps along a curve; amplitude (point, dof), stable 1, 0, or NaN where unknown.
@@ -90,10 +90,10 @@ def swept(
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
     points = _Points(frequency, amplitude, stable, np.ones(stable.size) if repeats is None else repeats)
-    points = _with_branch_points(_once(points, options), options)
+    points = _with_branch_points(_once(points))
     found = FrequencySweep([], [])
     for sweep in ("up", "down"):
-        _sweep(points, sweep, found, options.amplitude_tolerance)
+        _sweep(points, sweep, found, JUMPS.amplitude_tolerance)
     return found
 
 
@@ -110,14 +110,14 @@ class _Points(NamedTuple):
         return int(np.nan_to_num(self.repeats[point]))
 
 
-def _once(points: _Points, options: JumpOptions) -> _Points:
+def _once(points: _Points) -> _Points:
     """The points without those that are there twice, as a peak at a corner is.
 
     Where stability changes there, one is stable and the other not: a way along the stable side leads to it.
     """
     frequency, amplitude, stable, repeats = points
-    again = np.abs(np.diff(frequency)) <= options.frequency_tolerance * frequency[1:]
-    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=options.amplitude_tolerance, atol=0.0).all(axis=1)
+    again = np.abs(np.diff(frequency)) <= JUMPS.frequency_tolerance * frequency[1:]
+    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=JUMPS.amplitude_tolerance, atol=0.0).all(axis=1)
     if not again.any():
         return points
     kept = np.concatenate(([0], np.flatnonzero(~again) + 1))
@@ -125,7 +125,7 @@ def _once(points: _Points, options: JumpOptions) -> _Points:
     return _Points(frequency[kept], amplitude[kept], np.where(best == UNKNOWN, np.nan, best), repeats[kept])
 
 
-def _with_branch_points(points: _Points, options: JumpOptions) -> _Points:
+def _with_branch_points(points: _Points) -> _Points:
     """The curve with a stable point inserted where a stable branch leaves another branch.
 
     That is between two points of the other branch, one of which is stable.
@@ -141,7 +141,7 @@ def _with_branch_points(points: _Points, options: JumpOptions) -> _Points:
         for end, part in zip(ends.tolist(), share.tolist(), strict=True):
             if 0.0 < part < 1.0:
                 there = (1.0 - part) * amplitude[k] + part * amplitude[k + 1]
-                tolerance = options.amplitude_tolerance * float(there.max())
+                tolerance = JUMPS.amplitude_tolerance * float(there.max())
                 if (np.abs(amplitude[end] - there) <= tolerance).all():
                     places.append((k + 1, end))
     if not places:

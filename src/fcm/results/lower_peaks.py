@@ -10,13 +10,13 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.local_maxima import local_maxima, prominence
-from fcm.results.options import RESULTS, ListedPeakOptions
+from fcm.results.options import RESULTS
 
 _PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
 _SAMPLES = 129  # between two neighbours, the middle one among them
 
 
-def lower_peaks(amplitude: FloatArray, options: ListedPeakOptions = RESULTS.peaks) -> npt.NDArray[np.intp]:
+def lower_peaks(amplitude: FloatArray) -> npt.NDArray[np.intp]:
     """Places (peak, 2) of local maxima that are not the highest of their degree of freedom: dof and point.
 
     amplitude (point, dof) has rows of NaN between branches, whose ends are no maxima.
@@ -25,14 +25,15 @@ def lower_peaks(amplitude: FloatArray, options: ListedPeakOptions = RESULTS.peak
     >>> lower_peaks(np.transpose((u, v))).tolist()
     [[0, 1]]
     """
-    points, dofs = np.nonzero(local_maxima(amplitude, options.least_share))
+    points, dofs = np.nonzero(local_maxima(amplitude, RESULTS.peaks.least_share))
     if not points.size:
         return np.empty((0, 2), dtype=np.intp)
     highest = np.where(np.isnan(amplitude), -np.inf, amplitude).argmax(axis=0)
     found = [
         (d, k)
         for d, k in zip(dofs.tolist(), points.tolist(), strict=True)
-        if k != highest[d] and prominence(amplitude[:, d], k) > options.least_prominence * amplitude[k, d]
+        if k != highest[d]
+        and prominence(amplitude[:, d], k) > RESULTS.peaks.least_prominence * amplitude[k, d]
     ]
     return np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
 

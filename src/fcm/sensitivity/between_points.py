@@ -43,9 +43,7 @@ class InterpolationOptions(Frozen):
 INTERPOLATION = InterpolationOptions()
 
 
-def tops_between(
-    system: System, path: Path, quantities: ReportedQuantities, options: InterpolationOptions = INTERPOLATION
-) -> tuple[FloatArray, FloatArray]:
+def tops_between(system: System, path: Path, quantities: ReportedQuantities) -> tuple[FloatArray, FloatArray]:
     """Greatest amplitudes (dof,) of a path, and their frequencies, at its points or beside the highest of
     these: where the amplitude grows at one of two neighbours and shrinks at the other."""
     top, d = quantities.amplitude.argmax(axis=0), np.arange(quantities.amplitude.shape[1])
@@ -56,7 +54,7 @@ def tops_between(
     first = np.clip(first, 0, max(last - 1, 0))
     inside &= (quantities.growth[first, d] > 0.0) & (quantities.growth[np.minimum(first + 1, last), d] < 0.0)
     for i in np.unique(first[inside]).tolist():
-        way = _Way(system, path, i, np.flatnonzero(inside & (first == i)), options)
+        way = _Way(system, path, i, np.flatnonzero(inside & (first == i)))
         way.raise_to(height, omega)
     return height, omega
 
@@ -64,10 +62,8 @@ def tops_between(
 class _Way:
     """The curve from a point of a path to the next, for some degrees of freedom."""
 
-    def __init__(
-        self, system: System, path: Path, first: int, dofs: Indices, options: InterpolationOptions
-    ) -> None:
-        scene, self.options = system.scene, options
+    def __init__(self, system: System, path: Path, first: int, dofs: Indices) -> None:
+        scene = system.scene
         chosen = np.zeros(len(scene.modal.dofs), dtype=np.bool_)
         chosen[dofs] = True
         self.system = system.of(scene.at_attached_and(chosen))
@@ -77,13 +73,13 @@ class _Way:
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
         """Raises heights (dof,) and their frequencies to greater ones found on the way."""
-        self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, self.options.max_halvings)
+        self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, INTERPOLATION.max_halvings)
 
     def _part(
         self, low: float, high: float, which: Indices, height: FloatArray, omega: FloatArray, halvings: int
     ) -> None:
         """Searches a part of the curve for greater peaks, for some of its degrees of freedom."""
-        degree = self.options.degree
+        degree = INTERPOLATION.degree
         x = chebyshev.chebpts2(degree + 1)
         points = [self._at(low + 0.5 * (1.0 + one) * (high - low)) for one in x]
         z = np.array([one for one in points if one is not None])
@@ -94,14 +90,14 @@ class _Way:
             chebyshev.chebfit(x, amplitude, degree),
             chebyshev.chebfit(x, z[:, -1], degree),
         )
-        rough = np.abs(of_amplitude[-2:]).max(axis=0) > self.options.tolerance * amplitude.max(axis=0)
+        rough = np.abs(of_amplitude[-2:]).max(axis=0) > INTERPOLATION.tolerance * amplitude.max(axis=0)
         if halvings and rough.any():
             middle = 0.5 * (low + high)
             self._part(low, middle, which[rough], height, omega, halvings - 1)
             self._part(middle, high, which[rough], height, omega, halvings - 1)
         smooth = ~rough if halvings else np.ones_like(rough)
         for k, polynomial in zip(which[smooth], of_amplitude.T[smooth], strict=True):
-            at = _highest(polynomial, self.options)
+            at = _highest(polynomial)
             value, d = float(chebyshev.chebval(at, polynomial)), self.dofs[k]
             if value > height[d]:
                 height[d], omega[d] = value, float(chebyshev.chebval(at, of_omega))
@@ -111,12 +107,12 @@ class _Way:
         return self.between.z if self.between.find(part) else None
 
 
-def _highest(polynomial: FloatArray, options: InterpolationOptions) -> float:
+def _highest(polynomial: FloatArray) -> float:
     """Place in [-1, 1] at which a Chebyshev series is greatest."""
-    places = np.linspace(-1.0, 1.0, options.samples)
+    places = np.linspace(-1.0, 1.0, INTERPOLATION.samples)
     at = float(places[chebyshev.chebval(places, polynomial).argmax()])
     slope, bend = chebyshev.chebder(polynomial), chebyshev.chebder(polynomial, 2)
-    for _ in range(options.max_steps):
+    for _ in range(INTERPOLATION.max_steps):
         down = float(chebyshev.chebval(at, bend))
         if down < 0.0:
             at = min(max(at - float(chebyshev.chebval(at, slope)) / down, -1.0), 1.0)

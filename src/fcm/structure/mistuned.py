@@ -121,9 +121,7 @@ def strains(
     return found, likeness
 
 
-def modes_of_mistuned(
-    squared: FloatArray, change: FloatArray, options: MistunedOptions = OPTIONS
-) -> tuple[FloatArray, FloatArray]:
+def modes_of_mistuned(squared: FloatArray, change: FloatArray) -> tuple[FloatArray, FloatArray]:
     """w^2 (mode,) in ascending order, and eigenvectors (coordinate, mode), of diag(squared) + change.
 
     They are found by a Jacobi method, which is as accurate for the lowest modes as for the highest (Drmac and
@@ -156,7 +154,7 @@ def modes_of_mistuned(
         raise StructureError(f"the modes of the mistuned ring could not be found (LAPACK says {info})")
     values = values * (work[0] / work[1])
     found = values[::-1] ** 2 - shift
-    found[np.abs(found) < options.rigid_tolerance * shift] = 0.0
+    found[np.abs(found) < OPTIONS.rigid_tolerance * shift] = 0.0
     if (found < 0.0).any() or (not rigid.any() and not found.all()):
         raise StructureError(_SOFT)
     return found, np.ascontiguousarray(vectors[:, ::-1])

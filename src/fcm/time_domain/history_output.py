@@ -14,7 +14,7 @@ from fcm.files import replacing
 from fcm.time_domain.energy import Energy
 from fcm.time_domain.equations_of_motion import LETTERS
 from fcm.time_domain.histories import Histories
-from fcm.time_domain.options import TIME, TimeOptions
+from fcm.time_domain.options import TIME
 from fcm.time_domain.schedule_record import NOT_REACHED, PhaseResult, ScheduleRecord
 from fcm.time_domain.state import State
 from fcm.units import CF_UNIT, in_unit
@@ -165,7 +165,7 @@ def _of_state(end: State) -> dict[str, Any]:
     return {name: array.tolist() for name, array in arrays.items()} | {"angle": end.angle}
 
 
-def _shortened(states: str, options: TimeOptions = TIME) -> str:
+def _shortened(states: str) -> str:
     """A sequence of states, shortened to fit a line.
 
     >>> _shortened("SPEN"), _shortened("EP" * 100)
@@ -173,8 +173,8 @@ def _shortened(states: str, options: TimeOptions = TIME) -> str:
     """
     return (
         states
-        if len(states) <= options.history.max_letters
-        else f"{states[: options.history.max_letters]}... ({len(states)})"
+        if len(states) <= TIME.history.max_letters
+        else f"{states[: TIME.history.max_letters]}... ({len(states)})"
     )
 
 
