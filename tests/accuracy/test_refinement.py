@@ -147,14 +147,18 @@ def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_l
     )
 
 
-def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so():
+def test_where_the_levels_take_too_long_the_branches_of_fewer_harmonics_stay_and_no_level_is_complete():
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
     then = first.prolongated(more, prolongated_solutions(first, more), None)
-    work = then.system.work
-    found = then.with_levels(1.001 * work.seconds)
-    assert found.further == more and found.begun and found.system.harmonics == (1,)
+    work, begin = then.system.work, then.system.work.seconds
+    found = then.with_levels(1.001 * begin)
+    spent = work.seconds - begin
     assert work.limit == np.inf
-    assert then.with_levels().system.harmonics == more
+    assert found.system.harmonics == more and found.traced.branches.paths == then.traced.branches.paths
+    levels = {one.omega: one.complete for one in found.traced.found}
+    assert list(levels) == list(force_level.level_frequencies(found.system)) and not any(levels.values())
+    assert all(one.complete for one in then.with_levels().traced.found)
+    assert work.seconds - begin - spent > spent
 
 
 def test_what_has_been_taken_counts_in_what_takes_too_long():
@@ -255,20 +259,15 @@ def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_s
     assert with_more(found, (*more, 7), is_known=False, options=none) == (None, (*more, 7), False)
 
 
-def test_where_all_that_an_accuracy_takes_is_too_long_as_many_are_taken_as_are_allowed():
+@pytest.mark.parametrize("is_known", [True, False])
+def test_where_all_that_an_accuracy_takes_is_too_long_the_lowest_three_are_taken(is_known):
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3, 4, 5)
-    allowed = first.seconds + 0.5 * (first.seconds_with((1, 2, 3, 4)) + first.seconds_with(more))
+    allowed = first.seconds + 0.5 * (first.seconds_with((1, 2, 3)) + first.seconds_with(more))
     first = unchecked_response(System(first.system.scene, options=limited(allowed)))
-    found, further, _ = with_more(first, more, is_known=True)
-    assert found.system.harmonics == (1, 2, 3, 4) and not further
-
-
-def test_where_nothing_tells_what_harmonics_bring_the_lowest_three_are_taken():
-    first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3, 4, 5)
     quick = RefinementOptions(max_seconds_without_progress=0.0)
-    found, further, _ = with_more(first, more, is_known=False, options=quick)
+    found, further, _ = with_more(first, more, is_known=is_known, options=quick)
     assert found.system.harmonics == (1, 2, 3) and not further
-    assert with_more(found, more, is_known=False, options=quick) == (None, more, False)
+    assert with_more(found, more, is_known=is_known, options=quick) == (None, more, False)
 
 
 def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():

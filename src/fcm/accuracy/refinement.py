@@ -32,7 +32,8 @@ class RefinedResponse(UncheckedResponse):
 
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
     amplitude over all of them; max_error the greatest of these and of the errors of the folds, NaN where
-    one is unknown, and max_known_error the greatest of those that are known.
+    one is unknown, and max_known_error the greatest of those that are known. further: the harmonics that
+    would do more but take too long, if any; begun: whether that was seen only when they had been begun.
     """
 
     errors: tuple[PathErrors, ...]
@@ -40,6 +41,8 @@ class RefinedResponse(UncheckedResponse):
     max_error: float
     max_known_error: float
     accuracy: float
+    further: tuple[int, ...] = ()
+    begun: bool = False
 
     @property
     def reached(self) -> bool:
@@ -121,8 +124,6 @@ def refined_response(
         checked, required = None, required_harmonics(found, options)
         if required.is_known and required.change <= accuracy:
             found = found.with_levels()
-            if found.further:
-                break
             checked = with_errors(found, accuracy)
             if checked.agrees:
                 more = with_low_harmonics(found.system, found.traced.found)
@@ -140,7 +141,6 @@ def refined_response(
         found, checked = then, None
     if checked is None:
         found = found.with_levels()
-        further, begun = (found.further, found.begun) if found.further else (further, begun)
     many = len(system.scene.contacts) >= PAIR.many_contacts
     if checked is None or (many and not checked.agrees):
         # nothing is traced again: the pair of many contacts is for the errors alone, as of given harmonics

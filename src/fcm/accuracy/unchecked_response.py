@@ -32,18 +32,14 @@ from fcm.model.scene import FloatArray
 class UncheckedResponse(Frozen):
     """A response whose errors are not known yet; `quantities` (path,) belongs to the paths of its branches.
 
-    seconds: about what following its levels and branches took. further: the harmonics that would do more but
-    take too long, if any, and whether that was seen only when they had been begun. before: the response of
-    fewer harmonics that its branches come of, as long as no level was followed with its own, see
-    `with_levels`.
+    seconds: about what following its levels and branches took. before: the response of fewer harmonics that
+    its branches come of, as long as no level was followed with its own, see `with_levels`.
     """
 
     system: System
     traced: Traced
     quantities: tuple[ReportedQuantities, ...]
     seconds: float
-    further: tuple[int, ...] = field(default=(), kw_only=True)
-    begun: bool = field(default=False, kw_only=True)
     before: UncheckedResponse | None = field(default=None, kw_only=True)
 
     def with_traced(self, traced: Traced) -> UncheckedResponse:
@@ -128,19 +124,15 @@ class UncheckedResponse(Frozen):
     def with_levels(self, most: float | None = None) -> UncheckedResponse:
         """The response with the branches that only the level of the forces leads to, with its own harmonics.
 
-        If that takes more than `most` seconds in all, the response with fewer harmonics is returned, marked
-        so. `most` is by default that of the system's options.
+        If that takes more than `most` seconds in all, it is given up: then other branches may be missing.
+        `most` is by default that of the system's options.
         """
         if self.before is None:
             return self
         system, known = self.system, len(self.quantities)
         begin = system.work.seconds
-        most = system.options.work.max_seconds if most is None else most
-        try:
-            with system.work.limited_to(most):
-                response = with_levels(system, self.traced)
-        except WorkLimitError:
-            return replace(self.before.with_levels(np.inf), further=system.harmonics, begun=True)
+        with system.work.limited_to(system.options.work.max_seconds if most is None else most):
+            response = with_levels(system, self.traced)
         quantities = (*self.quantities, *_shown(system, response.branches.paths[known:]))
         seconds = self.seconds - self.traced.work + system.work.seconds - begin
         return UncheckedResponse(system, response, quantities, seconds)
@@ -201,12 +193,12 @@ def with_more(
     """The response with more harmonics, or None; then the harmonics that take too long, and whether tracing
     had begun.
 
-    is_known tells whether these harmonics are known to improve the accuracy: then as many are added as the
-    work allows. Otherwise only as many as are quick, at least the lowest three.
+    is_known tells whether these harmonics are known to bring the accuracy. Otherwise, or if they take too
+    long, only as many are added as are quick, at least the lowest three.
     """
     work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
-    allowed = most if is_known else options.max_seconds_without_progress
-    more = found.limited_harmonics(allowed - work.seconds, more, options)
+    if not is_known or work.seconds + found.seconds_with(more) > most:
+        more = found.limited_harmonics(options.max_seconds_without_progress - work.seconds, more, options)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
     if work.seconds + found.seconds_with(more) > most:

@@ -23,6 +23,7 @@ from fcm.harmonic_balance.cost_model import charged_to_work
 from fcm.harmonic_balance.reported_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import undetermined
+from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 
 
@@ -136,20 +137,19 @@ def traced_from(
 def with_levels(system: System, before: Traced) -> Traced:
     """The traced response with what the levels of the forces lead to.
 
-    Branches are traced through those solutions that lie on none that is known.
+    Branches are traced through those solutions that lie on none that is known. Where that takes more work
+    than the system may, no level counts as followed to its end.
     """
-    begin = system.work.seconds
-    found, passed = _level_solutions(system, before)
-    work, span = system.work.seconds - begin, system.scene.frequency_range
-    inside = [z for z in passed if span[0] <= z[-1] <= span[1]]
-    return replace(with_further(system, replace(before, found=()), found, inside), work=work)
-
-
-def _level_solutions(system: System, before: Traced) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
-    """The solutions where the levels are followed, for each frequency and all together."""
-    lost = before.lost_peaks(system.option(LEVEL_CURVE))
-    found = solutions_at(system, level_frequencies(system, lost), before.found)
-    return found, [z for one in found for z in one.solutions]
+    begin, (low, high) = system.work.seconds, system.scene.frequency_range
+    frequencies = level_frequencies(system, before.lost_peaks(system.option(LEVEL_CURVE)))
+    try:
+        levels = solutions_at(system, frequencies, before.found)
+        inside = [z for one in levels for z in one.solutions if low <= z[-1] <= high]
+        found = with_further(system, replace(before, found=()), levels, inside)
+    except WorkLimitError:
+        left = (LevelSolutions(omega, system.harmonics, (), False, np.inf) for omega in frequencies)
+        found = replace(before, found=tuple(left))
+    return replace(found, work=system.work.seconds - begin)
 
 
 def branches_through(

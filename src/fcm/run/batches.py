@@ -191,14 +191,16 @@ class _BatchRun:
             self.kept.add(number, results)
 
     def _hand_over(self, place: Place) -> None:
-        """Ask everybody for what they have; whoever has no answer at once has none.
+        """Ask everybody for what they have; whoever has no answer in time has none.
 
-        Progress, which may interrupt again, is not shown any more.
+        Who interrupts once more does not wait for it. Progress, which may interrupt again, is not shown any
+        more.
         """
         place.stop()
-        done, _ = wait(self.waiting, RUN.grace_time)
+        with suppress(KeyboardInterrupt):
+            wait(self.waiting, RUN.grace_time)
         self._keep_states()
-        for future in done:
+        for future in [one for one in self.waiting if one.done()]:
             number, found = self.waiting[future], None
             with suppress(NotComputed, PlaceClosed):
                 found = _result(place, future)

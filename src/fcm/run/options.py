@@ -22,7 +22,7 @@ class RunOptions(Frozen):
     almost_done: float = 0.999  # greatest share that is shown of a batch which is not known to be finished
     poll: float = 0.1  # [s] between two looks at the progress of others
     # [s] time within which processes that are asked to stop may hand over what they have
-    grace_time: float = 0.8
+    grace_time: float = 5.0
     progress_interval: float = 0.1  # [s] time between two reports of progress
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterable, Sequence
 
 from fcm.run.options import RUN
@@ -14,8 +13,7 @@ class Bar:
 
     def __init__(self, sizes: Sequence[int], finished: Iterable[int], progress: Progress | None) -> None:
         self.sizes, self.shares, self.progress = sizes, [0.0] * len(sizes), progress
-        self.total, self.done, self.text = sum(sizes), 0.0, ""
-        self._lock = threading.Lock()
+        self.total, self.text = sum(sizes), ""
         for number in finished:
             self._set(number, 1.0)
 
@@ -39,14 +37,12 @@ class Bar:
     def draw(self) -> None:
         """Shows the progress."""
         if self.progress is not None:
-            done = f"{int(self.done)} of {self.total} curves"
-            self.progress(min(self.done / self.total, 1.0), f"{done}: {self.text}" if self.text else done)
+            done = [size * share for size, share in zip(self.sizes, self.shares, strict=True)]
+            text = f"{sum(map(int, done))} of {self.total} curves"
+            self.progress(sum(done) / self.total, f"{text}: {self.text}" if self.text else text)
 
     def _set(self, number: int, share: float) -> None:
-        with self._lock:
-            more = max(share - self.shares[number], 0.0)
-            self.shares[number] += more
-            self.done += self.sizes[number] * more
+        self.shares[number] = max(share, self.shares[number])
 
 
 def part(progress: Progress | None, begin: float, end: float) -> Progress | None:
