@@ -75,8 +75,9 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
         mesh.at(pairing.other_alone) if pairing.other_alone else np.zeros((0, 3)),
         plane,
     )
-    low, high = float(pairing.apart.min()), float(pairing.apart.max())
-    text = f"contact {quoted(interface.name)}: {counted(len(a), 'pair')}, {_distance(low, high)}"
+    text = (
+        f"contact {quoted(interface.name)}: {counted(len(a), 'pair')}, {_places(pairing.apart, mesh.at(a))}"
+    )
     for name, alone in ((one, pairing.alone), (other, pairing.other_alone)):
         if alone:
             text += f"; {counted(len(alone), 'node')} of {name} without a partner ({_some(alone)})"
@@ -85,16 +86,22 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
     return PairTable([tuple(map(str, pair)) for pair in pairing.pairs], interface=interface, said=tuple(said))
 
 
-def _distance(low: float, high: float) -> str:
-    """Clause on the least and the greatest distance of partners.
+def _places(apart: FloatArray, first: FloatArray) -> str:
+    """Clause on the least and greatest distance of partners (pair,), and how far the first (pair, 3) reach.
 
-    >>> _distance(0.0, 0.0), _distance(0.05, 0.05), _distance(0.0, 0.2)
-    ('of coincident nodes', '0.05 apart', '0 to 0.2 apart')
+    In the coordinates' unit, so that it is seen where that is another than the matrices'.
+
+    >>> corners = np.array([[150.0, 0.0, 2.0], [240.0, 20.0, 2.0]])
+    >>> _places(np.zeros(2), corners)
+    'of coincident nodes, over 90 by 20 of the coordinates'
+    >>> _places(np.array([0.0, 0.2]), corners[:1])
+    '0 to 0.2 apart'
     """
-    if high == 0.0:
-        return "of coincident nodes"
-    ends = [f"{one:.3g}" for one in (low, high)]
-    return f"{' to '.join(dict.fromkeys(ends))} apart"
+    ends = dict.fromkeys(f"{one:.3g}" for one in (apart.min(), apart.max()))
+    said = f"{' to '.join(ends)} apart" if apart.max() > 0.0 else "of coincident nodes"
+    reach = sorted(np.ptp(first, axis=0).tolist(), reverse=True)
+    lengths = [f"{one:.3g}" for one in reach if one > TOLERANCES.placed * reach[0]]
+    return said + (f", over {' by '.join(lengths)} of the coordinates" if lengths else "")
 
 
 def with_places(section: Section, found: Section, table: PairTable, files: Files) -> PairTable:
@@ -126,11 +133,10 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
     apart = np.linalg.norm(
         mesh.at(tuple(a for a, _ in couples)) - mesh.at(tuple(b for _, b in couples)), axis=1
     )
-    low, high = float(apart.min()), float(apart.max())
-    far = couples[int(apart.argmax())]
+    high, far = float(apart.max()), couples[int(apart.argmax())]
     if high > tolerance:
         found.wrong("tolerance", f"nodes {far[0]} and {far[1]} are {high:.4g} apart, more than {tolerance:g}")
-    text = f"contact {quoted(name)}: {counted(len(couples), 'pair')}, {_distance(low, high)}"
+    text = f"contact {quoted(name)}: {counted(len(couples), 'pair')}, {_places(apart, first)}"
     others = [
         (pair, near) for pair, near in zip(couples, nearest_partners(mesh, couples), strict=True) if near
     ]
