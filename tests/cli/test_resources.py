@@ -198,7 +198,7 @@ def test_how_long_all_curves_take_is_said_once_by_the_first(capsys):
     messages.expect(100)
     for share in (0.001, 0.02, 0.03, 0.04):
         messages.progress(share)
-    said = "100 curves take about 25 minutes: the first 2 of them took 30 s"
+    said = "100 curves take about 25 minutes: 2 % of them took 30 s"
     assert capsys.readouterr().err.splitlines() == [said]
 
 

@@ -49,7 +49,7 @@ class Messages:
             self._say(text)
 
     def expect(self, curves: int) -> None:
-        """Prepares for a number of curves: after the first one the expected time of all is said once."""
+        """Prepares for a number of curves: after as much work as one takes the time of all is said once."""
         self._curves, self._begun = curves if curves > 1 else 0, self.settings.clock()
 
     def progress(self, fraction: float, text: str = "") -> None:
@@ -84,10 +84,10 @@ class Messages:
     def _say_time(self, taken: float) -> None:
         """How long all curves take, where that is long."""
         curves, self._curves = self._curves, 0
-        first = int(self._share * curves)
-        if (every := taken / self._share) > self.settings.remarks.long_run and first < curves:
-            those = "first of them" if first == 1 else f"first {first} of them"
-            self.info(f"{curves} curves take about {duration(every)}: the {those} took {duration(taken)}")
+        every = taken / self._share
+        if every > self.settings.remarks.long_run and self._share < 1.0:
+            done = f"{100 * self._share:.2g} %"
+            self.info(f"{curves} curves take about {duration(every)}: {done} of them took {duration(taken)}")
 
     def _say(self, text: str) -> None:
         self.clear()
