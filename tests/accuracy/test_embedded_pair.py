@@ -186,6 +186,7 @@ def test_what_hardly_moves_says_nothing_of_what_moves():
     assert np.nanmax(truncation) < 0.1
 
 
+@pytest.mark.slow
 def test_a_peak_that_more_harmonics_have_elsewhere_is_as_wrong_as_their_greatest():
     """None of their motions lies beside that of three harmonics."""
     one = random_scene(15)

@@ -45,6 +45,7 @@ def test_as_many_neighbours_of_the_highest_point_are_looked_at_as_is_asked(neigh
     assert top.height == found
 
 
+@pytest.mark.slow
 def test_another_branch_nearly_as_high_is_a_rival_from_the_fraction_that_is_given():
     outline = unchecked_response(System(random_scene(16), (1, 2, 3)))
     few, many = (

@@ -238,6 +238,7 @@ def test_peaks_that_are_displaced_are_tops_of_parabolas_between_minima():
     assert np.isnan(found.at(np.array([8]))).all()
 
 
+@pytest.mark.slow
 def test_a_peak_that_more_harmonics_have_elsewhere_is_the_error_of_one_at_an_end():
     """With one harmonic all amplitudes are greatest at the end of the range.
 
@@ -268,6 +269,7 @@ def test_where_more_harmonics_have_the_greatest_peak_elsewhere_the_error_is_that
     assert told.frequency_error == pytest.approx(greatest.frequency / told.frequency - 1.0, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_peak_whose_reference_is_confirmed_by_no_more_harmonics_has_no_error():
     """Curves of one harmonic and of five are as high, but that of ten is lower by a fifth."""
     one = random_scene(12)

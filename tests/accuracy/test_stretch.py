@@ -62,6 +62,7 @@ def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
         np.testing.assert_allclose(errors.truncation[i], off, rtol=0.1)
 
 
+@pytest.mark.slow
 def test_a_wide_stretch_whose_error_is_not_known_is_not_called_stable():
     """Three harmonics have a branch of a hundred times the amplitude down to 0.7 rad/s, that of the exact
     motion ends before 0.74."""
@@ -153,6 +154,7 @@ def test_a_stretch_without_ends_is_followed_from_the_nearest_that_was_found():
     np.testing.assert_allclose(piece.path.z[-1], expected, rtol=0.0, atol=1e-3 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_of_many_contacts_what_is_not_traced_again_has_the_errors_of_given_harmonics(monkeypatch):
     """Although the pair may not be followed while harmonics are chosen."""
     unfollowed = replace(PAIR, work_fraction=0.0, min_seconds=0.0)

@@ -4,6 +4,7 @@ import argparse
 import timeit
 
 import numpy as np
+import pytest
 
 import fcm
 
@@ -12,6 +13,7 @@ from . import lap_joint, large, many, motion, own_law, process, ring, speed
 from .others import problems, solved
 
 
+@pytest.mark.slow
 def test_points_of_random_scenes_are_counted(capsys):
     random_points.main(1, 1, 1)
     known = random_points.known(0, 1)
@@ -48,6 +50,7 @@ def test_a_sector_is_its_ring(capsys):
     assert float(said.partition("apart by ")[2].partition(";")[0]) < 1e-5 and "complete: True" in said
 
 
+@pytest.mark.slow
 def test_exact_motion_beside_fixed_steps(capsys, monkeypatch):
     monkeypatch.setattr(timeit.Timer, "autorange", lambda _: (1, 0.0))
     monkeypatch.setattr(motion, "FREQUENCIES", np.linspace(0.7, 1.7, 2))
@@ -66,6 +69,7 @@ def test_kernels_and_curves(capsys, monkeypatch):
     assert capsys.readouterr().out.count("scaled") == 5
 
 
+@pytest.mark.slow
 def test_laws_in_python_beside_that_of_fcm(capsys, monkeypatch):
     monkeypatch.setattr(own_law.Friction, "samples", 32)
     own_law.main(1)

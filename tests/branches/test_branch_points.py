@@ -81,6 +81,7 @@ def test_where_odd_harmonics_alone_are_given_it_is_said_where_symmetry_is_lost(f
     assert "loses its symmetry" in done.err and f"{odd.symmetry_lost[0]:.5g} rad/s" in done.err
 
 
+@pytest.mark.slow
 def test_symmetry_is_lost_by_even_harmonics_whatever_odd_ones_are_balanced():
     """A curve with 1, 2, 3 and 7 has motions that 5 would change; 4 breaks their symmetry all the same."""
     scene = KINDS["stops"](54)
@@ -111,6 +112,7 @@ def test_symmetry_that_is_lost_within_two_steps_is_not_missed():
     assert all(min(abs(one - omega) for omega in there) < 1e-3 for one in lost.frequencies)
 
 
+@pytest.mark.slow
 def test_of_a_curve_with_one_harmonic_symmetry_is_lost_too():
     """One harmonic has the accuracy; beside its symmetric motion a march settles at an unsymmetric one."""
     scene, omega = KINDS["stops"](5004), 0.6 + 1.4 / 3.0
@@ -144,6 +146,7 @@ def test_where_unsymmetric_motions_of_a_level_are_not_looked_for_to_the_end_it_i
     assert not any(one.complete for one in with_unsymmetric(hasty, known).found)
 
 
+@pytest.mark.slow
 def test_even_harmonics_by_which_a_level_loses_symmetry_are_lacking_or_balanced():
     """A closed branch, which marches come to, leaves the level at 1.478 rad/s, and the response nowhere."""
     scene = KINDS["stops"](16)
@@ -159,6 +162,7 @@ def test_even_harmonics_by_which_a_level_loses_symmetry_are_lacking_or_balanced(
     )
 
 
+@pytest.mark.slow
 def test_a_closed_branch_is_reached_along_the_branch_of_few_harmonics():
     """With five harmonics it is one with a branch that a level leads to. With eight it is apart (1.036 to
     1.067 rad/s), and no level that is followed passes it. A march settles there."""

@@ -55,6 +55,7 @@ def passings(curve, omega):
             yield (1.0 - part) * amplitude[i] + part * amplitude[i + 1], stable[i]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("harmonics", "within"), [(None, ACCURACY), (7, 1e-3)])
 def test_a_closed_branch_of_an_impact_oscillator_is_found(harmonics, within):
     """At 1.6 rad/s an independent march settles at 0.5009; the branch spans 1.492 to 1.969 rad/s. Neither the
@@ -76,6 +77,7 @@ def folds_of(system, omega):
         yield turn, folds_from(surface, z, turn.directions, system.scene.frequency_range)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condensation", [CONDENSATION, EVERY_MODE])
 def test_a_curve_of_folds_passes_where_the_level_turns_at_other_frequencies(condensation):
     """With four harmonics: at 1.6 rad/s the level turns at 2.308 and 0.896, as following it there says."""
@@ -316,6 +318,7 @@ def test_a_peak_that_more_harmonics_have_isolated_is_found_in_any_range(span, ha
     assert off_at_886_hz(isolated_by_harmonics(span), harmonics, 0.02561) < 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("amplitude", "marched"), [(-50.0, 0.02544), (600.0, 0.02864)])
 def test_a_peak_that_more_harmonics_have_isolated_is_found_under_other_forces(amplitude, marched):
     """Of 96 random states 15 and 9 settle on it."""
@@ -331,12 +334,14 @@ def test_a_closed_branch_is_traced_once():
     assert len(closed.where(Mark.FOLD)) == 2
 
 
+@pytest.mark.slow
 def test_a_strip_that_ends_nowhere_is_crossed_once():
     """Crossed again and again, a search for folds never ended, and heeded no signal: so in a process."""
     done = python(*AS_A_MODULE, "respond", SCENES / "endless_strip.toml", "--json", "--peaks-only")
     assert done.code == 0 and json.loads(done.out)["curves"][0]["complete"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [22, 23, 611])
 def test_curves_of_folds_from_narrow_strips_are_followed_to_their_end(seed):
     """Some begin within strips that a circle of the first step's length reaches beyond. Where a curve touches

@@ -223,6 +223,7 @@ dof = "u"
 """
 
 
+@pytest.mark.slow
 def test_backbones_are_answered_by_the_nonlinear_mode(tmp_path):
     """Data are of a friction element that slips at 1, by its describing function; the mode's shape is 2."""
     zeta, k, A = 0.02, 0.3, np.geomspace(0.5, 20.0, 12)

@@ -48,6 +48,7 @@ def test_every_combination_is_drawn_once(fcm, tmp_path):
     assert (tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
 
 
+@pytest.mark.slow
 def test_an_angle_of_many_turns_is_asked_about(fcm):
     args = ("plot", "loop", "--n0-bar", 1, "--b-bar", 0.5, "-o", "a.svg")
     assert "--phi 45: is it right? 45 rad are 7.16 turns" in fcm(*args, "--phi", "45").err
@@ -55,6 +56,7 @@ def test_an_angle_of_many_turns_is_asked_about(fcm):
         assert "is it right" not in fcm(*args, "--phi", right).err
 
 
+@pytest.mark.slow
 def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm):
     scaled = ("--mu", 0.4, "--k-u", 2e4, "--k-v", 1e4, "--n0", 16.0, "--a", 1e-3, "--b", 2e-3)
     (one,) = loops(fcm("plot", "loop", *scaled, "--json", "--units", "m", "N"))
@@ -76,6 +78,7 @@ def test_parameters_and_axes_have_the_units_that_are_given(fcm, tmp_path):
     assert "$k_u$ = 1 N/mm" in drawn and "= 0.3 mm at 20°" in drawn and "<!-- Force (N) -->" in drawn
 
 
+@pytest.mark.slow
 def test_a_file_has_the_units_of_its_scene(fcm, tmp_path):
     scene, path = load_scene("yang1998-n5"), tmp_path / "a.nc"
     write_netcdf(replace(trace(scene), units=("mm", "N")), path)
@@ -105,6 +108,7 @@ def test_harmonics_of_the_motion(fcm, tmp_path):
     assert [t["force"] for t in found] == pytest.approx(known.force(known.angles) / 3.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_harmonic_of_no_amplitude_changes_nothing(fcm):
     (plain,) = loops(fcm("plot", "loop", *CONTACT, "--json"))
     (other,) = loops(fcm("plot", "loop", *CONTACT, "--harmonic", "u", 5, 0, 0, "--json"))
@@ -114,12 +118,14 @@ def test_a_harmonic_of_no_amplitude_changes_nothing(fcm):
         assert second == pytest.approx(first, abs=1e-10)
 
 
+@pytest.mark.slow
 def test_the_angle_may_begin_at_the_greatest_displacement(fcm):
     sine, cosine = (loops(fcm("plot", "loop", "--json", *more))[0] for more in ((), ("--cosine",)))
     turned = [(one["degrees"] - 90.0) % 360.0 for one in sine["transitions"]]
     assert [one["degrees"] for one in cosine["transitions"]] == pytest.approx(turned)
 
 
+@pytest.mark.slow
 def test_all_solutions_of_a_folded_curve(fcm, folded):
     done = fcm("plot", "loop", folded, "--curve", 1, "--at", 1.2, "--json")
     found = loops(done)
@@ -135,6 +141,7 @@ def test_all_solutions_of_a_folded_curve(fcm, folded):
             assert regime[np.argmin(np.abs(frequency - one["frequency"]))] == one["sequence"]
 
 
+@pytest.mark.slow
 def test_loops_of_levels_are_named_by_their_level(fcm, tmp_path):
     """Between the folds, at the levels 0.90 and 1.39, there are three; at the peak the level is the last."""
     path = tmp_path / "level.nc"
@@ -157,6 +164,7 @@ def _turned(word):
     return {word[i:] + word[:i] for i in range(len(word))}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", [1.1, 1.16, 1.25])
 def test_the_loop_of_several_harmonics_is_that_of_the_whole_motion(fcm, three, at):
     """Its states are those of the file, and its force has the harmonics of the one that marching finds."""
@@ -204,6 +212,7 @@ def test_one_of_them(fcm, folded):
     assert one["solution"] == 2 and not one["stable"]
 
 
+@pytest.mark.slow
 def test_the_contacts_have_the_same_solutions_with_their_number_in_text_and_picture(fcm, folded):
     """One of several was drawn, and nothing said so."""
     at = ("--curve", 1, "--at", 1.2)
@@ -234,6 +243,7 @@ harmonics = 1
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("output", [(), ("v",)])
 def test_without_a_frequency_it_is_the_peak_of_the_output_and_named_so(fcm, tmp_path, output):
     """The contact moves most at the peak of u; the peak of v is elsewhere."""
@@ -264,6 +274,7 @@ def test_without_a_frequency_it_is_the_peak(fcm, folded, tmp_path):
     assert [one["parameters"]["contact.shroud.n_0"] for one in found] == [10.0, 5.0]
 
 
+@pytest.mark.slow
 def test_the_picture_is_beside_the_file(fcm, folded):
     assert fcm("plot", "loop", folded, "--curve", 0, "--dimensionless").code == 0
     assert folded.with_name("a-loop.png").is_file()
@@ -330,6 +341,7 @@ def test_what_the_file_has_not_is_said(fcm, folded, args, said):
     assert done.code == 2 and said in done.err and done.out == ""
 
 
+@pytest.mark.slow
 def test_of_many_contacts_that_which_takes_most_energy_is_drawn(fcm, folded, tmp_path):
     """A hundred made of the one: the energy of each is another part of its own."""
     share = np.random.default_rng(3).permutation(100) + 1.0
@@ -368,6 +380,7 @@ def test_letters_that_the_fonts_lack_are_said_once(fcm, folded, tmp_path):
     ]
 
 
+@pytest.mark.slow
 def test_a_file_without_loops(fcm, folded, tmp_path):
     (tmp_path / "b.nc").write_bytes(folded.read_bytes())
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
@@ -438,6 +451,7 @@ def test_a_contact_in_a_plane_of_a_file(fcm, tmp_path):
     assert f"pad, {one['frequency']:.5g} rad/s, stable: {one['sequence']}" in done.err
 
 
+@pytest.mark.slow
 def test_several_loops_in_a_plane_are_too_many(fcm, tmp_path):
     (tmp_path / "plane.toml").write_text(IN_PLANE, encoding="utf-8")
     fcm("respond", "plane.toml", "-o", "plane.nc")
@@ -463,6 +477,7 @@ def test_a_loop_in_a_plane_without_dimensions():
     assert figure.get_suptitle() == f"1 of 3, stable, {loop.sequence}"
 
 
+@pytest.mark.slow
 def test_a_point_beside_the_frequency_asked_for_is_said(fcm, folded):
     """It was drawn as if it were there."""
     done = fcm("plot", "loop", folded, "--curve", 0, "--at", 1.2, "--json")

@@ -517,6 +517,7 @@ def test_friction_that_damps_more_than_critically_is_told(listed, k_u):
     assert ("overdamped: the ratio is that of a linear damper" in done.out) is over
 
 
+@pytest.mark.slow
 def test_a_nonlinear_mode_that_friction_damps_more_than_critically_is_told(tmp_path):
     for k_u, over in ((0.1, False), (1e3, True)):
         (tmp_path / "scene.toml").write_text(ONE_MASS.format(k_u=k_u))

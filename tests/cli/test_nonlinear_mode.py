@@ -183,6 +183,7 @@ def test_a_mode_outside_the_range_of_the_scene_is_told(fcm):
     assert "outside the scene's range of 0.7 to 1.7 rad/s: is another --mode meant?" in done.err
 
 
+@pytest.mark.slow
 def test_a_mode_is_drawn_over_the_response_of_its_scene(fcm, result, tmp_path):
     assert fcm("respond", "yang1998-n5", "-o", "r.nc").code == 0
     done = fcm("plot", "response", "r.nc", "--backbone", result, "-o", "b.png")
@@ -193,6 +194,7 @@ def test_a_mode_is_drawn_over_the_response_of_its_scene(fcm, result, tmp_path):
     assert done.code == 2 and "not a file of nonlinear modes (fcm respond --mode)" in done.err
 
 
+@pytest.mark.slow
 def test_the_last_line_says_at_how_many_points_the_error_was_estimated(fcm, tmp_path):
     """It gave the error of the one point at which it was known as that of the whole mode."""
     done = fcm("respond", "beam", "--mode", 1, "--level", "1e-6:1e-2", "-o", tmp_path / "a.nc")

@@ -29,6 +29,7 @@ def test_without_a_name_the_picture_is_beside_the_file(fcm, result, tmp_path):
     assert (tmp_path / "result.png").exists()
 
 
+@pytest.mark.slow
 def test_options_reach_the_picture(fcm, result, tmp_path):
     options = ("--dof", "v", "--log", "--no-errors")
     assert fcm("plot", "response", result, *options, "-o", "a.svg").code == 0

@@ -195,6 +195,7 @@ def test_files_hold_the_points_that_were_reported(fcm, scene, tmp_path):
     assert "wrote a.nc" in done.err and "wrote a.csv" in done.err
 
 
+@pytest.mark.slow
 def test_a_file_that_was_there_is_said_to_be_replaced(fcm, scene, tmp_path):
     """Also one that a command names itself, as a picture beside its file."""
     first = fcm("respond", scene, "-o", "a.nc", "--csv", "a.csv").err.splitlines()

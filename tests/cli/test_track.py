@@ -422,6 +422,7 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, wanted):
     assert peak == pytest.approx(there["peak"]["u"]["amplitude"], rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wanted", [OPTIMUM, TWO], ids=["one number", "two"])
 def test_an_interrupted_search_goes_on_to_the_same_optimum(fcm, scene, wanted, monkeypatch):
     """No response that was traced before is traced again, and the result is that of a run in one go."""

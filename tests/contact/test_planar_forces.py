@@ -250,6 +250,7 @@ def discs(case, count):
     return u, case.mu / case.k_u * (case.n_0 + case.k_v * (wave @ case.v).real)
 
 
+@pytest.mark.slow
 def test_a_slider_rests_where_discs_less_than_a_step_of_the_sampled_cycle_apart_hold_it():
     """Within each of twenty thousand discs, and as far from where it began as eight thousand demand."""
     near = 0

@@ -79,6 +79,7 @@ def beside_a_smooth_one(mu):
     )
 
 
+@pytest.mark.slow
 def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
     """The motion is linear as without it, whatever else holds a slider: its exact multipliers are below 1."""
     scene = beside_a_smooth_one(0.0)

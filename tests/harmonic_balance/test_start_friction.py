@@ -82,6 +82,7 @@ def marched(scene, omega, ramp=10, cycles=45, steps=1500):
     return np.min(seen, axis=0), np.max(seen, axis=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("contact", "friction", "amplitude", "states"),
     [

@@ -81,6 +81,7 @@ def response(tmp_path_factory):
     return path.read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(DAMAGED))
 def test_a_damaged_file_is_read_or_refused(tmp_path, response, number):
     """Bytes changed or set to zero, mostly where the file says how it is laid out; none ends this process."""

@@ -96,6 +96,7 @@ def test_the_top_of_a_level_ranges_as_the_exact_motions_do(fcm, tmp_path):
     assert "may be one of many" in raised.err and "its past decides" in raised.err
 
 
+@pytest.mark.slow
 def test_an_optimum_has_the_residual_friction_of_its_peak(fcm, tmp_path):
     least = '[optimum]\nvary = ["contact.c0.n_0"]\nbounds = [[0.095, 0.1]]\nminimise = "peak.x1"\n'
     text = BODY + FORCES + STATIC + RANGE.replace("1.08", "1.2").replace("harmonics = 3", "harmonics = 7")

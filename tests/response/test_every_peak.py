@@ -119,6 +119,7 @@ def test_a_peak_on_an_isolated_branch_is_marked():
     assert f"{curve['peaks']['y'][0]['frequency']:.5f}^" in done.out and "^ on an isolated branch" in done.out
 
 
+@pytest.mark.slow
 def test_a_closed_branch_that_another_crosses_is_not_isolated():
     """Unsymmetric motions make a loop from the symmetric ones and back: a sweep may go on to it."""
     (curve,) = trace(load_scene(BRANCHES / "equal_stops.toml")).curves

@@ -273,6 +273,7 @@ def test_normal_forces_are_computed_only_where_something_moves_along_them():
     same(light, trace(replace(scene, contacts=soft), "closed-form", options=leaving_out(None)))
 
 
+@pytest.mark.slow
 def test_contacts_that_stay_stuck_or_open_are_springs_or_nothing():
     """Six of eight contacts keep to one state, as linear springs or not at all."""
     loads = (0.2, 50.0, 50.0, -40.0, 0.1, 50.0, -40.0, 60.0)

@@ -19,6 +19,7 @@ def curve_of(seed: int, harmonics: int) -> Curve:
     return trace(scene, method="closed-form").curves[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "harmonics"), [(16, 1), (19, 1), (3, 3), (8, 3), (19, 3)])
 def test_a_curve_goes_on_where_slip_begins(seed: int, harmonics: int) -> None:
     """It may leave in the direction that it came from: a cusp."""
@@ -65,6 +66,7 @@ def test_slip_begins_where_the_root_is_steep() -> None:
     assert np.count_nonzero((state[:-1] == "EPEP") & (state[1:] == "E")) == 1
 
 
+@pytest.mark.slow
 def test_more_harmonics_begin_beside_a_corner_that_they_share() -> None:
     """Where the contact rests the harmonics are uncoupled, and the fold in a corner is one of all of them."""
     data = {
@@ -89,6 +91,7 @@ def test_more_harmonics_begin_beside_a_corner_that_they_share() -> None:
     assert curve.complete, curve.reason
 
 
+@pytest.mark.slow
 def test_more_harmonics_begin_beside_a_fold_that_they_share() -> None:
     """All three degrees of freedom have a peak at the fold."""
     scene = replace(random_plane(321, contacts=1), harmonics=None)
@@ -96,6 +99,7 @@ def test_more_harmonics_begin_beside_a_fold_that_they_share() -> None:
     assert curve.complete, curve.reason
 
 
+@pytest.mark.slow
 def test_the_corner_behind_is_not_gone_back_to() -> None:
     """A second disc ceases to hold the slider just beyond an onset of slip, from where the curve comes."""
     curve = trace(replace(random_plane(220), harmonics=None), method="closed-form", accuracy=1e-2).curves[0]

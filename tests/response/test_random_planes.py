@@ -36,6 +36,7 @@ def test_a_slider_between_two_discs_that_part_goes_on_to_slip_from_there():
     assert np.abs(path.z[lowest + 1] - path.z[lowest]).max() < 1e-5
 
 
+@pytest.mark.slow
 def test_a_contact_that_sticks_once_in_a_cycle_has_few_corners():
     """Its slip takes the slider back to where it was, but for rounding, which once made 1567 corners."""
     (path,) = branches(System(random_plane(220), (1, 2, 3))).branches.paths

@@ -45,6 +45,7 @@ def test_where_nothing_damps_it_is_said_what_would_do():
     assert exact.stable and 0.5 * whole.error[at, 0] < off < 2.0 * whole.error[at, 0] < 0.2
 
 
+@pytest.mark.slow
 def test_a_curve_goes_on_where_another_extreme_of_a_limit_holds_a_slider():
     system = System(replace(random_scene(82), max_step=0.1), (1, 2, 3))
     assert traced(system).branches.status is Status.COMPLETE

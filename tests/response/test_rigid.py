@@ -207,6 +207,7 @@ def test_a_body_that_stops_at_a_resonance_that_nothing_damps_is_told_what_does()
     assert whole.complete
 
 
+@pytest.mark.slow
 def test_a_curve_that_stops_is_told_what_helps_by_its_cause():
     """A floating body beside a mode that nothing damps: it was told to take more preload or a smaller step.
 

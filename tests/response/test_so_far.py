@@ -78,6 +78,7 @@ def _stopping(looks):
     return poll
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["yang1998", "isola"])
 def test_the_first_curve_is_kept_as_far_as_it_has_come(name):
     """Its points are those of the whole curve, which has no other before them."""

@@ -349,6 +349,7 @@ def test_modes_that_are_no_families_need_the_stiffness_of_a_blade(more, said):
         scene_from_dict(of_modes(**more))
 
 
+@pytest.mark.slow
 def test_the_bundled_ring_is_told_in_words_and_numbers(tmp_path):
     done = called("respond", "mistuned-ring", "--peaks-only", "--json", "-o", tmp_path / "a.nc")
     assert done.code == 0

@@ -118,6 +118,7 @@ def test_resonances_of_the_diameters_that_forces_meet_are_said():
         assert f"all contacts open: {', '.join(f'{one:.5g}' for one in opened)} Hz; with all stuck" in text
 
 
+@pytest.mark.slow
 def test_engine_orders_are_swept():
     """Each curve as if it were alone, and those of a number beyond the sectors as that of the remainder."""
     data = rings.sector(5, 1, harmonics=1, max_step=0.3)

@@ -193,6 +193,7 @@ def test_modes_of_matlab_7_3(tmp_path):
     assert found.dofs == ("u", "tip") and found.shapes.tolist() == [[1.0, 0.5], [0.0, -1.0]]
 
 
+@pytest.mark.slow
 def test_hdf5_numbers_of_another_form_are_not_converted(tmp_path):
     """A bias of the exponent that one damaged byte has changed makes other numbers of all."""
     h5py = pytest.importorskip("h5py")

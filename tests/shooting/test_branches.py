@@ -211,6 +211,7 @@ def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_
     )
 
 
+@pytest.mark.slow
 def test_both_branches_at_branch_points_of_the_exact_motion_are_followed():
     """Between two equal stops three pairs of mirrored motions leave the symmetric one. The balance of
     one harmonic has none of them. A march settles at one of them where the symmetric motion is unstable."""

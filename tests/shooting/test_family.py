@@ -139,6 +139,7 @@ def test_two_contacts_that_stick_together():
     assert found.spread.max() < 1e-8 and (found.friction[:, 0] < found.friction[:, 1]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "omega", "stress", "reached"),
     [("stuck_by_turns", 0.8518, 30.0, 0.3241), ("all_stuck", 1.487, 30.0, 0.0348)],

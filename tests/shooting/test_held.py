@@ -216,6 +216,7 @@ def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
     assert path.z.shape[1] == z.size
 
 
+@pytest.mark.slow
 def test_residual_friction_is_limited_under_forces_of_several_harmonics():
     """Beside the balance of enough harmonics."""
     scene = scene_from_dict(

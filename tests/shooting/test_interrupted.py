@@ -54,6 +54,7 @@ def assert_same(one, other):
         np.testing.assert_array_equal(getattr(one.orbits, name), getattr(other.orbits, name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", [None, AT])
 def test_points_are_kept_and_extents_found_again(scene, tmp_path, at):
     whole = curve_of(scene, at=at)

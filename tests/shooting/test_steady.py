@@ -104,6 +104,7 @@ def test_an_irregular_motion_that_lingers_has_an_extent():
     assert len(extents) >= 4 and all(one.periods == 0 for one in extents)
 
 
+@pytest.mark.slow
 def test_the_extent_holds_bursts_that_are_seldom():
     """For two thousand periods there may be none, and the amplitude is half as great until then. So it is a
     matter of the start, and of rounding: of eight starts at least five meet a burst, as seven did here."""

@@ -59,6 +59,7 @@ def test_the_same_as_long_simulations(scene):
             assert curve.fundamental[point] == pytest.approx(last.fundamental, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_a_sweep_stays_on_a_motion_of_two_periods_beside_a_stable_one_of_one():
     """As the march does that goes on from frequency to frequency, each for 300 cycles.
 
@@ -198,6 +199,7 @@ def test_a_long_motion_at_one_frequency_shows_that_it_goes_on():
     assert shares == sorted(shares)
 
 
+@pytest.mark.slow
 def test_jumps_of_motions_of_several_periods_are_those_of_their_branches():
     """They were in no table; and steps of 2 rad/s left the branch before its end."""
     scene = load_scene(SCENES / "two_beside_one.toml")

@@ -74,6 +74,7 @@ def test_what_errs_by_a_fifth_is_told_where_further_harmonics_confirm_it():
         assert exact(system, z).stable
 
 
+@pytest.mark.slow
 def test_what_more_harmonics_do_not_have_is_no_steady_state():
     """Of one harmonic, below the fold at which the upper branch of five turns back."""
     one, five = (trace(elastic_strip((11.0, 20.0)), harmonics=h).curves[0] for h in (1, 5))

@@ -173,6 +173,7 @@ def test_disturbances_against_another_method(sequence):
         assert np.abs(other - value).min() < 2e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("some", [ALL, (STICKS, SLIPS), (OPENS_AND_CATCHES, STAYS_OPEN), (STICKS, STICKS)])
 def test_disturbances_of_several_contacts_against_another_method(some):
     """In all states at once; contacts that stick or are open all the time among them."""

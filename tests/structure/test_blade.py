@@ -41,6 +41,7 @@ def test_curves_are_complete_and_their_peaks_those_of_the_exact_motion(preload):
     )
 
 
+@pytest.mark.slow
 def test_few_modes_with_their_flexibility_are_as_good_as_all():
     """To the bounds that are stated; without it by far not."""
     few, every, stiff = (four(20.0, **more) for more in ({}, {"modes": 41}, {"flexibility": False}))

@@ -66,6 +66,7 @@ def test_matrices_of_no_structure(change, words):
         )
 
 
+@pytest.mark.slow
 def test_the_stiffness_of_bodies_that_nothing_holds_in_the_place_of_their_mass():
     """Its modes without mass went through a Cholesky factorisation, which failed as a defect of fcm."""
     slope = np.diff(np.eye(117), axis=0)

@@ -41,6 +41,7 @@ def test_shipped_files_are_small(name, size):
     assert shipped.DEFAULT.with_name(f"{name}.nc").stat().st_size <= size
 
 
+@pytest.mark.slow
 def test_the_splines_beside_the_shipped_table_are_those_of_its_file():
     """But for rounding: scipy makes splines by BLAS, whose sums hang on the processor."""
     ready, file = shipped.read(shipped.DEFAULT), open_table(shipped.DEFAULT)

@@ -65,6 +65,7 @@ def tracked_at(curves, value, dof):
     return sorted(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dof", range(3))
 def test_small_peaks_at_folds_close_together_begin_no_curve(scene, dof):
     """Where the contact begins to slip the response has local maxima of 2e-5 of their height."""
