@@ -58,6 +58,22 @@ def test_frequencies_are_visited_up_and_down(fcm, scene, tmp_path):
     assert one.code == 0 and "end of the range" not in one.out  # there is none
 
 
+def test_the_greatest_of_visited_frequencies_is_called_no_peak(fcm, scene, tmp_path):
+    done = fcm("respond", scene, *AT, "-o", "a.nc")
+    assert (
+        done.out.split()[:2] == ["greatest", "u"] and "\ngreatest of 4 frequencies: no peak was" in done.out
+    )
+    result = done.err.splitlines()[-1]
+    assert result.startswith(
+        "result: complete; greatest of 4 frequencies, and no peak; every motion shown is"
+    )
+    (curve,) = json.loads(fcm("respond", scene, *AT, "--json").out)["curves"]
+    assert curve["visited"] == 4 and curve["peak"]["u"]["error"] is None
+    assert "error_at_frequency" not in curve["peak"]["u"]
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        assert np.isnan(np.ma.filled(data["peak_error"][:], np.nan)).all()
+
+
 def test_python_gives_the_same(fcm, scene, tmp_path):
     from fcm import load_scene, respond
 

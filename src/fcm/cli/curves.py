@@ -334,7 +334,7 @@ def _curves(
 
     curves: Sequence[Curve] = summary["curves"]
     over = "level" if "level_folds" in curves[0] else unit
-    least = 0.0 if over == "level" else resolution_of(summary)
+    least, visited = 0.0 if over == "level" else resolution_of(summary), visited_frequencies(curves)
     folds_of = {id(curve): _seen_folds(curve, dofs, least) for curve in curves}
     judged = [curve for curve in curves if curve.get("cause") != "interrupted"]
     ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in judged)]
@@ -344,7 +344,11 @@ def _curves(
     table = DofTable(
         names,
         [_with_unit(dof, length) for dof in dofs],
-        [*_peak_heads(over), *([_RESIDUAL] if ranges_of else [])],
+        [
+            f"{'greatest' if visited else 'peak'} {{}}",
+            *_peak_heads(over)[1:],
+            *([_RESIDUAL] if ranges_of else []),
+        ],
         [*balanced, "points", "time [s]", f"folds at {over}", *broken],
         [
             _curve_row(curve, folds_of[id(curve)], dofs, ranges_of, bool(balanced), bool(broken))
@@ -356,6 +360,8 @@ def _curves(
     if left := len(curves) - len(begun):
         why = NOT_BEGUN if left == 1 else NOT_BEGUN.replace("it was", "they were")
         lines.append(f"{left} more curve{'s' * (left > 1)} {NOT_COMPLETE}: {why}")
+    if visited:
+        lines.append(f"greatest of {visited}: no peak was looked for, so how much higher one is is unknown")
     if any(hooks for _, hooks in folds_of.values()):
         lines.append(f"close pairs: folds less than {least:.2g} {unit} apart, too near to be seen in a sweep")
     if shown:
@@ -407,6 +413,16 @@ def _curves(
         if not all(there):
             lines.append(_UNKNOWN if over == unit else _OF_LEVELS)
     return "\n".join(lines)
+
+
+def visited_frequencies(curves: Sequence[Curve]) -> str:
+    """How many frequencies were visited where no curve was followed; empty where it was.
+
+    >>> visited_frequencies([{"visited": 5}, {"visited": 4}]), visited_frequencies([{"points": 9}])
+    ('5 frequencies', '')
+    """
+    count = max(curve.get("visited", 0) for curve in curves)
+    return f"{count} frequenc{'y' if count == 1 else 'ies'}" if count else ""
 
 
 def _which_are_shown(summary: Mapping[str, Any], dofs: list[str]) -> str:

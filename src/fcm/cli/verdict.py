@@ -7,7 +7,7 @@ from typing import Any
 
 from fcm.cli import schedule
 from fcm.cli.columns import BEYOND, short
-from fcm.cli.curves import incomplete, shown_dofs
+from fcm.cli.curves import incomplete, shown_dofs, visited_frequencies
 
 _UNSURE = ("folds_unsure_at", "branches_unsure_at", "symmetry_lost_at")  # of curves
 
@@ -39,7 +39,10 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     ends = incomplete(summary), schedule.incomplete(summary.get("histories", []))
     parts = [(" and ".join(filter(None, ends)) or "complete") + ", but branches may be missing" * unsure]
     if peaks := _shown(summary):
-        parts += [_of_stability(peaks), _of_errors(summary, peaks)]
+        visited = visited_frequencies(curves)
+        parts += [f"greatest of {visited}, and no peak"] if visited else []
+        what = "motion" if visited else "peak"
+        parts += [_of_stability(peaks, what), _of_errors(summary, peaks)]
     elif any(curve["points"] for curve in curves):
         parts.append("nothing moves")
     if remarks:
@@ -57,7 +60,7 @@ def _shown(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return found
 
 
-def _of_stability(peaks: Sequence[Mapping[str, Any]]) -> str:
+def _of_stability(peaks: Sequence[Mapping[str, Any]], what: str = "peak") -> str:
     """Part of the line on the stability of peaks and on their places."""
     counts = {
         "unstable": sum(one.get("stable", True) is False for one in peaks),
@@ -67,10 +70,10 @@ def _of_stability(peaks: Sequence[Mapping[str, Any]]) -> str:
         "on an isolated branch": sum(bool(one.get("on_isolated_branch")) for one in peaks),
         "at an end of the range": sum(bool(one.get("at_edge")) for one in peaks),
     }
-    told = [f"{count} {what}" for what, count in (counts | places).items() if count]
+    told = [f"{count} {which}" for which, count in (counts | places).items() if count]
     if not any(counts.values()):
-        return ", ".join(["every peak shown is stable", *told])
-    return ", ".join([f"of {len(peaks)} peak{'s' * (len(peaks) > 1)} shown", *told])
+        return ", ".join([f"every {what} shown is stable", *told])
+    return ", ".join([f"of {len(peaks)} {what}{'s' * (len(peaks) > 1)} shown", *told])
 
 
 def _of_errors(summary: Mapping[str, Any], peaks: Sequence[Mapping[str, Any]]) -> str:

@@ -122,6 +122,7 @@ def _curve(
     # of a motion that does not repeat neither its multipliers nor how far it ranges in the long run are known
     error = np.array([np.nan if p is None or p.repeats == 0 else 0.0 for p in points])
     stable = error + [p is not None and p.stable for p in points]
+    of_top = np.full_like(error, np.nan) if everywhere else error  # the greatest visited point is no peak
     at_top = stability_at_top(amplitude, stable).tolist()
     unseen = undetermined(scene, regime) & ~told
     residual = _residual(amplitude, others, unseen)
@@ -145,7 +146,7 @@ def _curve(
         complete=not reason,
         undetermined=int(unseen.sum()),
         peaks={
-            d: _peak(amplitude[:, i], frequency, error, at_top[i], residual[:, i])
+            d: _peak(amplitude[:, i], frequency, of_top, at_top[i], residual[:, i])
             for i, d in enumerate(empty.peaks)
         },
         orbits=_orbits(points, empty, others, stuck),

@@ -182,7 +182,8 @@ def _error_there(curve: Curve, d: int) -> dict[str, float]:
     More harmonics may have their own peak elsewhere, or a higher one.
     """
     column, peak = curve.amplitude[:, d], list(curve.peaks.values())[d]
-    if not np.isnan(peak.error) or np.isnan(peak.amplitude) or not np.isfinite(column).any():
+    visited = curve.orbits is not None and curve.orbits.visited
+    if visited or not np.isnan(peak.error) or np.isnan(peak.amplitude) or not np.isfinite(column).any():
         return {}
     error = float(curve.error[int(np.nanargmax(column)), d])
     return {"error_at_frequency": error} if np.isfinite(error) and curve.level is None else {}
@@ -259,6 +260,7 @@ def _sensitivity(curve: Curve, found: Sensitivities, unit: str) -> dict[str, Any
 def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
     """Summary entries that only curves of exact motions have."""
     here = np.isfinite(curve.frequency)
+    frequencies = np.unique(curve.frequency[here]).size
     known = np.isfinite(orbits.family_greatest).any(axis=1)
     families = {
         dof: [float(orbits.family_least[k, i]), float(orbits.family_greatest[k, i])]
@@ -270,6 +272,7 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
         "repeats": sorted({int(x) for x in orbits.repeats[here]}),
         **({"period_doubles": in_unit(np.array(orbits.doubles), unit).tolist()} if orbits.doubles else {}),
         "not_unique": int(known.sum()),
+        **({"visited": frequencies} if orbits.visited else {}),
         **({"unreached": _unreached(curve, orbits, unit)} if orbits.unreached else {}),
         **({} if orbits.span is None else {"only": "peaks"}),
         **({"peak_range": families} if families else {}),

@@ -46,7 +46,11 @@ class Orbits:
     span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought
 
     @property
+    def visited(self) -> bool:
+        """Whether the points are those of frequencies that were visited, and of no curve."""
+        return self.swept is not None and self.span is None
+
+    @property
     def unreached(self) -> list[int]:
         """The points at frequencies that were visited to which neither sweep came."""
-        visited = self.swept is not None and self.span is None
-        return np.flatnonzero(self.sweep == "").tolist() if visited else []
+        return np.flatnonzero(self.sweep == "").tolist() if self.visited else []
