@@ -4,15 +4,19 @@ import csv
 import dataclasses
 import json
 import resource
+from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
 
+import fcm as package
 from fcm.results.peak import Peak
 
 from ..computed import by, nowhere
 from ..oscillator import oscillator
+
+SCENES = Path(package.__file__).parent / "scenes"
 
 
 def files(folder):
@@ -362,3 +366,24 @@ def test_an_interrupted_run_says_so_and_leaves_nothing(program, scene, tmp_path)
     said += ["fcm: warning: nothing is finished, so nothing is kept"]
     assert done.err.splitlines() == [*said, "fcm: interrupted: the calculation was not completed"]
     assert files(tmp_path) == ["scene.toml"]
+
+
+def test_modes_within_the_range_that_are_not_kept_are_warned_of(fcm, tmp_path):
+    scene = tmp_path / "scene.toml"
+    text = (SCENES / "beam.toml").read_text()
+    for name in ("beam-mass.mtx", "beam-stiffness.mtx"):
+        (tmp_path / name).write_bytes((SCENES / name).read_bytes())
+    for old, new in (
+        ("modes     = 28", "modes = 1"),
+        ("damping   = 0.0", "damping = 0.01"),
+        ("[350.0, 800.0]", "[350.0, 5000.0]"),
+    ):
+        text = text.replace(old, new)
+    scene.write_text(text)
+    done = fcm("respond", scene, "--harmonics", "1")
+    assert "\nfcm: warning: structure: there are modes within the range that are not kept" in f"\n{done.err}"
+    result = done.err.splitlines()[-1]
+    assert " by harmonics left out, unknown by modes left out" in result and "remark" in result
+    scene.write_text(scene.read_text().replace("modes = 1", "modes = 8"))
+    done = fcm("respond", scene, "--harmonics", "1")
+    assert "not kept" not in done.err and "modes left out" not in done.err

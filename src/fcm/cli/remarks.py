@@ -29,7 +29,7 @@ from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
-from fcm.cli.verdict import verdict
+from fcm.cli.verdict import lacks_modes, verdict
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
@@ -142,7 +142,8 @@ def close(
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))
-    if line := verdict(result, sum(map(bool, [*remarks, *warnings]))):
+    before = lacks_modes(result)  # which is warned of before the calculation
+    if line := verdict(result, before + sum(map(bool, [*remarks, *warnings]))):
         messages.info(line)
     if stopped := " and ".join(
         filter(

@@ -8,6 +8,7 @@ from typing import Any
 from fcm.cli import schedule
 from fcm.cli.columns import BEYOND, short
 from fcm.cli.curves import incomplete, shown_dofs, visited_frequencies
+from fcm.model.question import MissingModes
 
 _UNSURE = ("folds_unsure_at", "branches_unsure_at", "symmetry_lost_at")  # of curves
 
@@ -80,10 +81,17 @@ def _of_errors(summary: Mapping[str, Any], peaks: Sequence[Mapping[str, Any]]) -
     """Part of the line on the errors of peaks; of exact motions by how much their periods do not close."""
     if summary.get("method") == "exact":
         closure = [one["closure_error"] for one in summary["curves"] if one.get("closure_error") is not None]
-        return f"periods close to {short(max(closure))}" if closure else "errors unknown"
+        closes = f"periods close to {short(max(closure))}" if closure else "errors unknown"
+        return f"{closes}{', errors by modes left out are unknown' * lacks_modes(summary)}"
     told = [one["error"] for one in peaks if one.get("error") is not None]
     if not told:
         return "errors of peaks are unknown"
     most = "up to more than 100 %" if short(max(told)) == BEYOND else f"at most {short(max(told))}"
     unknown = len(peaks) - len(told)
-    return f"errors of peaks are {most}{f', {unknown} unknown' * bool(unknown)}"
+    but = " by harmonics left out, unknown by modes left out" * lacks_modes(summary)
+    return f"errors of peaks are {most}{but}{f', {unknown} unknown' * bool(unknown)}"
+
+
+def lacks_modes(summary: Mapping[str, Any]) -> bool:
+    """Whether modes within the range are not kept, so that peaks err by more than is estimated."""
+    return any(isinstance(note, MissingModes) for note in summary.get("notes", ()))

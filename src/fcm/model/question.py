@@ -11,3 +11,9 @@ class Question(str):
     """
 
     __slots__ = ()
+
+
+class MissingModes(Question):
+    """Says that modes within the range are not kept: how much their lack changes peaks is unknown."""
+
+    __slots__ = ()

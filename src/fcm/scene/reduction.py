@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.question import MissingModes
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted
 from fcm.scene.modal_damping import Damping, damping_of
@@ -215,5 +216,10 @@ def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
     if found.rigid:
         said.append(f"structure: {counted(found.rigid, 'rigid-body mode')}, of frequency 0")
     if found.beyond < ends[1]:
-        said.append("structure: there are modes within the range that are not kept: raise structure.modes")
+        said.append(
+            MissingModes(
+                "structure: there are modes within the range that are not kept. By how much this changes "
+                "peaks is unknown: raise structure.modes"
+            )
+        )
     return said

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fcm.frozen import Frozen
+from fcm.model.question import MissingModes
 from fcm.model.ring import ComplexArray, FloatArray
 from fcm.scene.errors import counted
 from fcm.scene.modal_damping import Damping, damping_of
@@ -135,15 +136,17 @@ def _notes(
     else:
         text += ", and the flexibility of the others; how far it is off is unknown"
     notes = [text]
-    for what, which in (
-        ("has rigid-body modes, of frequency 0", [one.found.rigid for one in diameters]),
+    for note, what, which in (
+        (str, "has rigid-body modes, of frequency 0", [one.found.rigid for one in diameters]),
         (
-            "has modes within the range that are not kept: raise structure.modes",
+            MissingModes,
+            "has modes within the range that are not kept. By how much this changes peaks is unknown: raise "
+            "structure.modes",
             [one.beyond < ends[1] for one in all_found],
         ),
     ):
         numbers = [str(one.number) for one, flag in zip(diameters, which, strict=True) if flag]
-        notes += [f"structure: nodal diameter {', '.join(numbers)} {what}"] if numbers else []
+        notes += [note(f"structure: nodal diameter {', '.join(numbers)} {what}")] if numbers else []
     ratios = np.concatenate([one.damping.ratio[one.found.rigid :] for one in diameters])
     notes += of_rounding(all_found, ratios)
     return [*notes, *dict.fromkeys(text for one in diameters for text in one.damping.said)]
