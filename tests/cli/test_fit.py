@@ -75,7 +75,22 @@ def test_the_numbers_are_told_with_their_errors_and_drawn(measured, tmp_path):
 def test_the_table_names_numbers_and_data(measured):
     done = called("respond", measured(points=10))
     assert "standard error" in done.out and "contact.shroud.k_u" in done.out and "data.csv u" in done.out
+    rough = "10 of 10, rough" in done.out
+    assert rough == ("not comparable with those of all" in done.out)
     assert "curve" in done.err
+
+
+def test_costs_of_rough_searches_are_told_from_those_of_all_points():
+    start = {"points": 12, "cost": 23.7, "finished": False, "end": [8.3], "harmonics": [1]}
+    numbers = {"standard_error": 0.1, "interval": [0.2, 0.4], "value": 0.3, "start": 0.5}
+    data = {"points": 56, "level": [1.0, 1.0], "kind": "response", "damping_misfit": None, "misfit": 0.01}
+    data |= {"file": "d.csv", "dof": "u", "error_estimated": False}
+    found = {"numbers": {"contact.c.mu": numbers}, "confidence": 0.95, "data": [data], "harmonics": [1]}
+    both = [start, start | {"points": 56, "finished": True, "cost": 28.0}]
+    table = as_table({"fitted": found | {"starts": both}})
+    assert "12 of 56, rough" in table and " all " in table and "not comparable with those of all" in table
+    table = as_table({"fitted": found | {"starts": both[1:]}})
+    assert "rough" not in table.lower()
 
 
 @pytest.mark.slow

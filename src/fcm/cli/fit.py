@@ -111,14 +111,20 @@ def _searches(found: Mapping[str, Any]) -> str:
     from fcm.plot.labels import with_mode
 
     rows = [["search", "points", "cost", *(plain(with_mode(key)) for key in found["numbers"]), "harmonics"]]
+    every = sum(one["points"] for one in found["data"])
     for k, one in enumerate(found["starts"], 1):
         ends = [f"{value:.6g}" for value in one["end"]]
-        points = "all" if one["finished"] else "some"
+        points = "all" if one["finished"] else f"{one['points']} of {every}, rough"
         rows.append([str(k), points, f"{one['cost']:.3g}", *ends, ranges(one["harmonics"])])
     note = (
-        "cost: half the sum of the squares of the distances in units of the errors, of all points, with the "
-        "errors at the numbers found"
+        "cost: half the sum of the squares of the distances in units of the errors; of all points with those "
+        "at the numbers found"
     )
+    if not all(one["finished"] for one in found["starts"]):
+        note += (
+            ". Rough searches choose where to begin with all. Their costs are with greater errors, and not "
+            "comparable with those of all"
+        )
     return f"{aligned(rows, left=1)}\n{note}"
 
 

@@ -67,6 +67,7 @@ class SearchStart:
     end: FloatArray
     cost: float
     effect: npt.NDArray[np.bool_]
+    points: int = 0  # that cost is of
     finished: bool = False
 
 
@@ -361,7 +362,10 @@ def _likeliest(
             best = end
     for end in sorted(ends, key=lambda end: -end.unlikely):
         end.start.end, end.start.finished = best.problem.parameters.values(end.x), True
-        end.start.cost = best.problem.cost(end.x)
+        end.start.cost, end.start.points = (
+            best.problem.cost(end.x),
+            sum(one.points for one in end.problem.data),
+        )
     best.start.end, best.start.cost = best.problem.parameters.values(best.x), best.problem.cost(best.x)
     return replace(_with_rows(best.problem, best.x, starts, interrupted), settled=best.settled)
 
@@ -384,7 +388,10 @@ def _tried(
         if found.x is None:
             continue
         effect = np.abs(rough.jacobian(found.x)).max(axis=0, initial=0.0) > options.min_effect
-        starts.append(SearchStart(parameters.values(x), parameters.values(found.x), found.cost, effect))
+        points = sum(one.points for one in rough.data)
+        starts.append(
+            SearchStart(parameters.values(x), parameters.values(found.x), found.cost, effect, points)
+        )
         least = _by_cost(starts, options)[0]
         same = [
             np.isclose(one.end, least.end, rtol=options.number_tolerance, atol=0.0) | ~least.effect

@@ -288,7 +288,7 @@ def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -
             for one, rows in zip(found.data, found.parts, strict=True)
         ],
         starts=[
-            FittedStart(one.begin, one.end, one.cost, one.finished, each.harmonics)
+            FittedStart(one.begin, one.end, one.cost, one.points, one.finished, each.harmonics)
             for each in rounds
             for one in each.solved.starts
         ],

@@ -183,6 +183,7 @@ class FittedStart(Frozen):
     begin: FloatArray
     end: FloatArray
     cost: float
+    points: int  # that cost is of
     finished: bool  # whether it was fitted to all points
     harmonics: tuple[int, ...]
 
@@ -296,6 +297,7 @@ class Fitted:
                     "begin": one.begin.tolist(),
                     "end": one.end.tolist(),
                     "cost": one.cost,
+                    "points": one.points,
                     "finished": one.finished,
                     "harmonics": list(one.harmonics),
                 }
