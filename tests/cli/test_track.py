@@ -47,6 +47,17 @@ def test_an_optimum_is_written_drawn_and_told(fcm, optimum):
     assert fcm("plot", "peak", "best.nc", "--folds").code == 2
 
 
+def test_an_optimum_is_the_same_in_whatever_bounds(fcm, optimum):
+    """Where they were wide it was said to be at a corner, as slopes were compared with the whole range."""
+    found = []
+    for bounds in ("2.0, 20.0", "0.0, 1e4"):
+        optimum.write_text(re.sub(r"bounds *= *\[.*\]", f"bounds = [[{bounds}]]", optimum.read_text()))
+        found += json.loads(fcm("respond", optimum, "--harmonics", "1", "--json").out)["optimum"]
+    assert [one["kind"] for one in found] == ["smooth", "smooth"]
+    values = [one["values"]["contact.shroud.n_0"] for one in found]
+    assert values[1] == pytest.approx(values[0], rel=1e-7)
+
+
 def test_as_json_an_optimum_has_its_error_and_harmonics(fcm, optimum):
     done = fcm("respond", optimum, "--accuracy", "0.01", "--json")
     (found,) = json.loads(done.out)["optimum"]

@@ -247,7 +247,7 @@ def _tried(one: Mapping[str, Any]) -> str:
 def _at_corner(one: Mapping[str, Any], unit: str) -> str:
     """Clause that the response has a corner there, or that the frequency range ends."""
     if (at := one["leaves_range"]) is None:
-        return ", at a corner of the response"
+        return ", at a corner: on both sides the peak rises at once"
     return (
         f", where the peak leaves the range of frequencies at {at:.6g} {unit}: with other numbers there is "
         "none within it, so take a wider one"

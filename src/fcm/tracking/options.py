@@ -253,14 +253,14 @@ class EnvelopeOptions(Frozen):
     brackets : int
         Number of the lowest points about which the least value is looked for.
     value_tolerance : float
-        Error of the number at the least value, relative to its range.
+        Error of the number at the least value, relative to its range, or to itself where that is less.
     search_tolerance : float
         Error of it, relative to the range, up to which it is sought by the values alone.
     bracket : float
         Distance from there, relative to the range, at which the slopes on both sides tell what lies between.
     smooth_slope : float
-        Relative change of a peak over the whole range, by its slope at the least value, below which that is
-        where the peak turns, and no corner.
+        Slope of a peak at the least value, relative to the lesser one of those on both sides, below which
+        that is where the peak turns, and no corner.
     chord_fraction : float
         Height of a peak by the chords, relative to the highest, below which it is not computed.
     min_gap : float

@@ -316,14 +316,14 @@ def _turned(
     """The value of s where the envelope turns: where pieces cross, or one has its least value."""
     (one, other), span = pieces, setup.span[1] - setup.span[0]
     options = setup.options.envelope
-    fine = options.value_tolerance * span
+    fine = options.value_tolerance * min(span, max(map(abs, between)))
     if one is not other:
         crossing = _root(lambda s: one.at(s).value - other.at(s).value, *between, fine)
         if one.covers(crossing) and other.covers(crossing):
             return "kink", crossing
     at = _root(lambda s: highest(s)[0].slope, *between, fine)
-    top = highest(at)[0]
-    return "smooth" if abs(top.slope) * span < options.smooth_slope * top.value else "corner", at
+    beside = min(abs(highest(s)[0].slope) for s in between)
+    return "smooth" if abs(highest(at)[0].slope) < options.smooth_slope * beside else "corner", at
 
 
 def _root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
