@@ -30,6 +30,7 @@ def test_a_peak_over_the_level_has_its_level_and_is_marked_at_an_end(fcm):
     assert peak["level"] == 4.0 and peak["at_edge"] is True and peak["frequency"] == pytest.approx(1.2)
     said = fcm("respond", *options).out
     assert "at level" in said.splitlines()[0] and "4.00000*" in said.splitlines()[1]
+    assert fcm("respond", *options).err.splitlines()[-1].startswith("result: complete; ")
     assert "* at an end of the range: beyond it the curve may rise further\n" in said
 
 

@@ -206,6 +206,9 @@ def test_the_last_line_says_at_how_many_points_the_error_was_estimated(fcm, tmp_
     assert curve["mode"]["error_known"]["points"] == known
     assert curve["mode"]["error_known"]["modal_amplitude"] == amplitude[np.isfinite(error)].max()
     assert f"estimated at {known} of {points} points" in done.err
+    result = done.err.splitlines()[-1]
+    assert result.startswith("result: complete; errors of amplitudes are ")
+    assert f", unknown at {points - known} of {points} points" in result
 
 
 RESONANT = """

@@ -12,9 +12,12 @@ import pytest
 from matplotlib.text import Text
 
 import fcm as package
-from fcm.cli.track import incomplete
+from fcm.cli.track import incomplete, lower_ended
+from fcm.cli.verdict import verdict
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
 from fcm.response.track import TrackRequest, track
+from fcm.results.summary import without_nan
+from fcm.results.tracked import TrackedCurve, TrackedError, Tracking
 from fcm.scene import load_scene
 from fcm.tracking import lowest_peak, minimax
 
@@ -472,3 +475,42 @@ def test_a_tracked_curve_that_stopped_says_what_shows_the_rest():
     assert said.startswith("1 of 2 tracked curves stopped early: a [sweep] of contact.a.mu shows ")
     for other in ({"problems": ["interrupted"]}, {"over": "level"}, {"what": "optimum"}):
         assert "[sweep]" not in incomplete({"tracked": tracked | other})
+
+
+def peaks_over(number, height, complete, **more):
+    count = len(number)
+    data = {
+        "parameters": {}, "what": "peak of u", "number": np.array(number), "frequency": np.ones(count),
+        "amplitude": np.array(height)[:, None], "corner": np.full(count, ""), "turn": np.zeros(count, bool),
+        "trough": np.zeros(count, bool), "stable": np.ones(count), "closings": (), "complete": complete,
+        "reason": "" if complete else "it ends at a corner",
+    }  # fmt: skip
+    return TrackedCurve(**(data | more))
+
+
+@pytest.mark.parametrize(("height", "lower"), [([1.0, 1.2], True), ([1.0, 3.5], False)])
+def test_a_lower_peak_that_ends_early_is_a_remark_and_no_failure(height, lower):
+    """Where a greater one is complete; one that rises above it may be the greatest beyond its end."""
+    curves = [peaks_over([1.0, 3.0], [2.0, 3.0], True), peaks_over([1.0, 2.0], height, False)]
+    found = Tracking("contact.a.n_0", "peaks", (1.0, 3.0), (1,), curves)
+    result = {"tracked": found.summary("rad/s", ("u", "v")), "curves": []}
+    assert not found.complete and bool(incomplete(result)) is not lower
+    assert bool(lower_ended(result)) is lower
+    ends = "complete" if lower else "1 of 2 tracked curves stopped early"
+    assert verdict(result, 0).startswith(f"result: {ends}; every motion tracked is stable; errors of amp")
+    alone = Tracking("contact.a.n_0", "peaks", (1.0, 3.0), (1,), curves[1:])
+    assert not lower_ended({"tracked": alone.summary("rad/s", ("u", "v"))})
+
+
+def test_the_last_line_on_tracked_curves_is_the_result_in_short():
+    errors = (TrackedError(0, "end", 2e-3), TrackedError(1, "cusp", float("nan"), 0.1))
+    curve = peaks_over([1.0, 2.0], [1.0, 1.0], True, errors=errors, turn=np.array([False, True]))
+    unstable = replace(curve, stable=np.array([0.0, 1.0]))
+    for what, curves, words in (
+        ("peaks", [curve, unstable], "of 2 tracked curves, 1 unstable in part; errors of amplitudes are"),
+        ("folds", [curve], "errors of frequencies are at most 2.0e-03, 1 unknown, of the number at turns at"),
+        ("slip", [], "nothing to follow was found"),
+    ):
+        found = Tracking("contact.a.n_0", what, (1.0, 2.0), (1,), curves)
+        result = without_nan({"tracked": found.summary("rad/s", ("u",)), "curves": []})
+        assert verdict(result, 0).startswith(f"result: complete; {words}")

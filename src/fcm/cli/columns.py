@@ -140,6 +140,16 @@ def short(value: float | None) -> str:
     return "-" if value is None else BEYOND if value > 1.0 else f"{value:.1e}"
 
 
+def most_of(errors: Sequence[float]) -> str:
+    """How large errors are, for a sentence.
+
+    >>> most_of([2e-4, 0.01]), most_of([2e-4, 1.7])
+    ('at most 1.0e-02', 'up to more than 100 %')
+    """
+    worst = short(max(errors))
+    return "up to more than 100 %" if worst == BEYOND else f"at most {worst}"
+
+
 def share_of(change: float) -> str:
     """A share in percent, two digits; 0 below a thousandth of a percent, and no digits beyond ten times.
 

@@ -125,6 +125,7 @@ def close(
         ),
         of_more_harmonics(result) if announced.harmonics_given else large_errors(result),
         folds_uncertain(result),
+        track.lower_ended(result),
     ]
     of_doubt = (
         nonlinear_mode.outside_range,

@@ -14,6 +14,7 @@ from fcm.cli.columns import (
     UNKNOWN,
     UNSTABLE,
     aligned,
+    most_of,
     share_of,
     short,
     stopped_early,
@@ -393,6 +394,48 @@ def cost(result: Mapping[str, Any]) -> str:
     return f"{counted(len(result['tracked']['curves']), 'tracked curve')} in {seconds}"
 
 
+def lower_ended(result: Mapping[str, Any]) -> str:
+    """Remark on curves of lower peaks that end early, where those of greater ones are complete; or ''."""
+    tracked = result.get("tracked", {})
+    lower = [curve for curve in tracked.get("curves", ()) if curve.get("lower")]
+    if not lower:
+        return ""
+    one, *others = lower
+    more = f", as {len(others)} more do{'es' * (len(others) == 1)}" if others else ""
+    where = "{:.6g} to {:.6g}".format(*one["number"])
+    return (
+        f"a lower {plain(one['what'])} was followed with {plain(tracked['over'])} from {where} alone{more}. "
+        "Greater ones, which are complete, lie above it"
+    )
+
+
+def in_short(result: Mapping[str, Any]) -> list[str]:
+    """Parts of a line on tracked curves: whether they are complete and stable, and how large errors are."""
+    tracked = result.get("tracked")
+    if tracked is None or tracked["what"] == "optimum":
+        return []
+    curves = tracked["curves"]
+    stopped = sum(not curve["complete"] and not curve.get("lower") for curve in curves)
+    ends = stopped_early(stopped, len(curves), "tracked curve") or "not complete" * bool(tracked["problems"])
+    if not curves:
+        return [ends or "complete", "nothing to follow was found"]
+    kinds = {"unstable": "not_stable", "of unknown stability": "stability_untold"}
+    counts = {what: sum(bool(curve.get(key)) for curve in curves) for what, key in kinds.items()}
+    told = [f"{count} {what} in part" for what, count in counts.items() if count]
+    which = f"of {len(curves)} tracked curve{'s' * (len(curves) > 1)}"
+    stable = ", ".join([which, *told]) if told else "every motion tracked is stable"
+    stable = "" if tracked["what"] == "folds" else stable  # at which stability ends
+    every = [one for curve in curves for one in curve["errors"]]
+    errors = [one["error"] for one in every if one["error"] is not None]
+    of = "amplitudes" if tracked["what"] == "peaks" else "frequencies"
+    unknown = f", {len(every) - len(errors)} unknown" * (len(errors) < len(every))
+    most = f"are {most_of(errors)}{unknown}" if errors else "are unknown"
+    turns = [number for one in every if (number := one.get("error_of_number")) is not None]
+    of_turns = f", of the number at turns {most_of(turns)}" if turns else ""
+    unsure = ", but others may be missing" * bool(tracked.get("branches_unsure_at"))
+    return [f"{ends or 'complete'}{unsure}", *filter(None, [stable]), f"errors of {of} {most}{of_turns}"]
+
+
 def incomplete(result: Mapping[str, Any]) -> str:
     """Sentence on what is missing of the tracked curves; empty if nothing is."""
     from fcm.scene.address import LEVEL
@@ -400,7 +443,7 @@ def incomplete(result: Mapping[str, Any]) -> str:
     tracked = result.get("tracked")
     if tracked is None or tracked["complete"]:
         return ""
-    stopped = sum(not curve["complete"] for curve in tracked["curves"])
+    stopped = sum(not curve["complete"] and not curve.get("lower") for curve in tracked["curves"])
     said = [stopped_early(stopped, len(tracked["curves"]), "tracked curve")] if stopped else []
     problems = tracked["problems"]
     if stopped and not problems and tracked["what"] != "optimum" and tracked["over"] != LEVEL:

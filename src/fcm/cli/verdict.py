@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli import schedule
-from fcm.cli.columns import BEYOND, short
+from fcm.cli import schedule, track
+from fcm.cli.columns import most_of, short
 from fcm.cli.curves import incomplete, shown_dofs, visited_frequencies
 from fcm.model.question import MissingModes
 
@@ -14,9 +14,9 @@ _UNSURE = ("folds_unsure_at", "branches_unsure_at", "symmetry_lost_at")  # of cu
 
 
 def verdict(summary: Mapping[str, Any], remarks: int) -> str:
-    """Line on the peaks that the tables show, and how many remarks stand above it; empty without a response.
+    """Line on the peaks that the tables show, and how many remarks stand above it; empty of a schedule alone.
 
-    Curves of levels and nonlinear modes have no peaks of a response.
+    Of nonlinear modes, which have no peaks, it is on the errors of amplitudes along them.
 
     Examples
     --------
@@ -34,12 +34,17 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     errors of peaks are at most 2.0e-04, 1 unknown; 2 remarks on it above'
     """
     curves: Sequence[Mapping[str, Any]] = summary["curves"]
-    if not curves or any("mode" in curve or "level_folds" in curve for curve in curves):
+    tracked = track.in_short(summary)
+    if not curves and not tracked:
         return ""
     unsure = any(curve.get(key) for curve in curves for key in _UNSURE)
     ends = incomplete(summary), schedule.incomplete(summary.get("histories", []))
     parts = [(" and ".join(filter(None, ends)) or "complete") + ", but branches may be missing" * unsure]
-    if peaks := _shown(summary):
+    if tracked:
+        parts = tracked
+    elif any("mode" in curve for curve in curves):
+        parts.append(_of_modes(curves))
+    elif peaks := _shown(summary):
         visited = visited_frequencies(curves)
         parts += [f"greatest of {visited}, and no peak"] if visited else []
         what = "motion" if visited else "peak"
@@ -77,6 +82,18 @@ def _of_stability(peaks: Sequence[Mapping[str, Any]], what: str = "peak") -> str
     return ", ".join([f"of {len(peaks)} {what}{'s' * (len(peaks) > 1)} shown", *told])
 
 
+def _of_modes(curves: Sequence[Mapping[str, Any]]) -> str:
+    """Part of the line on the errors of amplitudes along nonlinear modes, where these are known."""
+    followed = [one for one in curves if one.get("mode")]
+    told = [one["truncation_error"] for one in followed if one["truncation_error"] is not None]
+    points = sum(one["points"] for one in followed)
+    unknown = points - sum(one["mode"]["error_known"]["points"] for one in followed)
+    if not told:
+        return "errors of amplitudes are unknown"
+    of = f", unknown at {unknown} of {points} points" if unknown else ""
+    return f"errors of amplitudes are {most_of(told)}{of}"
+
+
 def _of_errors(summary: Mapping[str, Any], peaks: Sequence[Mapping[str, Any]]) -> str:
     """Part of the line on the errors of peaks; of exact motions by how much their periods do not close."""
     if summary.get("method") == "exact":
@@ -86,10 +103,9 @@ def _of_errors(summary: Mapping[str, Any], peaks: Sequence[Mapping[str, Any]]) -
     told = [one["error"] for one in peaks if one.get("error") is not None]
     if not told:
         return "errors of peaks are unknown"
-    most = "up to more than 100 %" if short(max(told)) == BEYOND else f"at most {short(max(told))}"
     unknown = len(peaks) - len(told)
     but = " by harmonics left out, unknown by modes left out" * lacks_modes(summary)
-    return f"errors of peaks are {most}{but}{f', {unknown} unknown' * bool(unknown)}"
+    return f"errors of peaks are {most_of(told)}{but}{f', {unknown} unknown' * bool(unknown)}"
 
 
 def lacks_modes(summary: Mapping[str, Any]) -> bool:

@@ -46,7 +46,7 @@ def summary(response: Response) -> dict[str, Any]:
         data["histories"] = history_output.summary(response.histories)
     if response.tracking is not None:
         unit = response.frequency_unit
-        data["tracked"] = response.tracking.summary(unit)
+        data["tracked"] = response.tracking.summary(unit, response.dofs)
         if response.tracking.optima:
             data["optimum"] = [one.summary(unit) for one in response.tracking.optima]
     if response.fitted is not None:

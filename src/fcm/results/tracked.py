@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -191,8 +192,18 @@ class Tracking:
         followed = self.what == "optimum" or all(curve.complete for curve in self.curves)
         return followed and not self.problems
 
-    def summary(self, unit: str) -> dict[str, Any]:
-        """Entries of the tracking for JSON."""
+    def is_lower(self, one: TrackedCurve, dofs: Sequence[str]) -> bool:
+        """Whether a curve of peaks that ends early lies below complete ones of the same, all along it."""
+        dof = one.what.removeprefix("peak of ")
+        if one.complete or dof == one.what or dof not in dofs:
+            return False
+        same = [c for c in self.curves if c.complete and (c.what, c.parameters) == (one.what, one.parameters)]
+        column, counts = dofs.index(dof), ~one.trough
+        points = zip(one.number[counts].tolist(), one.amplitude[counts, column].tolist(), strict=True)
+        return all(any(_height(other, column, s) > height for other in same) for s, height in points)
+
+    def summary(self, unit: str, dofs: Sequence[str] = ()) -> dict[str, Any]:
+        """Entries of the tracking for JSON; dofs: those that amplitudes are of."""
         return {
             "what": self.what,
             "over": self.key,
@@ -200,7 +211,20 @@ class Tracking:
             "harmonics": list(self.harmonics),
             "complete": self.complete,
             "problems": self.problems,
-            "curves": [curve.summary(unit) for curve in self.curves],
+            "curves": [
+                curve.summary(unit) | ({"lower": True} if self.is_lower(curve, dofs) else {})
+                for curve in self.curves
+            ],
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
             "branches_unsure_at": [[number, float(in_unit(at, unit))] for number, at in self.uncertain_at],
         }
+
+
+def _height(curve: TrackedCurve, column: int, s: float) -> float:
+    """The greatest amplitude of a curve at a number, by its chords, troughs apart; -inf where it has none."""
+    first, last = curve.number[:-1], curve.number[1:]
+    over = (np.minimum(first, last) <= s) & (s <= np.maximum(first, last))
+    over &= ~(curve.trough[:-1] | curve.trough[1:])
+    way = np.where(last == first, 1.0, last - first)
+    chords = curve.amplitude[:-1, column] + np.diff(curve.amplitude[:, column]) * (s - first) / way
+    return float(np.max(chords[over], initial=-np.inf))
