@@ -559,3 +559,40 @@ def test_preloads_are_of_a_pair_where_there_are_pairs(listed, nodes):
     done = listed("\n".join(line.strip() for line in text.splitlines()))
     assert done.code == 0 and "that friction can add to each resonance" in done.out
     assert ("n_0 is that of a pair" in done.out) is bool(nodes)
+
+
+def test_a_preload_that_pairs_share_is_the_total_that_the_scene_has(listed):
+    """It was that of a pair, beside a total in the scene."""
+    text = """
+    [structure]
+    dofs = ["1x", "1y", "2x", "2y"]
+    stiffness = [1.0, 1.5, 1.0, 1.5]
+    mass = [1.0, 1.0, 1.0, 1.0]
+    damping = 0.01
+    [[contact]]
+    name = "c"
+    nodes = [["1"], ["2"]]
+    tangential = "x"
+    normal = "y"
+    mu = 0.5
+    k_u = 1.0
+    k_v = 1.0
+    n_0 = 1.0
+    [[force]]
+    dof = "1x"
+    amplitude = 1.0
+    """
+    text = "\n".join(line.strip() for line in text.splitlines())
+    pair, total = (listed(text.replace("n_0", f"{areas}n_0")) for areas in ("", "areas = [3.0, 1.0]\n"))
+    assert "n_0 is the total of all pairs" in total.out and "n_0 is that of a pair" in pair.out
+
+
+def test_of_a_ring_the_modes_of_the_diameters_that_forces_meet_are_listed(fcm):
+    few, every = (fcm("plot", "modes", "bladed-disk", *more) for more in ((), ("--all",)))
+    said = json.loads(fcm("plot", "modes", "bladed-disk", "--json").out)["modes"]
+    met = [one for one in said if one["met"]]
+    assert 0 < len(met) < len(said)
+    assert len(few.out.splitlines()) < len(every.out.splitlines())
+    assert {row.split()[1] for row in few.out.splitlines()[1:]} == {str(one["nodal_diameter"]) for one in met}
+    assert f"{len(said) - len(met)} more modes are of nodal diameters that no force meets" in few.err
+    assert "no force meets" not in every.err and "are not made of a ring, whose modes travel" in few.err

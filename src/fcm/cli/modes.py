@@ -18,6 +18,7 @@ _FRICTION = (
     "open: the mode without contacts of the most alike shape, MAC: how alike, 1 the same; - below {:g}:"
 )
 _OF_PAIRS = "; n_0 is that of a pair"
+_OF_TOTALS = "; n_0 is the total of all pairs"
 _OPENS = "*"  # beside a preload with which contacts would open
 _OF_OPENING = (
     f"{_OPENS} contacts would open with this preload, so that it does not hold, nor does the damping: "
@@ -35,15 +36,17 @@ _STIFFNESS = (
 
 @click.command()
 @scene_argument
+@click.option("--all", "every", is_flag=True, help="Of a ring, list also diameters that no force meets.")
 @click.option("--json", "to_json", is_flag=True, help="Print JSON instead of a table.")
 @largest_file_option
 @pass_messages
-def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> None:
+def modes(messages: Messages, scene: str, every: bool, to_json: bool, largest_file: int) -> None:
     """List the modes of SCENE: frequency, damping, mass, and participation at contacts and forces.
 
     The participation is the share of a mode in the static flexibility along a contact or a force. Modes that
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
-    by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
+    by nodal diameter, with the share among the modes of the same. They are those of the diameters that forces
+    meet; --all has the others, too, and `fcm plot campbell` draws them. The other tables are not made of it.
 
     A second table has the resonances while all contacts stick. Beside each stands the mode without contacts
     of the most alike shape, by the modal assurance criterion with the mass. Modes of one frequency count
@@ -69,6 +72,9 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     from fcm.scene.listing import listing
 
     found = listing(load_scene(scene, largest_file=largest_file, solved=False))
+    count_of_all = len(found["modes"])
+    if not (every or to_json):
+        found["modes"] = [mode for mode in found["modes"] if mode.get("met", True)] or found["modes"]
     click.echo(json.dumps(found, indent=2, allow_nan=False) if to_json else as_table(found))
     if not to_json:
         if any(share is None for mode in found["modes"] for share in mode["participation"].values()):
@@ -79,6 +85,16 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
         if missing := len(found["modes"]) - len(_listed(found["modes"])):
             stand = "mode stands" if missing == 1 else "modes stand"
             messages.info(f"{missing} more {stand} for flexibility: --json has all")
+        if others := count_of_all - len(found["modes"]):
+            messages.info(
+                f"{others} more modes are of nodal diameters that no force meets: --all has them. Harmonics "
+                "of friction may meet them"
+            )
+        if "resonances" not in found:
+            messages.info(
+                "the tables of damping by friction and of stiffness are not made of a ring, whose modes travel. "
+                "A [sweep] of n_0, first with --harmonics 1, shows which preload is best"
+            )
         messages.info(f"shapes: {found['normalisation']}")
         for text in found["read"]:
             messages.info(f"read: {text}")
@@ -135,10 +151,12 @@ def _resonances(found: dict[str, Any]) -> str:
     forced = any(name.startswith("force.") for name in found["modes"][0]["participation"])
     force = found["units"]["force"]
     heads = ["friction adds", "most in", "", f"n_0 [{force}]" if force else "n_0"]
+    totals = found["preload_shares"]
     rows = [["resonance", f"stuck at {unit}", f"open at {unit}", "MAC", *heads]]
     for number_of, one in enumerate(every, 1):
         name, share = max(one["by_contact"].items(), key=lambda item: item[1])
-        preload = f"{one['preload'][name]:.2g}" if one["preload"][name] else "-"
+        whole = one["preload"][name] / totals.get(name, 1.0)
+        preload = f"{whole:.2g}" if whole else "-"
         preload += _OPENS if one["opens"] else ""
         most = [name, f"{100.0 * share:.0f} %", preload] if one["friction_damping"] else ["-", "", ""]
         adds = ratio(one["friction_damping"], 2)
@@ -157,8 +175,11 @@ def _resonances(found: dict[str, Any]) -> str:
     marks = [_NOT_MOVED] if forced and not all(one["excited"] for one in every) else []
     marks += [_OF_OPENING] if any(one["opens"] for one in every) else []
     marks += [OF_OVERDAMPED] if any(row[4].endswith(OVERDAMPED) for row in rows) else []
-    of_pairs = any(row[5] in found["of_pairs"] for row in rows)
-    said = _FRICTION.format(_OF_PAIRS if of_pairs else "", SENTENCES.least_alike)
+    pairs = {row[5] for row in rows if row[5] in found["of_pairs"]}
+    of = _OF_TOTALS if pairs & totals.keys() else _OF_PAIRS if pairs else ""
+    if pairs & totals.keys() and pairs - totals.keys():
+        of += f", but of {', '.join(sorted(pairs - totals.keys()))} that of a pair"
+    said = _FRICTION.format(of, SENTENCES.least_alike)
     return "\n".join([said, aligned(rows, left=3), *marks])
 
 

@@ -71,6 +71,7 @@ def listing(scene: Scene) -> dict[str, Any]:
         "modes": modes,
         "resonances": friction_damping(scene),
         "of_pairs": _of_pairs(scene),
+        "preload_shares": _preload_shares(scene),
         "stiffness": _beside_structure(scene, shares),
         "normalisation": _normalisation(scene),
         "read": _read(scene, modal.frequency[:own]),
@@ -83,6 +84,12 @@ def _of_pairs(scene: Scene) -> list[str]:
     """Names of the contacts that are one pair of nodes of several."""
     drafts = [] if scene.draft is None else scene.draft.parts["contact"]
     return [one["name"] for one in drafts if "group" in one]
+
+
+def _preload_shares(scene: Scene) -> dict[str, float]:
+    """Share of each pair of nodes in the n_0 of its contact, where that is a total for all pairs."""
+    drafts = [] if scene.draft is None else scene.draft.parts["contact"]
+    return {one["name"]: one["share"]["n_0"] for one in drafts if "n_0" in one.get("share", ())}
 
 
 def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[str, float | None]]:
@@ -288,7 +295,7 @@ def _listed(values: FloatArray, digits: int = 5) -> str:
 
 def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
     """The modes of every nodal diameter; shares are among those of one, displacements magnitudes."""
-    directions = _directions(scene)
+    directions, met = _directions(scene), {ring.meets(one.harmonic) for one in scene.forces}
     motion = {name: np.abs(ring.shapes @ direction) for name, direction in directions.items()}
     order = np.lexsort((ring.frequency, ring.added, ring.diameter))
     shares: dict[str, dict[int, float | None]] = {name: {} for name in motion}
@@ -302,6 +309,7 @@ def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
         {
             "mode": number + 1,
             "nodal_diameter": int(ring.diameter[i]),
+            "met": int(ring.diameter[i]) in met,
             "kind": FLEXIBILITY if ring.added[i] else "mode" if ring.frequency[i] else "rigid body",
             "frequency": float(ring.frequency[i] / UNIT[scene.frequency_unit]),
             "damping": float(ring.damping[i]),
