@@ -576,3 +576,12 @@ def test_the_picture_of_a_normal_force_has_it_over_displacement_and_angle():
     assert ring.get_xydata().ravel().tolist() == pytest.approx([0.5, 0.0])
     (text,) = (text.get_text() for text in above.texts)
     assert text.count("opens at") == text.count("closes at") == cycle.sequence.count("S")
+
+
+@pytest.mark.parametrize("picture", ["loop", "contacts"])
+def test_of_several_curves_one_is_to_be_named(fcm, folded, picture):
+    """`contacts` drew the first without a word, and `loop` first said which contact it takes."""
+    done = fcm("plot", picture, folded, "-o", "several.png")
+    assert done.code == 2 and not folded.with_name("several.png").exists()
+    (said,) = done.err.splitlines()
+    assert said.endswith("has 2 curves; say which by --curve 0 to --curve 1")

@@ -39,8 +39,8 @@ OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file'
     help="Of a nonlinear mode, instead of --at: the modal amplitude; several make a film strip.",
 )  # fmt: skip
 @click.option(
-    "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K", default=(0,),
-    help="Of a sweep, counted from 0; several make a film strip.  [default: 0]",
+    "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K",
+    help="Of a sweep, counted from 0; several make a film strip.  [default: the only one]",
 )  # fmt: skip
 @solution_option
 @click.option(
@@ -86,7 +86,7 @@ def contacts(
     ]
     found = [
         (curve, (*here, *modal), points_of(read, here, curve, modal, solution))
-        for curve in curves
+        for curve in curves or (None,)
         for here, modal in along or [((), ())]
     ]
     points = [point for *_, here in found for point in here]

@@ -220,8 +220,7 @@ def of_file(
     from fcm.plot.read import read
 
     file = read_loops(path)
-    if contact is None and (said := busiest(file)[1]):
-        tell(said)
+    told = [busiest(file)[1]] if contact is None else []
     cases: list[Case] = []
     planar: list[PlanarCase] = []
     normal: list[NormalCase] = []
@@ -229,8 +228,7 @@ def of_file(
         points = points_at(file, curve, contact, place, solution)
         if place is not None:
             unit = "" if place.modal else file.unit
-            if said := not_at(place.value, [place.of(one) for one in points], unit):
-                tell(said)
+            told.append(not_at(place.value, [place.of(one) for one in points], unit))
         for point in points:
             with read(path, "its loops cannot be drawn"):
                 asked = _asked(point, place, file)
@@ -240,6 +238,8 @@ def of_file(
                     planar.append(_in_plane(point, point.motion, file, asked))
                 else:
                     cases.append(_on_a_line(point, point.motion, file, asked))
+    for said in filter(None, told):  # not before something is wrong
+        tell(said)
     return normal or planar or cases
 
 

@@ -92,8 +92,8 @@ def modes(messages: Messages, scene: str, every: bool, to_json: bool, largest_fi
             )
         if "resonances" not in found:
             messages.info(
-                "the tables of damping by friction and of stiffness are not made of a ring, whose modes travel. "
-                "A [sweep] of n_0, first with --harmonics 1, shows which preload is best"
+                "the tables of damping by friction and of stiffness are not made of a ring, whose modes "
+                "travel. A [sweep] of n_0, first with --harmonics 1, shows which preload is best"
             )
         messages.info(f"shapes: {found['normalisation']}")
         for text in found["read"]:

@@ -20,7 +20,7 @@ from fcm.plot.read import (
     LEVEL,
     FloatArray,
     asked_beside,
-    curves_there,
+    chosen_curve,
     floats,
     on_curve,
     opened,
@@ -156,7 +156,7 @@ def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
 def points_of(
     file: InterfaceFile,
     at: Sequence[float],
-    curve: int = 0,
+    curve: int | None = None,
     amplitude: Sequence[float] = (),
     solution: int | None = None,
 ) -> list[InterfacePoint]:
@@ -168,10 +168,10 @@ def points_of(
     Raises
     ------
     PlotError
-        If the curve, a frequency, a modal amplitude or the solution is not in the file.
+        If the curve, a frequency, a modal amplitude or the solution is not in the file, or none of several
+        curves is named.
     """
-    if not 0 <= curve < len(file.frequency):
-        raise PlotError(f"{file.path}: there is no curve {curve}; it has {curves_there(len(file.frequency))}")
+    curve = chosen_curve(file.path, curve, len(file.frequency))
     if not np.isfinite(file.frequency[curve]).any():
         raise PlotError(f"{file.path}: curve {curve} has no points")
     if amplitude and file.modal_amplitude is None:

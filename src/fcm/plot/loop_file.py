@@ -13,7 +13,7 @@ from fcm.frozen import Frozen
 from fcm.plot.dof import greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
-from fcm.plot.read import FloatArray, curves_there, floats, on_curve, opened, read_response
+from fcm.plot.read import FloatArray, chosen_curve, floats, on_curve, opened, read_response
 from fcm.plot.reader_process import apart
 from fcm.plot.solutions import Solution, solutions_at
 from fcm.plot.summary import summary_of
@@ -238,7 +238,7 @@ def points_at(
     PlotError
         If the curve, the contact, the place along the curve or the solution is not in the file.
     """
-    row, column = _row(file, curve), _column(file, contact)
+    row, column = chosen_curve(file.path, curve, len(file.parameters)), _column(file, contact)
     along, unit, amplitude = file.frequency[row], f" {file.unit}", file.loop[3, row, :, column]
     if place is not None and place.modal:
         if file.modal_amplitude is None:
@@ -287,16 +287,6 @@ def _point(file: LoopFile, index: PointIndex, solution: Solution, peak: bool) ->
         file.dofs[file.column], float(file.amplitude[row, k, file.column]), peak,
         None if file.modal_amplitude is None else float(file.modal_amplitude[row, k]),
     )  # fmt: skip
-
-
-def _row(file: LoopFile, curve: int | None) -> int:
-    count = len(file.parameters)
-    if curve is None and count > 1:
-        raise PlotError(f"{file.path}: has {count} curves; say which by --curve 0 to --curve {count - 1}")
-    row = 0 if curve is None else curve
-    if row >= count:
-        raise PlotError(f"{file.path}: there is no curve {row}; it has {curves_there(count)}")
-    return row
 
 
 def _greatest(energy: FloatArray, contacts: int) -> FloatArray:

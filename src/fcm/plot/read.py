@@ -131,6 +131,16 @@ def curves_there(count: int) -> str:
     return "1 curve, number 0" if count == 1 else f"{count} curves, numbers 0 to {count - 1}"
 
 
+def chosen_curve(path: Path, curve: int | None, count: int) -> int:
+    """The number of a curve of a file, or of its only one; PlotError if there is none, or several."""
+    if curve is None and count > 1:
+        raise PlotError(f"{path}: has {count} curves; say which by --curve 0 to --curve {count - 1}")
+    row = 0 if curve is None else curve
+    if not 0 <= row < count:
+        raise PlotError(f"{path}: there is no curve {row}; it has {curves_there(count)}")
+    return row
+
+
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
     """The lowest and the highest frequency of all."""
     low = min(float(np.nanmin(curve.frequency)) for curve in curves)
