@@ -173,10 +173,19 @@ def test_few_errors_have_a_line_and_no_panel():
     error[[5, 40]] = 0.02, 0.14
     one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, np.full(41, 0.3), error)
     _, lower = draw_modes(DrawnModes("", "Hz", (one,))).axes
-    assert lower.get_title(loc="right").endswith("at most 0.14, estimated at 2 points")
+    assert lower.get_title(loc="right").endswith("unknown but at 2 points, at most 0.14")
     error[40] = np.nan
     _, lower = draw_modes(DrawnModes("", "Hz", (one,))).axes
-    end = f"at most 0.02, estimated at 1 point, beyond {AMPLITUDE[5]:.2g} unknown"
+    assert lower.get_title(loc="right").endswith("unknown but at 1 point, 0.02")
+
+
+def test_errors_of_linear_motions_alone_are_no_estimate():
+    """A mode that slips beyond its fifth point said: at most 3.3e-17."""
+    error = np.full(41, np.nan)
+    error[:5] = 0.0, 3e-17, 0.0, 3e-17, 3e-17
+    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, np.full(41, 0.3), error)
+    _, lower = draw_modes(DrawnModes("", "Hz", (one,))).axes
+    end = f"unknown beyond {AMPLITUDE[4]:.2g}, up to where the motion is linear"
     assert lower.get_title(loc="right").endswith(end)
 
 

@@ -429,3 +429,19 @@ def test_solutions_are_the_nearer_ends_of_all_pieces_that_pass_a_place_greatest_
     assert alone.point == 8 and str(alone) == ""
     with pytest.raises(PlotError, match=r"--solution 2: the curve has 1 solution at 5$"):
         solutions_at(along, 5.0, amplitude, 2)
+
+
+def test_names_that_would_overlap_are_numbers(tmp_path):
+    """Of twenty pairs in two rows the names ran into one another."""
+    places = [(10.0 * k, y) for k in range(10) for y in (0.0, 20.0)]
+    read = line_of(20, [f"{k + 1},,{x},2.0,{z}" for k, (x, z) in enumerate(places)], tmp_path)
+    figure = draw_interface(read, points_of(read, ()), read.places, read.axes)
+    assert [one.get_text() for one in figure.axes[0].texts] == [str(k) for k in range(1, 21)]
+
+
+def test_numbers_that_would_overlap_are_left_out(tmp_path):
+    """Ten pairs in the room of one, and one far off."""
+    places = [(0.1 * k, 20.0 * (k % 2)) for k in range(10)] + [(100.0, 0.0)]
+    read = line_of(11, [f"{k + 1},,{x},2.0,{z}" for k, (x, z) in enumerate(places)], tmp_path)
+    figure = draw_interface(read, points_of(read, ()), read.places, read.axes)
+    assert [one.get_text() for one in figure.axes[0].texts] == ["1", "2", "11"]

@@ -258,6 +258,15 @@ def draws(count, **others):
     return replace(peaks(n_0=random.normal(10, 3, count), **others), drawn=(N_0,))
 
 
+def test_a_narrow_scatter_fills_its_axis():
+    """From 0 on it was a flat line."""
+    some = draws(50)
+    low, high = draw_peak(some).axes[0].get_ylim()
+    assert 0.0 < low < some.amplitude[:, 0].min() < some.amplitude[:, 0].max() < high
+    wide = replace(some, amplitude=some.amplitude * np.linspace(0.3, 1.0, 50)[:, None])
+    assert draw_peak(wide).axes[0].get_ylim()[0] == 0.0
+
+
 def test_random_draws_of_one_number_are_points_that_no_line_joins():
     for axes in draw_peak(draws(50)).axes:
         points = axes.lines[0]

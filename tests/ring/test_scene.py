@@ -219,7 +219,7 @@ def test_bars_of_orders_that_meet_one_diameter_stand_side_by_side():
             apart = right <= other_left + 1e-9 or other_right <= left + 1e-9
             assert apart or high <= other_low or other_high <= low
     named = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {f"order {n}, its harmonics" for n in orders[:6]} <= named
+    assert {f"order {n}, numbers: its harmonics" for n in orders[:6]} <= named
     assert axes.get_title(loc="right") == "24 sectors; the first 6 of 7 engine orders"
 
 

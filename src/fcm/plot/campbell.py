@@ -134,7 +134,7 @@ def _bars(
     for bar, middle, width in sorted(placed, key=lambda one: tuple(colours).index(one[0].order)):
         axes.bar(
             middle, bar.high - bar.low, width, bar.low, color=colours[bar.order], alpha=0.35, zorder=1,
-            linewidth=0.0, label=f"order {bar.order}, its harmonics" if bar.harmonic == 1 else None,
+            linewidth=0.0, label=f"order {bar.order}, numbers: its harmonics" if bar.harmonic == 1 else None,
         )  # fmt: skip
     named: dict[tuple[int, int], list[tuple[DrawnOrder, float]]] = {}
     for bar, middle, _ in placed:

@@ -428,7 +428,9 @@ def _in_plane(
             )
         panels[0, column].set_title(_head(file, point), fontsize=8)
         if len(places) <= LAYOUT.named_contacts:
-            _write_names(panels[0, column], file.contacts, places, size)
+            low, high = _limits(places)
+            scale_of = 72.0 * (TWO_COLUMNS - _BAR) / columns / float((high - low)[0])  # [point] for a length
+            _write_names(panels[0, column], file.contacts, places, size, scale_of)
     for row, ((_, title), unit) in enumerate(zip(CONTACT_LOADS, file.units, strict=True)):
         values = np.array([point.contact_loads[row] for point in points])
         scale = _scale(values)
@@ -447,17 +449,40 @@ def _in_plane(
     return figure
 
 
-def _write_names(axes: Axes, names: Sequence[str], places: FloatArray, size: float) -> None:
-    """The names of contacts above or below their marks, towards the middle of the panel."""
+def _write_names(axes: Axes, names: Sequence[str], places: FloatArray, size: float, scale: float) -> None:
+    """The names of contacts above or below their marks, towards the middle of the panel.
+
+    Those of pairs, as lap_7, are written as their numbers where the names would overlap. Of numbers that
+    would, too, some are left out. scale: points of print for a length of 1.
+    """
     low, high = _limits(places)
     beside = 0.5 * size**0.5 + 2.0  # [point]
-    for name, place in zip(names, places, strict=True):
-        across, up = ((place - low) / (high - low)).tolist()
+    written = list(names)
+    if not all(_have_room(written, places, scale)):
+        written = [name.rpartition("_")[2] if name.rpartition("_")[2].isdigit() else name for name in names]
+    for name, place, has_room in zip(written, places, _have_room(written, places, scale), strict=True):
+        if not has_room:
+            continue
+        half = 0.5 * LAYOUT.letter_width * LAYOUT.small_text * len(name) / scale
+        side = "left" if place[0] - half < low[0] else "right" if place[0] + half > high[0] else "center"
+        up = float((place - low)[1] / (high - low)[1])
         axes.annotate(
             name, place, (0.0, beside if up < 0.5 else -beside), textcoords="offset points",
-            ha="left" if across < 0.2 else "right" if across > 0.8 else "center",
-            va="bottom" if up < 0.5 else "top", fontsize=LAYOUT.small_text, parse_math=False,
+            ha=side, va="bottom" if up < 0.5 else "top", fontsize=LAYOUT.small_text, parse_math=False,
         )  # fmt: skip
+
+
+def _have_room(names: Sequence[str], places: FloatArray, scale: float) -> list[bool]:
+    """Which names in their order touch none before, each at the height of its mark."""
+    taken = list[tuple[float, float, float]]()  # middle, height and half width [point]
+    found = list[bool]()
+    line = LAYOUT.line_distance * LAYOUT.small_text
+    for name, (x, y) in zip(names, (scale * places).tolist(), strict=True):
+        half = 0.5 * LAYOUT.letter_width * LAYOUT.small_text * (len(name) + 1)
+        found.append(not any(abs(x - u) < half + w and abs(y - v) < line for u, v, w in taken))
+        if found[-1]:
+            taken.append((x, y, half))
+    return found
 
 
 def _legend(figure: Figure, points: Sequence[InterfacePoint], none: bool) -> None:

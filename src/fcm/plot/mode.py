@@ -303,20 +303,27 @@ def _name_lost(axes: Axes, modes: Sequence[DrawnMode]) -> None:
 
 def _is_line(error: FloatArray) -> bool:
     """Whether errors are known at neighbouring points; of many contacts they are at one or two alone."""
-    known = error > 0.0
+    known = error > LAYOUT.linear_error
     return bool((known[1:] & known[:-1]).any())
 
 
 def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
-    """The greatest error, where too few are known for a panel."""
-    known = np.concatenate([mode.error[mode.error > 0.0] for mode in modes])
+    """The greatest error, where too few are known for a panel; of none, that it is unknown.
+
+    Where the motion is linear there is nothing to estimate, and rounding is left.
+    """
+    every = np.concatenate([mode.error for mode in modes])
+    known = every[every > LAYOUT.linear_error]
     if known.size:
         points = f"{known.size} point{'s' * (known.size > 1)}"
-        ends = [np.nanmax(np.where(mode.error > 0.0, mode.amplitude, 0.0)) for mode in modes]
-        if any(end < mode.amplitude.max() for end, mode in zip(ends, modes, strict=True)):
-            points += f", beyond {min(ends):.2g} unknown"
-        said = f"error by the harmonics left out: at most {float(known.max()):.2g}, estimated at {points}"
-        axes.set_title(said, loc="right", fontsize=LAYOUT.small_text)
+        most = f"{'at most ' * (known.size > 1)}{float(known.max()):.2g}"
+        said = f"unknown but at {points}, {most}" if np.isnan(every).any() else f"{most}, at {points}"
+    elif np.isfinite(every).any() and np.isnan(every).any():
+        ends = [float(np.nanmax(np.where(np.isnan(mode.error), 0.0, mode.amplitude))) for mode in modes]
+        said = f"unknown beyond {min(ends):.2g}, up to where the motion is linear"
+    else:
+        return
+    axes.set_title(f"error by the harmonics left out: {said}", loc="right", fontsize=LAYOUT.small_text)
 
 
 def _draw_error(axes: Axes, mode: DrawnMode, colour: str) -> None:

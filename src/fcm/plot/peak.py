@@ -269,6 +269,8 @@ def _finish_axes(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kn
     y = peaks.amplitude[known, column]
     if y.max() > 10.0 * y.min() > 0.0:
         logarithmic_axis(upper)
+    elif peaks.random and y.max() < LAYOUT.narrow_scatter * y.min():
+        upper.margins(y=LAYOUT.scatter_room)  # from 0 on the scatter would be a flat line
     else:
         upper.set_ylim(0.0, LAYOUT.headroom * float(y.max()) or 1.0)
     lower.minorticks_on()

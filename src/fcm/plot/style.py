@@ -77,6 +77,7 @@ class PictureLayout(Frozen):
     mark_leader_points: int = 12  # of that line, at which it may touch a text
     mark_steep: float = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
     tick: float = 3.5  # [point] length of the ticks inside the frame
+    linear_error: float = 1e-12  # estimated errors below are rounding: the motion is linear there
     error_bins: int = 120  # over the frequencies
     error_lines: int = 6  # errors of more curves than this are one line, the greatest of all
     least_error: float = 1e-30  # drawn in the place of 0, far below the panel
@@ -105,7 +106,13 @@ class PictureLayout(Frozen):
     # differences of greater ones, and have fewer digits
     planar_rest: float = 1e-9
     planar_instants: int = 4  # of a cycle at which the disc is drawn
+    seen_end: float = 1e-2  # of the axis of a number: a line that ends further from its ends is explained
+    short_track: float = (
+        0.05  # of the axis of a number: a shorter low line does not make the other logarithmic
+    )
     swept_span: float = 30.0  # positive swept values of a greater ratio are on a logarithmic axis
+    narrow_scatter: float = 2.0  # ratio of drawn peaks below which their axis does not begin at 0
+    scatter_room: float = 0.15  # below and above them then, of their extent
     peak_lines: int = 12  # more combinations of the other swept values than this are a cloud of points
     marked_points: int = 60  # values or points on a line that are marked; of more, none is or some are
     point_edge: float = 0.7  # [point] of a marked point
@@ -218,12 +225,22 @@ def swept_axis(axes: Axes, lowest: float, highest: float) -> None:
 
 
 def plain_ticks(axis: Axis, widest: float) -> None:
-    """Ticks of a logarithmic axis as numbers: 0.5, 1, 2, 5, 10; where its ends have a greater ratio 1, 10."""
+    """Ticks of a logarithmic axis as numbers: 0.5, 1, 2, 5, 10; where its ends have a greater ratio 1, 10.
+
+    Of small or great numbers all are of one kind, as 5e-5 and 1e-4.
+    """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    def written(value: float, _position: object) -> str:
+        least, most = (10.0**end for end in STYLE["axes.formatter.limits"])
+        if least <= min(axis.get_view_interval()) and max(axis.get_view_interval()) < 10.0 * most:
+            return f"{value:g}"
+        digits, _, power = f"{value:.0e}".partition("e")
+        return rf"${digits}\times10^{{{int(power)}}}$"
 
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < widest * low else (1,)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+    axis.set_major_formatter(FuncFormatter(written))
     axis.set_minor_formatter(NullFormatter())
 
 

@@ -228,14 +228,17 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         colours = (
             {id(track): of_sweep[track.swept] for track in wanted} if of_sweep else _colours(wanted, names)
         )
-        heights: list[float] = []
+        heights: list[tuple[float, float]] = []
+        drawn_tracks: list[DrawnTrack] = []
         for track in wanted:
             name = dof or track.what.removeprefix("peak of ")
             column = drawn.dofs.index(name) if name in drawn.dofs else 0
             height = np.where(track.trough == 1.0, np.nan, track.amplitude[:, column])
             frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
             ends = height[track.trough != 1.0]
-            heights += [] if ends.size == 0 else [float(ends.min()), float(ends.max())]
+            if ends.size:
+                heights.append((float(ends.min()), float(ends.max())))
+                drawn_tracks.append(track)
             label = track.what if track.what in unnamed else None  # once for all its curves
             unnamed = [one for one in unnamed if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
@@ -243,7 +246,6 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         tried = len(drawn.tried) > 0 and len(wanted) == len(peaks)  # of several peaks they are the greatest
         if tried:
             upper.plot(*drawn.tried.T, "x", color=_TRIED, markersize=4.0)
-            heights += [float(drawn.tried[:, 1].min()), float(drawn.tried[:, 1].max())]
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
         one = of_one.pop() if len(of_one) == 1 else ""
         unit = dof_unit(one, drawn.length) if one else drawn.length
@@ -256,7 +258,9 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         named = f"{height_called} of {one}" if one else height_called
         upper.set_ylabel(with_unit(named, unit), parse_math=False)
         lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", frequency_called))
-        if heights and has_decades(heights):
+        of_note = _of_note(drawn_tracks, heights) if heights else []
+        of_note += drawn.tried[:, 1].tolist() if tried else []
+        if of_note and has_decades(of_note):
             logarithmic_axis(upper)
         if len(names) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
@@ -317,12 +321,44 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack], tried: bool = False) -
     said = ["a colour for each peak"] if len(tracks) > 1 and alike else []
     said += ["dashed: no motion stays there"] if (stable == 0.0).any() else []
     said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
-    said += ["gap: it is no peak but a trough"] if any((one.trough == 1.0).any() for one in tracks) else []
+    said += ["gap: it is no peak but a trough"] if any(_has_gap(track) for track in tracks) else []
+    said += (
+        ["a line ends where its peak does, or could not be followed"] if peaks and _end_within(tracks) else []
+    )
     said += ["crosses: peaks that were tried, as not all could be followed"] if tried else []
     if said:
         row = LAYOUT.meanings_of_row
         lines = ["; ".join(said[k : k + row]) for k in range(0, len(said), row)]
         axes.set_title("\n".join(lines), loc="left", fontsize=8)
+
+
+def _has_gap(track: DrawnTrack) -> bool:
+    """Whether it is a trough between two parts that are peaks; what is one to its end is not seen."""
+    at = np.flatnonzero(track.trough != 1.0)
+    return at.size > 0 and int(at[-1] - at[0]) >= at.size
+
+
+def _end_within(tracks: Sequence[DrawnTrack]) -> bool:
+    """Whether a line of a peak ends between the ends of the axis."""
+    seen = [track.number[track.trough != 1.0] for track in tracks if (track.trough != 1.0).any()]
+    every = np.concatenate([track.number for track in tracks])
+    low, high = float(every.min()), float(every.max())
+    ends = np.array([(one[0], one[-1]) for one in seen])
+    beside = np.minimum(ends - low, high - ends)
+    return bool((beside > LAYOUT.seen_end * (high - low)).any())
+
+
+def _of_note(tracks: Sequence[DrawnTrack], heights: Sequence[tuple[float, float]]) -> list[float]:
+    """Those lowest and highest values that choose the kind of an axis: without those of short low lines."""
+    every = np.concatenate([track.number for track in tracks])
+    long = [np.ptp(track.number) > LAYOUT.short_track * np.ptp(every) for track in tracks]
+    top = max(high for _, high in heights)
+    return [
+        end
+        for one, is_long in zip(heights, long, strict=True)
+        if is_long or LAYOUT.decade * one[1] > top
+        for end in one
+    ]
 
 
 def _name_number(axes: Axes, drawn: DrawnTracking, tracks: Sequence[DrawnTrack]) -> None:
