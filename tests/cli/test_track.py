@@ -514,3 +514,22 @@ def test_the_last_line_on_tracked_curves_is_the_result_in_short():
         found = Tracking("contact.a.n_0", what, (1.0, 2.0), (1,), curves)
         result = without_nan({"tracked": found.summary("rad/s", ("u",)), "curves": []})
         assert verdict(result, 0).startswith(f"result: complete; {words}")
+
+
+@pytest.mark.slow
+def test_an_optimum_at_a_bound_is_told_in_the_last_line(fcm, optimum):
+    optimum.write_text(optimum.read_text().replace("2.0, 20.0", "5.0, 6.0"))
+    done = fcm("respond", optimum, "--harmonics", "1")
+    assert "(followed no further)" in done.out and "; the optimum is at a bound" in done.err.splitlines()[-1]
+
+
+@pytest.mark.slow
+def test_an_optimum_of_several_numbers_is_no_picture(fcm, optimum):
+    """It was a single dot."""
+    text = optimum.read_text().replace(
+        '["contact.shroud.n_0"]', '["contact.shroud.n_0", "contact.shroud.mu"]'
+    )
+    optimum.write_text(text.replace("[[2.0, 20.0]]", "[[2.0, 20.0], [0.3, 0.4]]"))
+    assert fcm("respond", optimum, "--harmonics", "1", "-o", "a.nc").code == 0
+    done = fcm("plot", "peak", "a.nc")
+    assert done.code == 2 and "an optimum of 2 numbers is one point" in done.err and "[sweep]" in done.err

@@ -182,7 +182,11 @@ def _blades(curves: Sequence[Curve], names: list[str], unit: str, length: str) -
 
 
 def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
-    """Percentiles over the curves of random draws, a line for each quantity."""
+    """Percentiles over the curves of random draws, a line for each quantity.
+
+    >>> _scatter({"curves": 0, "parameters": {}, "jumps": {}, "peak": {}}, [], "Hz")
+    'no curve is complete, so that there are no percentiles'
+    """
     jumps = {
         f"jump {sweep} at {unit}": one
         for sweep, one in found["jumps"].items()
@@ -207,6 +211,8 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
             [f"amplification {dof}", *_spread(one, "amplification"), ""],
         ]
     given = ", ".join(f"{key} = {value:.6g}" for key, value in found["parameters"].items())
+    if not found["curves"]:
+        return f"no curve is complete{f' with {given}' if given else ''}, so that there are no percentiles"
     head = f"percentiles of {found['curves']} curves{f' with {given}' if given else ''}"
     if not rows:
         return head

@@ -216,11 +216,11 @@ def _nearly(one: Mapping[str, Any]) -> str:
     if (near := one.get("nearly_least")) is None or one["kind"] == "unfinished":
         return ""
     low, high = (
-        f"{near[end]:.5g}{'' if near[f'{end}_known'] else ', where it was followed to,'}"
+        f"{near[end]:.5g}{'' if near[f'{end}_known'] else ' (followed no further)'}"
         for end in ("low", "high")
     )
     key = plain(next(iter(one["values"])))
-    said = f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
+    said = f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}"
     for number_of, times in near.get("higher", ()):
         side = "below" if number_of < one["values"][next(iter(one["values"]))] else "above"
         said += (

@@ -51,6 +51,8 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
         parts += [_of_stability(peaks, what), _of_errors(summary, peaks)]
     elif any(curve["points"] for curve in curves):
         parts.append("nothing moves")
+    if any(one["kind"] == "bound" for one in summary.get("optimum", ())):
+        parts.append("the optimum is at a bound")
     if remarks:
         parts.append(f"{remarks} remark{'s' * (remarks > 1)} on it above")
     return f"result: {'; '.join(parts)}"

@@ -76,12 +76,20 @@ class Peaks(Frozen):
 @apart
 def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED, ("peak_stable", "peak_at_end", *OF_BLADES)) as data:
+    with opened(
+        path, "a response file", _NEEDED, ("peak_stable", "peak_at_end", "optimum_number", *OF_BLADES)
+    ) as data:
         variables = data.variables
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
         swept, asked = swept_values(variables), asked_for(getattr(data, "output", ""), dofs)
         units, drawn = swept_units(variables, swept), drawn_keys(variables, swept)
+        optima = variables["optimum_number"].shape if "optimum_number" in variables else (0, 0)
+        if optima[0] == 1 < optima[1]:
+            raise PlotError(
+                f"{path}: an optimum of {optima[1]} numbers is one point, and what was tried is not in the "
+                "file. Sweep them beside it by [sweep], and draw that"
+            )
         if "damping_ratio" in variables:
             resonances = resonances_of(data)
             none = np.zeros((0, len(dofs)))
