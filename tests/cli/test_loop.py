@@ -13,6 +13,7 @@ from fcm import load_scene, periodic_forces, periodic_loop, planar_loop
 from fcm.cli.loop import _drawn_in_plane, _one_of
 from fcm.cli.loop_cases import PlanarCase, of_file
 from fcm.cli.loop_names import titles
+from fcm.plot import style
 from fcm.plot.interface import draw_interface, points_of, read_interface
 from fcm.plot.loop_file import PlaceOnCurve
 from fcm.plot.normal_force import DrawnNormalForce, draw_normal_force
@@ -578,10 +579,15 @@ def test_the_picture_of_a_normal_force_has_it_over_displacement_and_angle():
     assert text.count("opens at") == text.count("closes at") == cycle.sequence.count("S")
 
 
-@pytest.mark.parametrize("picture", ["loop", "contacts"])
-def test_of_several_curves_one_is_to_be_named(fcm, folded, picture):
-    """`contacts` drew the first without a word, and `loop` first said which contact it takes."""
-    done = fcm("plot", picture, folded, "-o", "several.png")
-    assert done.code == 2 and not folded.with_name("several.png").exists()
-    (said,) = done.err.splitlines()
-    assert said.endswith("has 2 curves; say which by --curve 0 to --curve 1")
+def test_of_several_curves_one_is_to_be_named(fcm, folded, monkeypatch):
+    """`loop` first said which contact it takes; `contacts` draws all that a picture has room for."""
+    picture = folded.with_name("several.png")
+    done = fcm("plot", "loop", folded, "-o", picture)
+    assert done.code == 2 and not picture.exists()
+    assert done.err.strip().endswith("has 2 curves; say which by --curve 0 to --curve 1")
+    done = fcm("plot", "contacts", folded, "-o", picture)
+    assert done.code == 0 and picture.exists()
+    assert all(f", curve {k} (" in done.err for k in (0, 1))
+    monkeypatch.setattr(style, "LAYOUT", replace(style.LAYOUT, panels=1))
+    done = fcm("plot", "contacts", folded)
+    assert done.code == 2 and done.err.strip().endswith("say which by --curve 0 to --curve 1")

@@ -40,7 +40,7 @@ OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file'
 )  # fmt: skip
 @click.option(
     "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K",
-    help="Of a sweep, counted from 0; several make a film strip.  [default: the only one]",
+    help="Of a sweep, counted from 0; several make a film strip.  [default: all that it has room for]",
 )  # fmt: skip
 @solution_option
 @click.option(
@@ -80,13 +80,14 @@ def contacts(
     if at and amplitude:
         raise click.UsageError("--at and --amplitude both say where; give one of them.")
     read = read_interface(file)
+    every = range(len(read.frequency))
     along: list[tuple[tuple[float, ...], tuple[float, ...]]] = [
         *(((one,), ()) for one in at),
         *(((), (one,)) for one in amplitude),
     ]
     found = [
         (curve, (*here, *modal), points_of(read, here, curve, modal, solution))
-        for curve in curves or (None,)
+        for curve in curves or (every if len(every) <= LAYOUT.panels else (None,))
         for here, modal in along or [((), ())]
     ]
     points = [point for *_, here in found for point in here]
