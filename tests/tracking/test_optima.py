@@ -167,6 +167,15 @@ def test_a_peak_that_does_not_depend_on_the_number_over_a_part_of_its_range():
     assert found.values["contact.shroud.n_0"] == pytest.approx((low + high) / 2)
 
 
+def test_a_least_peak_in_a_millionth_of_the_bounds_is_that_of_narrower_ones():
+    """All of the rest is flat: the contact sticks. There the peak is 1.9 times as high."""
+    one = SCENE.replace("[0.4, 0.8]", "[0.4]")
+    scenes = (scene_from_dict(tomllib.loads(text)) for text in (one, one.replace("[2.0, 20.0]", "[0, 1e6]")))
+    near, wide = (optimise(one, harmonics=1).tracking.optima[0] for one in scenes)
+    assert wide.value == pytest.approx(near.value, rel=1e-9) and wide.kind == near.kind != "flat"
+    assert wide.values["contact.shroud.n_0"] == pytest.approx(near.values["contact.shroud.n_0"], rel=1e-6)
+
+
 def test_a_peak_that_depends_on_none_of_several_numbers(fcm, tmp_path):
     scene = of_range(["contact.shroud.n_0", "contact.shroud.mu"], [[5.0, 40.0], [0.2, 0.6]])
     response = optimise(scene, harmonics=1)

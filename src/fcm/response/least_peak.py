@@ -26,7 +26,7 @@ from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.minimax import PeakEnvelope, descend
 from fcm.tracking.parameter_line import line_along
-from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, Target
+from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, Target, spans_beside_flat
 from fcm.tracking.stability import stability_along
 from fcm.tracking.trials import by_trials, error_of_higher
 from fcm.tracking.user_points import values_at_height, with_user_points
@@ -94,8 +94,7 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
     for i in range(rounds):
         shown = part(progress, i / rounds, (i + 1) / rounds)
         if len(task.numbers) == 1:
-            task.seeking = search = _search(task, chosen)
-            known = search.run(known, _sharing(task, chosen, shown))
+            search, known = _least_on_line(task, chosen, known, shown)
             if not known.checked:
                 known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
@@ -122,6 +121,26 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
             break
         chosen, seconds, task.fewer = more, seconds - taken, found[0]
     return replace(found[0], fewer=task.fewer), found[1]
+
+
+def _least_on_line(
+    task: PeakTask, harmonics: tuple[int, ...], known: LowestPeak | None, progress: Progress | None
+) -> tuple[LowestPeakSearch, LowestPeak]:
+    """The least peak over the bounds of one number, and its search.
+
+    Where that is flat over most of them, what is left is searched on its own. If it is lower there, the
+    bounds of the task are those.
+    """
+    task.seeking = search = _search(task, harmonics)
+    found, bounds = search.run(known, _sharing(task, harmonics, progress)), task.bounds
+    for span in spans_beside_flat(search.setup, found.best):
+        task.bounds = np.array([span])
+        task.seeking = narrow = _search(task, harmonics)
+        lowest = narrow.run(None, _sharing(task, harmonics, progress))
+        if found.best and lowest.best and lowest.best.kind != "flat" and lowest.best.value < found.best.value:
+            search, found, bounds = narrow, lowest, task.bounds
+    task.bounds, task.seeking = bounds, search
+    return search, found
 
 
 class _Moving:

@@ -224,7 +224,7 @@ class LowestPeakSearch:
                 self.pieces += pieces_of(self.setup, [curve], target)
 
     def _step(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
-        return self.steps(f"{self.system.harmonics} {key}", kind, step)
+        return self.steps(f"{self.system.harmonics} {self.span} {key}", kind, step)
 
     def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
         """Height of the greatest target at a point; 0 where it is none of them."""

@@ -279,6 +279,9 @@ class EnvelopeOptions(Frozen):
         the onset of slip lowers peaks a little.
     min_flat : float
         Width of such a stretch, relative to the range, at least.
+    wide_flat : float
+        Width of it, relative to the range, from which on what is left of the range is searched on its own, as
+        all other lengths are relative to the range, too.
     """
 
     brackets: int = 4
@@ -294,6 +297,7 @@ class EnvelopeOptions(Frozen):
     flat_slope: float = 1e-8
     flat_height: float = 1e-6
     min_flat: float = 1e-3
+    wide_flat: float = 0.9
 
 
 class TrackedStabilityOptions(Frozen):

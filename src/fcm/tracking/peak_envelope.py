@@ -226,6 +226,19 @@ def _where_flat(
     )
 
 
+def spans_beside_flat(setup: TrackingSetup, best: EnvelopeMinimum | None) -> list[tuple[float, float]]:
+    """What is left of the span below and above a least that is flat over most of it, each with as much again
+    of the flat stretch; none otherwise."""
+    (low, high), options = setup.span, setup.options.envelope
+    if best is None or not best.flat:
+        return []
+    ((_, first, last),) = best.flat
+    if last - first < options.wide_flat * (high - low):
+        return []
+    sides = ((low, min(2.0 * first - low, last)), (max(2.0 * last - high, first), high))
+    return [side for side in sides if side[1] - side[0] > options.value_tolerance * (high - low)]
+
+
 def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, fine: float) -> float:
     """The last value on one side, from s over points of the grid, at which it is flat."""
     for there in further.tolist():
