@@ -273,8 +273,9 @@ class _BifurcationSearch:
             before, after = flips
         bracket = self.options.sampling.sign_change
         sides = SignChange(a - first, b - first, before, after, True, bracket)
-        fine = self.options.sampling.tolerance
-        narrow = fine if sufficient else self.options.sampling.confirmed_tolerance
+        sampling = self.options.sampling
+        fine = sampling.tolerance_many_contacts if self.many else sampling.tolerance
+        narrow = fine if sufficient else max(fine, sampling.confirmed_tolerance)
         for _ in range(self.options.sampling.max_evaluations):
             at = sides.at
             if sides.width < narrow or (found is not None and sides.converged(fine)) or not curve.find(at):

@@ -379,12 +379,14 @@ class Multipliers:
         """The classification of a motion with further harmonics; None where none tells.
 
         Where the harmonics beyond its own add more than `max_addition` to it, it errs as much as what it is
-        to confirm. Then it is that of a motion with these balanced, too.
+        to confirm. Then it is that of a motion with these balanced, too, unless many contacts slide in a
+        plane: there one look takes as long as tens of points of the curve.
         """
         multipliers.finer.at(z)
         if multipliers.finer.shift <= self.options.confirmation.max_addition:
             return multipliers.classify(z)
-        if self.last:
+        many = self.contacts >= self.options.structure.many_contacts
+        if self.last or (many and self.system.scene.planar):
             return None
         return multipliers._rebalanced(z, np.array(multipliers.finer.x), persistent=True)
 

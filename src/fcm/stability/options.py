@@ -201,6 +201,8 @@ class SamplingOptions(Frozen):
         [rad] Angle by which multipliers that are not small may turn from one classified point to the next.
     tolerance : float
         Error of the place of a crossing, relative to the step.
+    tolerance_many_contacts : float
+        The same with many contacts, of which each look takes as long as tens of points of the curve.
     confirmed_tolerance : float
         Error of the place of a crossing, relative to the step, where classifications are confirmed and the
         growth jumps, as it may from one motion to a finer one.
@@ -220,6 +222,7 @@ class SamplingOptions(Frozen):
     sufficient_decay: float = -0.3
     max_phase: float = 1.5
     tolerance: float = 1e-7
+    tolerance_many_contacts: float = 1e-2
     confirmed_tolerance: float = 1e-4
     growth_tolerance: float = 1e-10
     max_evaluations: int = 60
