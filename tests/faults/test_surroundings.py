@@ -321,6 +321,7 @@ class Library:
 """
 
 
+@pytest.mark.slow
 def test_ctrl_c_waits_for_an_import_however_long(program):
     """A busy machine takes its time to load a library."""
     begin = EARLY + SLOW_LIBRARY.format(second="") + "from fcm import signals\nsignals.take()\n"
@@ -329,6 +330,7 @@ def test_ctrl_c_waits_for_an_import_however_long(program):
     assert_interrupted(done, program.files, begun=True)
 
 
+@pytest.mark.slow
 def test_ctrl_c_once_more_does_not_wait_for_an_import(program):
     """A library that never ends would hold the program for ever."""
     second = "os.kill(os.getpid(), signal.SIGINT); time.sleep(60.0)"

@@ -149,6 +149,7 @@ def test_a_response_with_folds_gives_back_its_numbers():
     assert found.rows.cost < 1e-6
 
 
+@pytest.mark.slow
 def test_each_point_may_have_a_level_of_its_own():
     """As where a shaker's force falls in the resonance."""
     omega = np.linspace(0.9, 1.6, 15)

@@ -63,6 +63,7 @@ def test_one_change_that_mends_the_data_is_named(fitted, changed, phased, said):
     assert after < 1.0
 
 
+@pytest.mark.slow
 def test_a_change_is_one_of_all_files_or_of_one(fitted):
     both = [1000.0 * linear(), 1000.0 * linear()]
     (sentence,) = fitted(*both, phased=False)

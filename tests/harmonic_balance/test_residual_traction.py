@@ -96,6 +96,7 @@ def test_nothing_ranges_where_nothing_feels_it_or_all_slip():
     assert fcm.respond(scene(1.0)).peak_residual_change.values.max() == 0.0
 
 
+@pytest.mark.slow
 def test_the_range_holds_the_peaks_of_exact_motions_from_any_start():
     """With impacts beside, each start of the contact that sticks gives an exact curve of its own."""
     whole = fcm.load_scene(SHOOTING / "not_unique.toml")
@@ -164,6 +165,7 @@ def test_the_way_to_the_limits_ends_where_it_takes_too_many_members():
     assert one > 0.005 and np.isnan(none)
 
 
+@pytest.mark.slow
 def test_a_peak_in_the_corner_where_a_contact_in_a_plane_begins_to_slip_has_a_number_too():
     """On the way up A begins to slip before the peak of a member that always sticks, which is not counted.
 
@@ -197,6 +199,7 @@ def test_a_peak_in_the_corner_where_a_contact_in_a_plane_begins_to_slip_has_a_nu
     assert 0.001 < told.peak_residual_change.sel(dof="y").item() < 0.004
 
 
+@pytest.mark.slow
 def test_no_member_counts_on_which_the_contact_would_slip():
     """That with its traction at the limit went on sticking beyond, to a peak 27 % away.
 

@@ -69,6 +69,7 @@ def test_the_amplification_and_its_sector_are_named_beside_the_peak_of_the_tuned
     assert notes[:2] == ["peak of the tuned ring", "amplification: greatest peak over the tuned ring's"]
 
 
+@pytest.mark.slow
 def test_tuned_rings_that_differ_have_a_diamond_each_and_a_ring_alone_its_sectors(tmp_path_factory):
     found, path = ring(tmp_path_factory, {"contact.shroud.n_0": [5.0, 60.0]})
     _, axes, _ = drawn(path)

@@ -71,6 +71,7 @@ def test_a_summary_that_is_not_of_nonlinear_modes_is_refused(fcm, text):
 TRIED = ("5", "[]", '{"optimum": 3}', '{"optimum": [1]}', '{"optimum": [{"tried": [[null, 2]]}]}', "{")
 
 
+@pytest.mark.slow
 def test_a_summary_without_numbers_that_an_optimum_tried_is_refused(fcm):
     vary = Optimum(("contact.shroud.n_0",), ((5.0, 15.0),), (Aim("u"),))
     write_netcdf(optimise(replace(load_scene("yang1998-n5"), optimum=vary), harmonics=1), "a.nc")

@@ -129,6 +129,7 @@ harmonics = 1
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 2])
 def test_where_there_is_no_steady_state_a_mode_is_dotted(number, tmp_path):
     """Nothing holds x but friction, which pushes one way as soon as the contact slips all the time.

@@ -184,6 +184,7 @@ def test_what_is_not_in_the_file_is_said(file):
         points_of(read, (), 3)
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
     path = file[0]
     done = fcm("plot", "contacts", path, "--at", "1.2", "-o", path.with_suffix(".svg"))
@@ -360,6 +361,7 @@ def test_the_page_has_names_of_contacts_and_coordinates_at_its_axes(file, tmp_pa
     assert ", asked: 1.2 rad" in row
 
 
+@pytest.mark.slow
 def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
     """Its frequency says little: that of a stiff joint moves by a percent over three decades."""
     path = tmp_path / "mode.nc"

@@ -95,6 +95,7 @@ def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(setu
     assert not is_top(problem, TrackedPoint(point.z, point.direction))
 
 
+@pytest.mark.slow
 def test_a_peak_is_not_followed_along_a_corner_at_which_its_condition_jumps():
     """A contact of the blade begins another slip within its cycle there: no onset that is tracked."""
     blade = load_scene("blade")

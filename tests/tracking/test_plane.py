@@ -77,6 +77,7 @@ def test_small_peaks_at_folds_close_together_begin_no_curve(scene, dof):
         assert np.array(found) == pytest.approx(np.array(expected), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_a_peak_where_slip_begins_is_followed_along_that_corner(scene):
     """The sides of the corner are told apart beyond the rounding of its place."""
     curves = followed(scene, "contact.c.mu", (0.69, 0.7), 0)
