@@ -217,7 +217,7 @@ def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
         kept_friction({"curves": ones} | run) for ones in ([known, unknown], [known], [unknown])
     )
     assert (
-        "it changes none of the greatest peaks. Lower peaks and other points may change, too. "
+        "it changes none of the greatest peaks. Lower peaks and other points may change. "
         "At 3 points the motion may be one of many" in both
     )
     known["peak"]["u"]["residual_change"] = 0.1

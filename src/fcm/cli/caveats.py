@@ -456,10 +456,11 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     if share == "0" and any("shakedown_at" in one for one in curves):
         return ""
     if share == "0":
-        of_peaks = "it changes none of the greatest peaks"
+        told = "it changes none of the greatest peaks. Lower peaks and other points may change"
     else:
-        of_peaks = f"it may change a greatest peak by up to {share} of it, estimated"
-    return f"{_KEEPS}: {where}{of_peaks}. Lower peaks and other points may change, too"
+        told = f"it may change a greatest peak by up to {share} of it, estimated. "
+        told += "Lower peaks and other points may change, too"
+    return f"{_KEEPS}: {where}{told}"
 
 
 def _how(summary: Mapping[str, Any]) -> str:
