@@ -1,4 +1,4 @@
-"""How sharp an optimum is: the numbers around it with which the peak is hardly greater."""
+"""How sharp an optimum is, and with which other numbers the greatest peak is unstable."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.response import trace
-from fcm.response.nearly_least import nearly_least
+from fcm.response.nearly_least import nearly_least, unstable_peaks
 from fcm.response.optimum import optimise
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.scene import scene_from_dict
@@ -89,3 +89,21 @@ def test_of_peaks_that_are_no_curves_around_it_nothing_is_told(kind):
     number = np.linspace(1.0, 3.0, 21)
     one = replace(OPTIMAL, kind=kind)
     assert nearly_least(one, [tracked(number, 1.0 + abs(number - 2.0))], ["u"], 0.01) is None
+
+
+def test_numbers_with_which_the_greatest_peak_is_higher_and_unstable_are_ranges():
+    """A higher peak that is unstable up to 2.2; of a part of it stability is unknown, and a wobble is left out."""
+    number = np.linspace(1.0, 5.0, 41)
+    flat, higher = tracked(number, 1.0 + 0.0 * number), tracked(number, 2.0 - 0.1 * number)
+    flat, higher = (replace(one, stable=np.ones(41)) for one in (flat, higher))
+    assert unstable_peaks(OPTIMAL, [flat, higher], ["u"]) == ()
+    stable = np.where(number < 2.2, 0.0, 1.0)
+    stable[number < 1.4], stable[number > 4.95] = np.nan, 0.0
+    ((low, high, peak),) = unstable_peaks(OPTIMAL, [flat, replace(higher, stable=stable)], ["u"])
+    assert (low, high, peak) == pytest.approx((1.0, 2.2, 1.9), abs=0.02)
+    unknown = replace(higher, stable=np.where(stable == 0.0, np.nan, stable))
+    lower = replace(higher, amplitude=0.5 * higher.amplitude, stable=stable)
+    assert unstable_peaks(OPTIMAL, [flat, unknown], ["u"]) == unstable_peaks(OPTIMAL, [flat, lower], ["u"])
+    assert unstable_peaks(OPTIMAL, [flat, lower], ["u"]) == ()
+    several = replace(OPTIMAL, values={"n": 2.0, "m": 1.0})
+    assert unstable_peaks(several, [flat, replace(higher, stable=stable)], ["u"]) == ()

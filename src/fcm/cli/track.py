@@ -181,7 +181,7 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
     where = f"{least} with {where}{kind}{_flat(one)}{_higher(one)}"
     return (
         f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}{_tried(one)}"
-        f"{_lacking(one, curve)}{_higher_at_edge(one, curve, unit)}"
+        f"{_lacking(one, curve)}{_higher_at_edge(one, curve, unit)}{_unstable_elsewhere(one)}"
     )
 
 
@@ -209,6 +209,19 @@ def _higher_at_edge(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str)
         if end.get("at_edge") and end["amplitude"] > one["value"]
     ]
     return "".join(f"\n{text}" for text in higher)
+
+
+def _unstable_elsewhere(one: Mapping[str, Any]) -> str:
+    """Remark that with other numbers the greatest peak is unstable, so that others may be lower; or ''."""
+    if not (ranges := one.get("unstable_peaks")):
+        return ""
+    key = plain(next(iter(one["values"])))
+    where = " and ".join(f"from {there['from']:.4g} to {there['to']:.4g}" for there in ranges)
+    greatest = max(there["greatest"] for there in ranges)
+    return (
+        f"\nwith {key} {where} the greatest peak, up to {greatest:.4g}, is unstable, so that no motion stays "
+        f"there. What stays may be lower than the least above: a [sweep] of {key} there shows it"
+    )
 
 
 def _nearly(one: Mapping[str, Any]) -> str:

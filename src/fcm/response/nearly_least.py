@@ -1,12 +1,14 @@
-"""Numbers with which the greatest of some peaks is hardly more than the least one."""
+"""Numbers with which the greatest peak is hardly more than the least one, and with which it is unstable."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray
+from fcm.response.options import OPTIMUM, OptimumOptions
 from fcm.results.tracked import NearlyLeast, Optimal, TrackedCurve
 
 Piece = tuple[FloatArray, FloatArray]  # numbers along a curve, and heights relative to the least
@@ -25,11 +27,7 @@ def nearly_least(
         return None
     (best,), limit = found.values.values(), (1.0 + share) * found.value
     low, high, span, pieces = -np.inf, np.inf, list[float](), list[Piece]()
-    for curve in curves:
-        dof = curve.what.removeprefix("peak of ")
-        if curve.parameters != found.parameters or f"peak.{dof}" not in found.minimised:
-            continue
-        height = np.where(curve.trough, -np.inf, curve.amplitude[:, list(dofs).index(dof)])
+    for curve, height in _peaks(found, curves, dofs):
         pieces.append((curve.number, height / found.value))
         span += [float(curve.number.min()), float(curve.number.max())]
         at = _above(curve.number, height, limit)
@@ -40,6 +38,52 @@ def nearly_least(
     ends = max(low, min(span)), min(high, max(span))
     higher = _ends_of_higher(pieces, share, best)
     return NearlyLeast(share, *ends, low > -np.inf, high < np.inf, higher)
+
+
+def _peaks(
+    found: Optimal, curves: Iterable[TrackedCurve], dofs: Sequence[str]
+) -> Iterator[tuple[TrackedCurve, FloatArray]]:
+    """The tracked peaks that count for an optimum, with their heights (point,); a trough has none."""
+    for curve in curves:
+        dof = curve.what.removeprefix("peak of ")
+        if curve.parameters == found.parameters and f"peak.{dof}" in found.minimised:
+            yield curve, np.where(curve.trough, -np.inf, curve.amplitude[:, list(dofs).index(dof)])
+
+
+def unstable_peaks(
+    found: Optimal, curves: Iterable[TrackedCurve], dofs: Sequence[str], options: OptimumOptions = OPTIMUM
+) -> tuple[tuple[float, float, float], ...]:
+    """Ranges of the number in which the greatest tracked peak is higher than the least, and unstable.
+
+    (low, high, greatest peak) of each that takes more than `OptimumOptions.min_unstable` of the span that the
+    peaks were followed over. It is looked at `OptimumOptions.unstable_samples` numbers. Where stability is
+    unknown the peak counts as unstable, if it is unstable elsewhere in the same range. Empty for several
+    numbers.
+    """
+    peaks = list(_peaks(found, curves, dofs)) if len(found.values) == 1 else []
+    if not peaks:
+        return ()
+    ends = [(curve.number.min(), curve.number.max()) for curve, _ in peaks]
+    numbers = np.linspace(
+        min(low for low, _ in ends), max(high for _, high in ends), options.unstable_samples
+    )
+    greatest, stable = np.zeros(numbers.size), np.ones(numbers.size)
+    for curve, height in peaks:
+        for i in range(curve.number.size - 1):
+            (one, other), (low, high) = curve.number[i : i + 2], np.sort(curve.number[i : i + 2])
+            there = np.flatnonzero((numbers >= low) & (numbers <= high)) if high > low else np.zeros(0, int)
+            part = (numbers[there] - one) / (other - one)
+            here = height[i] + part * (height[i + 1] - height[i])
+            higher = here > greatest[there]
+            greatest[there[higher]] = here[higher]
+            stable[there[higher]] = np.min(curve.stable[i : i + 2])  # nan if one is
+    higher = (stable != 1.0) & (greatest > (1.0 + options.nearly) * found.value)
+    width, told = options.min_unstable * (numbers[-1] - numbers[0]), []
+    for first, end in runs(higher):
+        low, high = float(numbers[first]), float(numbers[end - 1])
+        if high - low > width and (stable[first:end] == 0.0).any():
+            told.append((low, high, float(greatest[first:end].max())))
+    return tuple(told)
 
 
 def _ends_of_higher(pieces: Sequence[Piece], share: float, best: float) -> tuple[tuple[float, float], ...]:

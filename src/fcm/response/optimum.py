@@ -13,7 +13,7 @@ import numpy as np
 from fcm.model.scene import Optimum, Scene
 from fcm.response.accuracy_shortfall import remedy
 from fcm.response.least_peak import Found, PeakTask, still, with_values
-from fcm.response.nearly_least import nearly_least
+from fcm.response.nearly_least import nearly_least, unstable_peaks
 from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
 from fcm.response.rigid_body_limits import rigid_fault
@@ -93,6 +93,7 @@ def optimise(
             _with_error(one, curve),
             higher=_missed_peak(one, curve),
             nearly=nearly_least(one, tracking.curves, list(curve.peaks), OPTIMUM.nearly),
+            unstable=unstable_peaks(one, tracking.curves, list(curve.peaks)),
         )
         for one, curve in zip(tracking.optima, response.curves, strict=True)
     ]

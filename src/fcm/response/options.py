@@ -329,6 +329,10 @@ class OptimumOptions(Frozen):
         are points of it.
     nearly : float
         Relative height above the least peak, up to which it is reported for which numbers peaks are as low.
+    min_unstable : float
+        Part of the range of a number in which the greatest peak is unstable, above which that is reported.
+    unstable_samples : int
+        How many numbers that is looked at.
     search : SearchOptions
         Options of the search for the least peak over a range of one number.
     """
@@ -339,6 +343,8 @@ class OptimumOptions(Frozen):
     frequency_tolerance: float = 1e-6
     max_dofs: int = 50
     nearly: float = 0.01
+    min_unstable: float = 0.05
+    unstable_samples: int = 401
     search: SearchOptions = SEARCH
 
 

@@ -138,6 +138,8 @@ class Optimal(Frozen):
     beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
     leaves_range: float = np.nan  # [rad/s] where that peak, or the least, leaves the range of frequencies
     nearly: NearlyLeast | None = None  # the numbers around it with which the peak is hardly greater
+    # ranges of the number in which the greatest tracked peak is higher and unstable, and that peak
+    unstable: tuple[tuple[float, float, float], ...] = ()
 
     def summary(self, unit: str) -> dict[str, Any]:
         """Entries of the optimum for JSON."""
@@ -164,6 +166,9 @@ class Optimal(Frozen):
             "tried": [list(pair) for pair in self.tried],
             "flat": {key: list(ends) for key, ends in self.flat.items()},
             "nearly_least": None if self.nearly is None else asdict(self.nearly),
+            "unstable_peaks": [
+                {"from": low, "to": high, "greatest": peak} for low, high, peak in self.unstable
+            ],
             "end_error": self.end_error,
             "leaves_range": None if np.isnan(self.leaves_range) else float(in_unit(self.leaves_range, unit)),
             "higher": None if self.higher is None else dict(zip(("what", "value"), self.higher, strict=True)),
