@@ -313,6 +313,14 @@ def test_a_jump_to_no_stable_part_is_explained():
     assert "land on" not in settled
 
 
+def test_a_jump_to_a_motion_of_unknown_stability_is_marked():
+    jump = {"sweep": "up", "frequency": 1.2, "before": {"u": 1.0}, "after": {"u": 0.5}, "after_stable": None}
+    *_, row, meaning = as_table({"curves": [curve({"u": 1.0}, [jump])]}, "Hz").splitlines()
+    assert "0.500000?" in row and meaning == "? after a jump: stability is unknown there"
+    known = as_table({"curves": [curve({"u": 1.0}, [jump | {"after_stable": True}])]}, "Hz")
+    assert "0.500000?" not in known and "after a jump" not in known
+
+
 def test_a_peak_at_which_no_motion_stays_is_marked():
     one = curve({"u": 1.0, "v": 2.0, "w": 3.0})
     for dof, stable in (("u", True), ("v", False), ("w", None)):

@@ -508,7 +508,11 @@ def test_the_last_line_on_tracked_curves_is_the_result_in_short():
     unstable = replace(curve, stable=np.array([0.0, 1.0]))
     for what, curves, words in (
         ("peaks", [curve, unstable], "of 2 tracked curves, 1 unstable in part; errors of amplitudes are"),
-        ("folds", [curve], "errors of frequencies are at most 2.0e-03, 1 unknown, of the number at turns at"),
+        (
+            "folds",
+            [curve],
+            "errors of frequencies are at most 2.0e-03 at 1 of 2 places, elsewhere unknown, of the number at turns at",
+        ),
         ("slip", [], "nothing to follow was found"),
     ):
         found = Tracking("contact.a.n_0", what, (1.0, 2.0), (1,), curves)

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import DofTable, greatest_of, number, short, swept
+from fcm.cli.columns import UNKNOWN, DofTable, greatest_of, number, short, swept
 from fcm.cli.limits import SENTENCES
 
 _LOST = "\n- the curve has no stable part there to land on"
+_UNKNOWN = f"\n{UNKNOWN} after a jump: stability is unknown there"
 # the sweep, where it begins, the cells between swept values and degrees of freedom, the cells of these
 Row = tuple[str, float, list[str], list[list[str]]]
 
@@ -33,7 +34,7 @@ def jump_table(
     repeats = any(_periods(one) for jumps in shown for one in jumps)
 
     def row(one: Mapping[str, Any]) -> Row:
-        cells = [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs]
+        cells = [[number(one["before"].get(dof)), _landing(one, dof)] for dof in dofs]
         where = [number(one["frequency"]), *([_periods(one) or "1"] if repeats else [])]
         return one["sweep"], one["frequency"], where, cells
 
@@ -50,11 +51,18 @@ def jump_table(
     if not found:
         return left_out
     lost = any("-" in cells for _, each, _ in found for cells in each)
+    unknown = any(UNKNOWN in after for _, each, _ in found for _, after in each)
     heads = [f"jump at {unit}", *(["periods"] if repeats else [])]
     table = DofTable([*names, *heads], dofs, ["{} before", "{} after"], ["sweep"], found)
     more = f"\nand {others} more jump{'s' * (others > 1)}, by less: --json has all" if others else ""
     more += f"\nand {left_out}" if left_out else ""
-    return table.text(last=1) + (_LOST if lost else "") + more
+    return table.text(last=1) + _LOST * lost + _UNKNOWN * unknown + more
+
+
+def _landing(jump: Mapping[str, Any], dof: str) -> str:
+    """The amplitude after a jump, marked where it is unknown whether that motion is stable."""
+    after = jump["after"].get(dof)
+    return number(after) + UNKNOWN * (after is not None and jump.get("after_stable", True) is None)
 
 
 def _periods(jump: Mapping[str, Any]) -> str:

@@ -441,7 +441,7 @@ def in_short(result: Mapping[str, Any]) -> list[str]:
     every = [one for curve in curves for one in curve["errors"]]
     errors = [one["error"] for one in every if one["error"] is not None]
     of = "amplitudes" if tracked["what"] == "peaks" else "frequencies"
-    unknown = f", {len(every) - len(errors)} unknown" * (len(errors) < len(every))
+    unknown = f" at {len(errors)} of {len(every)} places, elsewhere unknown" * (len(errors) < len(every))
     most = f"are {most_of(errors)}{unknown}" if errors else "are unknown"
     turns = [number for one in every if (number := one.get("error_of_number")) is not None]
     of_turns = f", of the number at turns {most_of(turns)}" if turns else ""

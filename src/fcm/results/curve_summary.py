@@ -140,6 +140,7 @@ def _jump(jump: Jump, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
         "frequency": float(in_unit(jump.frequency, unit)),
         "before": dict(zip(dofs, jump.before.tolist(), strict=True)),
         "after": dict(zip(dofs, jump.after.tolist(), strict=True)),
+        "after_stable": True if jump.known and np.isfinite(jump.after).any() else None,
         "periods": list(jump.periods),
     }
 

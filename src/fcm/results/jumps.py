@@ -28,6 +28,9 @@ class Jump(Frozen):
     after: FloatArray  # (dof,) amplitude; NaN where the curve has no stable part to land on
     # of the force after which the motion repeats, before and after; 0 if it does not, or is not known
     periods: tuple[int, int] = (1, 1)
+    known: bool = (
+        True  # whether the motion after it is known to be stable, and not only not known to be unstable
+    )
 
 
 class UnknownStability(Frozen):
@@ -88,6 +91,13 @@ def swept(
     >>> found = swept(w, w[:, None], np.array([1.0, np.nan, np.nan, 1.0]))
     >>> [(one.sweep, one.start, one.end) for one in found.unknown]
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
+
+    A sweep that jumps onto such a motion says so:
+
+    >>> w = np.array([1.0, 2.0, 1.5, 1.0, 2.0, 3.0])
+    >>> jumps = swept(w, np.arange(6.0)[:, None], np.array([1, 1, 0, np.nan, np.nan, 1])).jumps
+    >>> [(one.sweep, one.frequency, one.known) for one in jumps]
+    [('up', 2.0, False)]
     """
     points = _Points(frequency, amplitude, stable, np.ones(stable.size) if repeats is None else repeats)
     points = _with_branch_points(_once(points))
@@ -194,10 +204,10 @@ def _sweep(points: _Points, sweep: str, found: FrequencySweep, same: float) -> N
         meets = np.isclose(landed, before, rtol=same, atol=same * float(before.max())).all(axis=1)
         which = int(meets.argmax())  # where the beginning of a closed curve is its end, it goes on
         onto, after = int(there[which]), landed[which]
+        start, told = (here, after), not unknown[onto : onto + 2].any()
         if not meets[which]:
             periods = points.periods(at), max(points.periods(onto), points.periods(onto + 1))
-            found.jumps.append(Jump(sweep, here, before, after, periods))
-        start, told = (here, after), not unknown[onto : onto + 2].any()
+            found.jumps.append(Jump(sweep, here, before, after, periods, known=told))
         at = onto + 1 if rises[onto] > 0.0 else onto
 
 
