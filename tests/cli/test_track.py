@@ -511,7 +511,7 @@ def test_the_last_line_on_tracked_curves_is_the_result_in_short():
         (
             "folds",
             [curve],
-            "errors of frequencies are at most 2.0e-03 at 1 of 2 places, elsewhere unknown, of the number at turns at",
+            "errors of frequencies are at most 2.0e-03 at 1 of 2 places, elsewhere unknown, of the number at",
         ),
         ("slip", [], "nothing to follow was found"),
     ):

@@ -92,7 +92,7 @@ def test_of_peaks_that_are_no_curves_around_it_nothing_is_told(kind):
 
 
 def test_numbers_with_which_the_greatest_peak_is_higher_and_unstable_are_ranges():
-    """A higher peak that is unstable up to 2.2; of a part of it stability is unknown, and a wobble is left out."""
+    """A higher peak that is unstable up to 2.2, of unknown stability in part; a short stretch is left out."""
     number = np.linspace(1.0, 5.0, 41)
     flat, higher = tracked(number, 1.0 + 0.0 * number), tracked(number, 2.0 - 0.1 * number)
     flat, higher = (replace(one, stable=np.ones(41)) for one in (flat, higher))

@@ -327,8 +327,10 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack], tried: bool = False) -
     )
     said += ["crosses: peaks that were tried, as not all could be followed"] if tried else []
     if said:
-        row = LAYOUT.meanings_of_row
-        lines = ["; ".join(said[k : k + row]) for k in range(0, len(said), row)]
+        lines = said[:1]
+        for one in said[1:]:
+            joined = f"{lines[-1]}; {one}"
+            lines = [*lines[:-1], joined] if len(joined) <= LAYOUT.meaning_letters else [*lines, one]
         axes.set_title("\n".join(lines), loc="left", fontsize=8)
 
 
