@@ -26,7 +26,9 @@ _LAYOUT = {
     "contact_start": ("curve", "contact", "direction"),
     **dict.fromkeys(("contact_amplitude", "contact_phase"), (*_CONTACT, "direction", "contact_harmonic")),
     **dict.fromkeys(("contact_mu", "contact_k_u", "contact_k_v", "contact_n_0"), ("curve", "contact")),
-    **dict.fromkeys(("peak_amplitude", "peak_frequency", "peak_stable", "peak_at_end", "peak_kind"), _PEAK),
+    **dict.fromkeys(
+        ("peak_amplitude", "peak_frequency", "peak_stable", "peak_error", "peak_at_end", "peak_kind"), _PEAK
+    ),
     "complete": _CURVE,
     **dict.fromkeys(("sensitivity", "frequency_sensitivity"), (*_PEAK, "number")),
     "number_value": ("curve", "number"),

@@ -53,6 +53,7 @@ class Peaks(Frozen):
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     damping: FloatArray | None = None  # (curve,) ratio, of the resonances of nonlinear modes
     at_end: BoolArray | None = None  # (curve, dof) whether it is at an end of the range; None: none is
+    error: FloatArray | None = None  # (curve, dof) estimated, relative; None: the file does not say it
     blades: DrawnBlades | None = None  # of a mistuned ring, whose worst sectors are the last columns
 
     @property
@@ -77,7 +78,10 @@ class Peaks(Frozen):
 def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
     with opened(
-        path, "a response file", _NEEDED, ("peak_stable", "peak_at_end", "optimum_number", *OF_BLADES)
+        path,
+        "a response file",
+        _NEEDED,
+        ("peak_stable", "peak_error", "peak_at_end", "optimum_number", *OF_BLADES),
     ) as data:
         variables = data.variables
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
@@ -98,11 +102,12 @@ def read_peaks(path: Path) -> Peaks:
             return _of_modes(told, resonances, path)
         amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
         stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
+        error = floats(variables["peak_error"]) if "peak_error" in variables else None
         at_end = floats(variables["peak_at_end"]) == 1 if "peak_at_end" in variables else None
         blades = blades_of(variables)
     found = Peaks(
         dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked, drawn,
-        at_end=at_end,
+        at_end=at_end, error=error,
     )  # fmt: skip
     return found if blades is None else _with_worst(found, blades)
 
@@ -126,6 +131,7 @@ def _with_worst(peaks: Peaks, blades: DrawnBlades) -> Peaks:
         peaks, dofs=(*peaks.dofs, *blades.names), amplitude=more(peaks.amplitude), blades=blades,
         frequency=more(peaks.frequency), stable=None if peaks.stable is None else more(peaks.stable),
         at_end=None if peaks.at_end is None else more(peaks.at_end.astype(float)) == 1.0,
+        error=None if peaks.error is None else more(peaks.error),
     )  # fmt: skip
 
 
@@ -328,11 +334,23 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))
     what = "peak" if peaks.damping is None else "resonance"
     height = f"{y:.4g} {dof_unit(peaks.dofs[column], peaks.length)}".rstrip()
-    said = f"least {what} {height}{stays} at {where}"
+    errs = "" if peaks.error is None or y == 0.0 else _erring(float(peaks.error[least, column]))
+    said = f"least {what} {height}{stays}{errs} at {where}"
     if key not in _WHOLE and found.at_end_of_sweep:
         (symbol,) = symbols([key])
         said += f"\nan end of the sweep of {symbol}: less may be beyond, or before the next value"
     panels[0].set_title(said, loc="right", fontsize=8, color=_MARK)
+
+
+def _erring(error: float) -> str:
+    """Text beside a peak whose relative error is great, or unknown.
+
+    >>> _erring(0.002), _erring(0.42), _erring(float("nan"))
+    ('', ', error 42 %', ', error unknown')
+    """
+    if error != error:
+        return ", error unknown"
+    return f", error {100.0 * error:.0f} %" if error > LAYOUT.great_error else ""
 
 
 def _say_left_out(axes: Axes, peaks: Peaks) -> None:

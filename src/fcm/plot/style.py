@@ -63,6 +63,7 @@ class PictureLayout(Frozen):
     line_places: int = 16  # of a smooth line, between two points
     shortest_stretch: float = 2.5  # [point] of a dashed or faded line that a legend names
     fitted_of_row: int = 2  # numbers of a fit beside one another
+    great_error: float = 0.05  # relative, of a peak, above which it is told beside it
     meaning_letters: int = 80  # of a line that explains lines of tracked curves
     same_end: float = 1e-6  # of the extent: two points of a curve nearer than this are one
     letters_of_inch: float = 20.0  # small ones, of a line above the axes
