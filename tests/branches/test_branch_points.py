@@ -1,5 +1,6 @@
 """Branches that leave others at branch points."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -171,3 +172,17 @@ def test_a_closed_branch_is_reached_along_the_branch_of_few_harmonics():
     marched = next(iter(simulate(scene, omega, 400, rest).measures(last=1))).amplitude
     curve = traced_curve(scene, Request(None, 1e-2))
     assert on_branch(curve, omega, marched)
+
+
+@pytest.mark.slow
+def test_a_sweep_goes_on_along_the_branch_that_begins_where_its_own_loses_stability(fcm):
+    """The branch is followed through the branch point, where its frequency turns, into its mirror image."""
+    scene = Path(__file__).parent / "scenes/stops_and_second_harmonic.toml"
+    balanced, exact = (
+        json.loads(fcm("respond", scene, "--method", method, "--json").out)["curves"][0]["jumps"]
+        for method in ("table", "exact")
+    )
+    assert [one["sweep"] for one in balanced] == [one["sweep"] for one in exact] == ["up", "up", "down", "down"]
+    for one, other in zip(balanced, exact, strict=True):
+        assert one["frequency"] == pytest.approx(other["frequency"], rel=1e-3)
+        assert one["before"] == pytest.approx(other["before"], rel=1e-2)

@@ -138,12 +138,14 @@ def _once(points: _Points) -> _Points:
 def _with_branch_points(points: _Points) -> _Points:
     """The curve with a stable point inserted where a stable branch leaves another branch.
 
-    That is between two points of the other branch, one of which is stable.
+    That is between two points of the other branch, one of which is stable. The branch ends there, or just
+    beyond, in its mirror image: then its frequency turns back there, and it is stable on both sides.
     """
     frequency, amplitude, stable, repeats = points
-    stays = stable == 1.0
+    stays, rises = stable == 1.0, np.sign(np.diff(frequency))
     runs = np.diff(np.concatenate(([False], stays, [False])).astype(int))
-    ends = distinct_values(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1)
+    turns = 1 + np.flatnonzero((rises[:-1] * rises[1:] < 0.0) & stays[:-2] & stays[1:-1] & stays[2:])
+    ends = distinct_values(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1, turns)
     changes = np.flatnonzero(np.diff(stays) & np.isfinite(frequency[:-1] + frequency[1:]))
     places = list[tuple[int, int]]()  # after a point, what another is there
     for k in changes.tolist():
