@@ -182,7 +182,9 @@ def test_a_sweep_goes_on_along_the_branch_that_begins_where_its_own_loses_stabil
         json.loads(fcm("respond", scene, "--method", method, "--json").out)["curves"][0]["jumps"]
         for method in ("table", "exact")
     )
-    assert [one["sweep"] for one in balanced] == [one["sweep"] for one in exact] == ["up", "up", "down", "down"]
+    assert (
+        [one["sweep"] for one in balanced] == [one["sweep"] for one in exact] == ["up", "up", "down", "down"]
+    )
     for one, other in zip(balanced, exact, strict=True):
         assert one["frequency"] == pytest.approx(other["frequency"], rel=1e-3)
         assert one["before"] == pytest.approx(other["before"], rel=1e-2)

@@ -93,6 +93,13 @@ def test_an_s_shaped_curve_through_both_folds(step):
     assert np.count_nonzero(np.diff(ends[np.setdiff1d(np.arange(ends.size), folds)])) == 2
 
 
+def test_a_start_or_a_span_that_cannot_be_meant_is_refused():
+    with pytest.raises(ValueError, match=r"the start has the shape \(1,\), and should have \(3,\)"):
+        follow(cubic(), np.array([1.3]), (-1.0, 1.0))
+    with pytest.raises(ValueError, match="the span is 1 to -1; its lower end comes first"):
+        follow(cubic(), start(1.3, -1.0), (1.0, -1.0))
+
+
 @pytest.mark.parametrize("step", STEPS)
 def test_directions_are_tangents(step):
     path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(step))

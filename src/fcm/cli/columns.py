@@ -11,6 +11,7 @@ from fcm.frozen import Frozen
 
 UNSTABLE = "!"  # beside a peak where the motion is not stable
 DOES_NOT_STAY = "unstable: with these harmonics the motion is not stable there, and leaves this peak"
+EXACT_DOES_NOT_STAY = "unstable: the motion is not stable there, and leaves this peak"
 UNKNOWN = "?"  # beside that of which it is unknown whether it is stable
 STABILITY_UNKNOWN = "stability is unknown there: "
 HARMONICS_HELP = "more harmonics may show it"

@@ -9,6 +9,7 @@ from fcm.cli.columns import (
     ABSENT,
     BEYOND,
     DOES_NOT_STAY,
+    EXACT_DOES_NOT_STAY,
     NOT_COMPLETE,
     STABILITY_NOT_YET_KNOWN,
     STABILITY_UNKNOWN,
@@ -384,7 +385,9 @@ def _curves(
         lines.append(_OF_ISOLATED)
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
-        lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")
+        lines.append(
+            f"{UNSTABLE} {EXACT_DOES_NOT_STAY if summary.get('method') == 'exact' else DOES_NOT_STAY}"
+        )
     lost = [
         dof
         for dof in dofs

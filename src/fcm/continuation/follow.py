@@ -404,6 +404,8 @@ def follow(
 
     Raises
     ------
+    ValueError
+        If the start has another shape, or the span ends below where it begins.
     PathInterrupted
         With the points up to there, where a `KeyboardInterrupt` comes.
 
@@ -421,6 +423,11 @@ def follow(
     >>> path.status.name, [round(y, 6) for y in path.parameter[path.where(Mark.FOLD)].tolist()]
     ('CLOSED', [1.0, -1.0])
     """
+    if span[0] > span[1]:
+        raise ValueError(f"the span is {span[0]:g} to {span[1]:g}; its lower end comes first")
+    if checkpoint is None and np.shape(start) != (problem.unknowns + 1,):
+        wanted = f"({problem.unknowns + 1},): the unknowns, then the parameter"
+        raise ValueError(f"the start has the shape {np.shape(start)}, and should have {wanted}")
     follower = Follower(problem, span, events, options, progress, stepper)
     if checkpoint is not None:
         follower.resume(checkpoint)
