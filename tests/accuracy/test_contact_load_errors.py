@@ -107,6 +107,7 @@ def test_the_greatest_of_a_curve_beside_that_of_many_harmonics(preload):
             assert told < 3.0 * SMALLEST
 
 
+@pytest.mark.slow
 def test_at_levels_and_of_a_mode_beside_many_harmonics():
     """The same motion with more harmonics: at the level 1; of the mode at the same modal amplitude."""
     one = fcm.load_scene("yang1998-n5")

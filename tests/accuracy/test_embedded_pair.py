@@ -328,6 +328,7 @@ def test_points_are_moved_to_the_reference_as_the_work_allows():
     assert not told.any()
 
 
+@pytest.mark.slow
 def test_a_curve_of_which_more_harmonics_have_another_is_told_of():
     """Four contacts that rattle: from hardly a point of three harmonics Newton's method leads to one of more.
 

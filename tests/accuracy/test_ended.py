@@ -1,11 +1,14 @@
 """Points beside a fold that further harmonics move past them: the branch has ended there."""
 
+import pytest
+
 from fcm.accuracy.refinement import with_given_harmonics
 from fcm.continuation import Mark
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 
 
+@pytest.mark.slow
 def test_nothing_is_told_of_what_further_harmonics_have_no_branch_of():
     """A gap that closes three times a period: with twice as many harmonics the fold is 0.5 % lower."""
     one = scene_from_dict(

@@ -161,6 +161,7 @@ def test_where_two_peaks_are_one_point_the_corrected_curve_may_be_higher_beyond(
     assert true > 1e-3 and true / 2.0 < found.peak[1] < 2.0 * true
 
 
+@pytest.mark.slow
 def test_what_is_settled_at_one_of_several_peaks_that_lie_together_is_not_the_error_of_the_others():
     """Between the peaks of two degrees of freedom, seven points apart, a contact changes what it does: the
     error is 0.5 % at one and a tenth of that at the other. Of four contacts one peak is settled for both."""

@@ -101,6 +101,7 @@ def test_symmetry_is_lost_by_even_harmonics_whatever_odd_ones_are_balanced():
     assert any(min(abs(one - omega)) < 1e-3 for one in unsymmetric for omega in lost.frequencies)
 
 
+@pytest.mark.slow
 def test_symmetry_that_is_lost_within_two_steps_is_not_missed():
     """Between the branch points at 0.841 and 0.863 rad/s the curve has one point; a march settles there at an
     unsymmetric motion."""

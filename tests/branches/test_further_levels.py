@@ -75,6 +75,7 @@ ONE_OPEN_AT_REST = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("parts", "omega"), [(ONE_MODE, 0.8122), (ONE_OPEN_AT_REST, 0.81)])
 def test_a_closed_branch_is_found_where_a_harmonic_comes_to_a_resonance(parts, omega):
     """The contact opens twice a period on it, at half of the frequency of the highest peak, or between that

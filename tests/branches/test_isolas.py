@@ -214,6 +214,7 @@ def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
     assert Folds(z, z, (FoldCurveEnding.CLOSED, FoldCurveEnding.LEVEL)).lost == [1.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("distance, looked", [(0.4, True), (0.6, False)])
 @pytest.mark.parametrize("more", [(), tuple(range(1, 12))])
 def test_where_more_harmonics_have_no_motion_beside_a_curve_isolated_branches_are_not_looked_for(

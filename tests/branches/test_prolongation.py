@@ -53,6 +53,7 @@ def test_a_closed_branch_is_not_lost_with_more_harmonics():
     assert np.ptp(path.parameter) < 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("highest", [6, 7, 12])
 def test_an_isolated_branch_is_not_lost_with_more_harmonics_where_its_peak_is_unstable(highest):
     """At 1.05324 rad/s a march of the contact law, by the method of Runge and Kutta, settles at

@@ -86,6 +86,7 @@ def test_a_table_is_drawn_instead_of_the_closed_form(fcm, monkeypatch):
     assert 1e-6 < difference < 2e-3
 
 
+@pytest.mark.slow
 def test_the_worst_point_is_printed(fcm):
     done = fcm("plot", "error", "--coefficient", "F_c", "--phi", "30deg")
     assert "greatest error" in done.err and "of F_c at n0_bar " in done.err and "phi 0.5236 rad" in done.err

@@ -122,6 +122,7 @@ def test_an_interruption_keeps_what_is_finished(fcm, short):
     assert fcm("plot", "accuracy", "c.nc").code == 0
 
 
+@pytest.mark.slow
 def test_without_an_exact_curve_in_time_the_closed_form_remains(fcm, short):
     run = fcm("respond", short, "--compare", compare=replace(QUICK, exact=ExactLineOptions(limit=0.0)))
     why = "the curve: not finished in 0 s of processor time"

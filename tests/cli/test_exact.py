@@ -137,6 +137,7 @@ def test_a_curve_without_points_is_a_header(fcm, scene, tmp_path):
 SCENES = Path(__file__).parents[1] / "shooting/scenes"
 
 
+@pytest.mark.slow
 def test_the_table_of_jumps_says_after_how_many_periods_motions_repeat(fcm):
     visits = [x for at in (288, 292, 293, 301, 302) for x in ("--at", at)]
     run = fcm("respond", SCENES / "two_beside_one.toml", "--method", "exact", *visits)
@@ -169,6 +170,7 @@ def test_points_that_are_one_of_many_or_do_not_repeat_are_named(fcm, tmp_path):
     assert "may_not_be_unique" not in curve
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [(), ("--method", "exact")])
 def test_curves_say_at_how_many_points_the_motion_may_be_one_of_many(fcm, method):
     """Contact B never slips below 1.5 rad/s or so, and A, without friction, closes and opens."""

@@ -72,6 +72,7 @@ def test_the_numbers_are_told_with_their_errors_and_drawn(measured, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_the_table_names_numbers_and_data(measured):
     done = called("respond", measured(points=10))
     assert "standard error" in done.out and "contact.shroud.k_u" in done.out and "data.csv u" in done.out
@@ -165,6 +166,7 @@ def test_a_fit_interrupted_anywhere_tells_the_best_so_far_and_is_gone_on_with(me
         assert count < most if stop < most // 2 else count <= most // 2 + 8
 
 
+@pytest.mark.slow
 def test_numbers_found_are_told_where_their_response_is_interrupted(measured, tmp_path):
     """They were lost."""
     path, out = measured(points=8), tmp_path / "out.nc"

@@ -370,6 +370,7 @@ def test_of_many_contacts_that_which_takes_most_energy_is_drawn(fcm, folded, tmp
     assert done.code == 0 and "takes most energy" not in done.err
 
 
+@pytest.mark.slow
 def test_letters_that_the_fonts_lack_are_said_once(fcm, folded, tmp_path):
     (tmp_path / "named.nc").write_bytes(folded.read_bytes())
     with netCDF4.Dataset(tmp_path / "named.nc", "a") as data:
@@ -498,6 +499,7 @@ def test_the_title_of_a_loop_beside_the_frequency_asked_for_has_both(folded):
     assert "asked" not in titles([there])[0]
 
 
+@pytest.mark.slow
 def test_a_modal_amplitude_beside_that_asked_for_has_no_unit_of_frequency(fcm):
     run = ("--mode", 1, "--level", "0.1:100", "--harmonics", 1, "-o", "mode.nc")
     assert fcm("respond", "yang1998-n5", *map(str, run)).code == 0
@@ -523,6 +525,7 @@ STOP = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [1, 3])
 def test_of_a_contact_without_friction_the_normal_force_is_drawn(fcm, tmp_path, harmonics):
     """It was refused."""
@@ -579,6 +582,7 @@ def test_the_picture_of_a_normal_force_has_it_over_displacement_and_angle():
     assert text.count("opens at") == text.count("closes at") == cycle.sequence.count("S")
 
 
+@pytest.mark.slow
 def test_of_several_curves_one_is_to_be_named(fcm, folded, monkeypatch):
     """`loop` first said which contact it takes; `contacts` draws all that a picture has room for."""
     picture = folded.with_name("several.png")

@@ -40,6 +40,7 @@ def test_json_says_where_the_forces_of_the_scene_are_in_resonance(fcm):
     assert one["amplitude"]["u"] == pytest.approx(15.831, rel=0.02)  # the peak of the response itself
 
 
+@pytest.mark.slow
 def test_the_response_is_predicted_at_any_level_of_the_forces(fcm):
     done = fcm(*MODE, "--force-level", 0.5, "--force-level", 2, "--json", "-o", "levels.nc")
     found = json.loads(done.out)["curves"][0]["mode"]["resonances"]
@@ -58,6 +59,7 @@ def test_the_response_is_predicted_at_any_level_of_the_forces(fcm):
         assert data["force_level"][:].tolist() == [0.5, 2.0]
 
 
+@pytest.mark.slow
 def test_a_level_whose_resonance_is_not_among_the_amplitudes_is_told(fcm):
     """The response has them: of the level 1 at the amplitude 15.8 of u, and more beyond, less below."""
     levels = [x for level in (1e-3, 1, 20) for x in ("--force-level", level)]
@@ -84,6 +86,7 @@ def test_as_many_harmonics_as_an_accuracy_takes(fcm):
     assert done.code == 0 and len(curve["harmonics"]) > 1 and curve["truncation_error"] <= 1e-3
 
 
+@pytest.mark.slow
 def test_the_picture(fcm, result, tmp_path):
     done = fcm("plot", "mode", result)
     assert (done.code, done.err) == (0, f"wrote {tmp_path / 'mode-mode.png'}\n")
@@ -233,6 +236,7 @@ frequency = [0.85, 1.25]
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("second", "resonant"), [(3.2, True), (5.0, False)])
 def test_an_internal_resonance_is_told(fcm, tmp_path, second, resonant):
     """Where the third harmonic meets the second mode, the mode predicts a peak that the response has not."""

@@ -92,6 +92,7 @@ def test_the_same_peaks_and_folds_and_summary_as_with_all_points(fcm, scene, tex
         np.testing.assert_array_equal(peaks["points"][:], counted)
 
 
+@pytest.mark.slow
 def test_the_same_percentiles_of_draws_as_with_all_points(fcm, scene):
     scene.write_text(scene.read_text().replace("damping = 0.05", "damping = 0.01") + DRAWN)
     full = fcm("respond", scene, "-o", "full.nc", "--json")

@@ -24,6 +24,7 @@ def test_the_ending_is_the_format(fcm, result, tmp_path, name, begin):
     assert (tmp_path / name).read_bytes().startswith(begin)
 
 
+@pytest.mark.slow
 def test_without_a_name_the_picture_is_beside_the_file(fcm, result, tmp_path):
     assert fcm("plot", "response", result).code == 0
     assert (tmp_path / "result.png").exists()

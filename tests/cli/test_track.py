@@ -50,6 +50,7 @@ def test_an_optimum_is_written_drawn_and_told(fcm, optimum):
     assert fcm("plot", "peak", "best.nc", "--folds").code == 2
 
 
+@pytest.mark.slow
 def test_an_optimum_is_the_same_in_whatever_bounds(fcm, optimum):
     """Where they were wide it was said to be at a corner, as slopes were compared with the whole range."""
     found = []

@@ -73,6 +73,7 @@ def made(tmp_path_factory):
     return folder, names
 
 
+@pytest.mark.slow
 def test_a_mesh_without_elements_is_said_to_have_no_surfaces(made):
     folder, _ = made
     lines = (BEAM / "beam.inp").read_text().upper().partition("*NODE")[2].splitlines()[1:]

@@ -381,6 +381,7 @@ run()
     assert done.code == -signal.SIGINT and done.err == ""
 
 
+@pytest.mark.slow
 def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
     """Once Python itself has begun, which is not this program's to mend."""
     rng = random.Random(1)

@@ -479,6 +479,7 @@ def test_the_progress_of_one_curve_moves_with_the_frequency(harmonics):
     assert len(first) > 10 and max(np.diff(first)) < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("of", ["levels", "mode"])
 def test_the_progress_of_one_mode_or_level_moves_with_its_span(of):
     shown = []

@@ -43,6 +43,7 @@ def fitted(tmp_path):
     return run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changed", "phased", "said"),
     [
@@ -72,6 +73,7 @@ def test_a_change_is_one_of_all_files_or_of_one(fitted):
     assert sentence.startswith("1.csv: a factor of 0.001 on the amplitudes")
 
 
+@pytest.mark.slow
 def test_nothing_is_said_where_the_shape_is_another(fitted):
     assert not fitted(linear(0.1))
     assert not fitted(linear())

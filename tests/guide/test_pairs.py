@@ -1,5 +1,6 @@
 """Pairs from two sets of nodes, as the page of contacts describes them: its scene, on a mesh of the test."""
 
+import pytest
 from PIL import Image
 
 from ..program import shell
@@ -16,6 +17,7 @@ def block(kind):
     return found
 
 
+@pytest.mark.slow
 def test_the_command_draws_the_pairs_of_the_scene(tmp_path):
     first, second = places(0.03)
     (tmp_path / "blade.inp").write_text(deck(first, second))

@@ -41,6 +41,7 @@ def test_another_curve_of_the_structure_while_one_is_followed(harmonics):
         same(one, points(wanted, 0.5))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [(1,), up_to(3)])
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
 def test_a_curve_after_one_that_was_interrupted(harmonics, error):

@@ -147,6 +147,7 @@ def test_the_level_multiplies_the_forces_of_all_harmonics():
             assert found == pytest.approx(expected, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_derivatives_of_the_peak_by_the_forces_are_those_of_differences():
     from fcm.response.sensitivity import add_sensitivities
 
@@ -206,6 +207,7 @@ def test_the_exact_motion_under_a_third_harmonic_slips_as_at_three_times_the_fre
         assert curve.peaks[dof].frequency == pytest.approx(peak.frequency / 3.0, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_0", [0.5, -0.3])
 def test_the_exact_superharmonic_motion_is_that_of_a_march(n_0):
     at = (0.6, 0.95, 1.25)
@@ -275,6 +277,7 @@ def test_what_is_driven_is_said_and_an_exact_motion_is_offered():
         assert "--method exact" in maybe_not_unique(said | {"curves": [{"may_not_be_unique": 3}]})
 
 
+@pytest.mark.slow
 def test_the_least_peak_under_both_forces_is_that_of_a_scan():
     """Curves at preloads beside it are no lower, and that at the optimum has the peak that is told."""
     from fcm.response.optimum import optimise

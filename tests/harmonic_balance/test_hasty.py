@@ -23,6 +23,7 @@ from fcm.scene import load_scene
 from .strips import strip
 
 
+@pytest.mark.slow
 def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
     """Against the same curve by way of all its corners, of ten contacts; they are followed up to a level."""
     system = System(load_scene("blade").each_curve()[0], (1, 2, 3))

@@ -398,6 +398,7 @@ def rotating(
     return scene_from_dict(data | ({"optimum": optimum} if optimum else {}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "varied",
     [
@@ -441,6 +442,7 @@ def test_a_circle_begins_and_ceases_to_slip_all_around_at_once(varied):
     assert highest >= max(radius(one) for one in np.linspace(*given["span"], 401))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "varied",
     [

@@ -76,6 +76,7 @@ def check(numbers, harmonics, kind, keys=None, **response):
 FEW = ("contact.c.mu", "contact.c.n_0", "modal.damping.0")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("n_0", "harmonics", "keys"),
     [(10.0, 1, None), (-5.0, 1, FEW), (10.0, 3, ("contact.c.n_0", "modal.frequency.0"))],

@@ -109,6 +109,7 @@ def test_a_march_comes_to_the_same_member(contact, friction, amplitude, states):
     assert abs(curve["mean"].values[i] - other["mean"].values[len(other.frequency) // 2]).max() > 0.02 * size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "amplitude"),
     [([0.3, -0.35], 0.12), ([0.3, -0.35], 0.8), ([2.5, -0.3], 0.12), ([-0.6, 0.5], 0.8)],
@@ -249,6 +250,7 @@ def test_a_point_of_a_curve_is_a_solution_and_a_state_with_that_friction():
     assert at == pytest.approx([-0.3 / A["k_u"], 0.35 / B["k_u"]], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_loop_in_a_plane_is_of_the_displacement_and_of_that_friction(tmp_path):
     """Where the contact sticks, f = f_0 + k_u u, with the displacements of the structure in the file."""
     write_netcdf(trace(made(IN_PLANE, [[0.2, -0.25], 0.3], 0.12, harmonics=1)), tmp_path / "a.nc")

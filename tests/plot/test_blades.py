@@ -38,6 +38,7 @@ def diamonds(axes):
     return [line.get_xydata()[0].tolist() for line in axes.lines if line.get_marker() == "D"]
 
 
+@pytest.mark.slow
 def test_the_envelope_over_all_blades_is_drawn(swept):
     """It was one blade alone, that of the greatest peak."""
     found, path = swept

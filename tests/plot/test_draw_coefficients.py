@@ -74,6 +74,7 @@ def test_surfaces_of_one_coefficient_have_one_scale():
     assert first.collections[0].get_clim() == second.collections[0].get_clim()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "plane", [ParameterPlane(), THIRTY, ParameterPlane(math.radians(100.0), (-3.0, 5.0), (0.5, 4.0))]
 )
@@ -88,6 +89,7 @@ def test_contours_show_the_regimes_where_they_are(plane):
         np.testing.assert_array_equal(n0, boundaries(b, plane.phi)[name])
 
 
+@pytest.mark.slow
 def test_contours_carry_symbols_and_units():
     figure = flat(FIFTEEN, THIRTY)
     left, right = panels(figure)

@@ -72,6 +72,7 @@ def test_slip_limits_bound_the_force():
     np.testing.assert_allclose(upper, expected, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_slip_limits_that_are_not_seen_are_said_to_be_far():
     """The legend named a line that is nowhere in the picture."""
     stuck = drawn([fcm.hysteresis_loop(50.0, 0.1, 0.0)]).legends[0].get_texts()
@@ -149,6 +150,7 @@ def test_angles_do_not_touch_the_ticks_of_the_frame():
         assert all(frame.contains(*corner) for box in boxes for corner in (box.min, box.max))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "millimetres"), [(1, 85.0), (2, 170.0), (5, 170.0)])
 def test_pictures_are_as_wide_as_columns(count, millimetres):
     figure = drawn([fcm.hysteresis_loop(0.5, 0.4, 0.1 * i) for i in range(count)])

@@ -41,6 +41,7 @@ def test_of_very_many_modes_the_colours_are_named_by_a_bar():
     assert [text.get_text() for text in bar.get_yticklabels()] == [str(n) for n in range(0, 25, 3)]
 
 
+@pytest.mark.slow
 def test_the_greatest_damping_is_marked_where_it_is_more_than_rounding():
     hill = 0.01 + 0.02 * np.exp(-(np.log(AMPLITUDE) ** 2))
     (ring,) = rings(draw_modes(modes(1, hill)))
@@ -51,6 +52,7 @@ def test_the_greatest_damping_is_marked_where_it_is_more_than_rounding():
         assert not rings(draw_modes(modes(1, damping)))
 
 
+@pytest.mark.slow
 def test_the_greatest_damping_is_named_inside_the_axes():
     for top in (0.15, 1.0, 8.0):
         figure = draw_modes(modes(1, 0.01 + 0.02 * np.exp(-(np.log(AMPLITUDE / top) ** 2))))
@@ -87,6 +89,7 @@ def test_resonances_of_the_forces_are_marked_and_errors_drawn():
     assert np.nansum(below.lines[0].get_ydata()) == 0.04
 
 
+@pytest.mark.slow
 def test_a_resonance_is_named_beside_the_line_and_within_the_axes():
     """Written over it, and over the frame above a line that is highest there."""
     for frequency in (np.full(41, 10.0), 10.0 - AMPLITUDE**2 / 20.0, 10.0 + AMPLITUDE**2 / 20.0):

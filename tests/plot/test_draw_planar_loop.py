@@ -89,6 +89,7 @@ def test_both_hysteresis_loops_and_the_names_of_the_directions(figure):
     assert above.get_ylabel() == "$f_x$ (N)"
 
 
+@pytest.mark.slow
 def test_the_force_stays_within_its_limits_and_reaches_them_where_it_slips(figure):
     forces, path = figure.axes[3], path_of(LOOP)
     radii = sorted(patch.radius for patch in forces.patches if isinstance(patch, Circle))

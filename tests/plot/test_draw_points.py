@@ -119,6 +119,7 @@ def backbones(*parameters):
     return DrawnResponse(("u", "v"), "rad/s", each)
 
 
+@pytest.mark.slow
 def test_a_backbone_of_other_swept_values_is_refused_and_the_forces_may_be_other_ones():
     """That of another preload was drawn over all curves."""
     response = DrawnResponse(("u", "v"), "rad/s", (curve(1.0), curve(2.0)))

@@ -283,6 +283,7 @@ def test_the_area_is_not_drawn_between_branches():
     assert values[(edges[:-1] > 0.96) & (edges[1:] < 1.44)].max() < 1e-8 < values[0]
 
 
+@pytest.mark.slow
 def test_no_panel_without_errors_or_when_not_wanted():
     none = with_errors(resonance(9.0, 1.2, 5.0), np.zeros(201), np.zeros(201))
     some = with_errors(resonance(9.0, 1.2, 5.0), np.zeros(201), np.full(201, 1e-3))
@@ -434,6 +435,7 @@ def test_the_legend_names_no_line_that_is_too_short_to_be_seen():
         ]
 
 
+@pytest.mark.slow
 def test_a_backbone_is_drawn_within_the_axes_of_the_curves():
     """In the unit of the curves, of the same degree of freedom; else it is said why not."""
     mode = DrawnCurve(

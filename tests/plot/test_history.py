@@ -88,6 +88,7 @@ def test_of_many_cycles_the_extent_is_drawn(path):
     assert second.lines[0].get_ydata().tolist() == [0.0, 3.0, 0.0, -1.0] * 3
 
 
+@pytest.mark.slow
 def test_phases_are_bounded_and_named(path):
     axes = draw_history(read_history(path)).axes[0]
     (bound,) = (line for line in axes.lines if line.get_linestyle() != "-")

@@ -27,6 +27,7 @@ def page(file, what="response", *options):
     return output
 
 
+@pytest.mark.slow
 def test_a_page_needs_no_network(file):
     """The library is within; nothing is loaded from elsewhere when the page is opened."""
     text = page(file).read_text(encoding="utf-8")

@@ -117,6 +117,7 @@ def test_a_panel_beside_the_frequency_asked_for_has_both_in_its_title(file):
     assert f"{beside.frequency:.6g} rad/s" in titles[0] and "asked" not in titles[1]
 
 
+@pytest.mark.slow
 def test_columns_of_unlike_size_are_told_by_a_logarithm_and_bars_are_in_line(file):
     """Values of the second column a hundredth: on a linear scale they would all be of one colour."""
     read = read_interface(file[0])
@@ -139,6 +140,7 @@ def test_columns_of_unlike_size_are_told_by_a_logarithm_and_bars_are_in_line(fil
     assert (linear.norm.vmin, linear.norm.vmax) == (0.0, 11.0)
 
 
+@pytest.mark.slow
 def test_bars_of_unlike_columns_have_a_logarithmic_axis(file):
     """Those of a small amplitude lay on the foot of the axis beside those of a great one."""
     read = read_interface(file[0])
@@ -205,6 +207,7 @@ def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
     assert fcm("plot", "contacts", path, *many).code == 2
 
 
+@pytest.mark.slow
 def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     scene = SCENE + '[sweep]\n"force.1x.amplitude" = [0.01, 5.0, 20.0]\n'
     (tmp_path / "pairs.csv").write_text("node,other\n1,\n2,\n")
@@ -286,6 +289,7 @@ def test_contacts_on_a_line_are_bars_along_it_with_their_names(tmp_path):
     assert given.axes[-1].get_xlabel() == "contact, at 0.6 X + 0.8 Y"
 
 
+@pytest.mark.slow
 def test_names_that_find_no_room_give_way_to_coordinates(tmp_path):
     read = line_of(60, [f"{k + 1},,{float(k)},0.0,0.0" for k in range(60)], tmp_path)
     figure = draw_interface(read, points_of(read, ()), read.places, read.axes)
@@ -400,6 +404,7 @@ def point_at(read, amplitude):
     return found
 
 
+@pytest.mark.slow
 def test_of_levels_points_are_chosen_by_the_level(tmp_path):
     """Their frequency is one, which told nothing."""
     path = tmp_path / "level.nc"

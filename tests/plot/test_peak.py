@@ -195,6 +195,7 @@ def test_a_file_without_a_sweep(tmp_path):
         draw_peak(read_peaks(path))
 
 
+@pytest.mark.slow
 def test_the_resonances_of_nonlinear_modes_are_the_peaks_of_a_sweep(tmp_path):
     """Of the levels of the forces, too; a level whose resonance is beyond the amplitudes has none."""
     levels = [x for level in (0.5, 1, 20) for x in ("--force-level", level)]

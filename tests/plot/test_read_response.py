@@ -79,6 +79,7 @@ def test_branches_are_not_joined(path):
     assert len(others) == 1
 
 
+@pytest.mark.slow
 def test_curves_of_which_stability_is_nowhere_told_are_dotted(path):
     """A solid line is a claim that they are stable."""
     with netCDF4.Dataset(path, "a") as data:

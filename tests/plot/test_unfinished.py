@@ -48,6 +48,7 @@ def test_a_curve_of_several_that_is_cut_off_is_counted():
     assert said == "NOT COMPLETE: 2 of 3 curves; the first: interrupted before its stability was known"
 
 
+@pytest.mark.slow
 def test_a_fit_that_was_interrupted_is_said_over_whole_curves(tmp_path, fcm):
     """Its picture looked like that of the best numbers."""
     (tmp_path / "scene.toml").write_text(SCENE)

@@ -36,6 +36,7 @@ def written(figure):
     return texts + [text.get_text() for legend in figure.legends for text in legend.get_texts()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", ["Hz", "rad/s"])
 def test_where_the_level_was_varied_is_said_in_its_unit(tmp_path, unit):
     found = trace_levels(scene_from_dict(SCENE | {"frequency_unit": unit}), LevelRequest([1.2], (0.0, 2.0)))

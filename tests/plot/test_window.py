@@ -37,6 +37,7 @@ def test_measured_points_beyond_are_left_out_and_only_ends_within_have_a_cross()
         assert sum(line.get_color() == COLOUR for line in axes.lines) == crosses
 
 
+@pytest.mark.slow
 def test_a_window_that_shows_nothing_is_refused(tmp_path):
     with pytest.raises(PlotError, match="7 to 8 shows nothing; the curves go from 1 to 5"):
         within(response(), (7.0, 8.0))

@@ -73,6 +73,7 @@ def test_a_nonlinear_mode_says_so(fcm, tmp_path):
     assert "a friction force that its past decides" in done.err and "--method exact" not in done.err
 
 
+@pytest.mark.slow
 def test_tracked_points_say_so(fcm, tmp_path):
     (tmp_path / "s.toml").write_text(BODY + FORCES + STATIC + RANGE.replace("1.0, 1.08", "0.7, 1.5"))
     over = ("--track", "slip", "--over", "level", "--from", 0.9, "--to", 1.1)

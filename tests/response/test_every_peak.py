@@ -43,6 +43,7 @@ def summary(tmp_path_factory):
     return json.loads(done.out)
 
 
+@pytest.mark.slow
 def test_every_resonance_of_a_degree_of_freedom_is_told_by_frequency(summary):
     (curve,) = summary["curves"]
     for d, dof in enumerate("uv"):
@@ -106,6 +107,7 @@ def test_where_the_error_of_a_peak_is_unknown_that_of_its_point_is_there():
 BRANCHES = Path(__file__).parents[1] / "branches/scenes"
 
 
+@pytest.mark.slow
 def test_a_peak_on_an_isolated_branch_is_marked():
     """The stop's isolated branch lies between its two folds, and the higher peak is on the other branch."""
     done = called("respond", BRANCHES / "closed_impact.toml", "--json")

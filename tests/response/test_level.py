@@ -247,6 +247,7 @@ def test_a_curve_of_levels_has_the_harmonics_that_an_accuracy_takes():
     assert curve.error[high, 1] < 1e-2 and curve.peaks["v"].error < 1e-2 and not curve.short_of
 
 
+@pytest.mark.slow
 def test_a_curve_of_levels_that_has_not_the_accuracy_says_so():
     (curve,) = trace_levels(isola(), LevelRequest([1.22], (0.0, 2.0)), accuracy=1e-12).curves
     assert curve.complete and curve.short_of.startswith(f"with {len(curve.harmonics)} harmonics an estimated")

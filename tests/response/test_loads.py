@@ -362,6 +362,7 @@ def block_on_friction(push, amplitude=1e-4):
     return scene_from_dict(data, "block")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("push", [0.5, 2.0])
 def test_contacts_that_stick_hold_a_free_body_in_their_plane(push):
     """As the sum of all forces, by a solver that knows neither modes nor shares: with the larger push some

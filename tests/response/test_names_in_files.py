@@ -62,6 +62,7 @@ def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, tmp_pa
     ]
 
 
+@pytest.mark.slow
 def test_names_that_would_become_one_are_told_apart(fcm, tmp_path):
     names = ("a b", "a_b", "a/b")
     (tmp_path / "a.toml").write_text(text_of(*names))

@@ -66,6 +66,7 @@ def test_the_name_of_a_scene_is_no_scene():
         fcm.respond("yang1998")
 
 
+@pytest.mark.slow
 def test_an_accuracy_that_fifty_harmonics_do_not_reach_is_not_said_to_be():
     """Their error is what the harmonics beyond them do."""
     scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.1, 1.25))

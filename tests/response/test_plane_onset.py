@@ -40,6 +40,7 @@ def test_slip_begins_at_a_cusp() -> None:
     assert curve.frequency[onset : onset + 20].min() < here - 1e-4
 
 
+@pytest.mark.slow
 def test_slip_begins_where_the_root_is_steep() -> None:
     """Seen from where it slips the load's root is eighty times as steep as from where it sticks."""
     data = {

@@ -44,6 +44,7 @@ def test_a_contact_that_sticks_once_in_a_cycle_has_few_corners():
     assert path.where(Mark.CORNER).size < 30
 
 
+@pytest.mark.slow
 def test_a_curve_that_bounces_between_two_corners_is_ended_there():
     """They are 7e-7 of the motion apart; it went to and fro until the work was at its limit, two minutes."""
     system = System(replace(random_plane(149), harmonics=None))

@@ -107,6 +107,7 @@ def test_at_the_peak_no_motion_stays(scene, curve):
     assert exact.orbits.cycle_greatest[:, 0].max() < 0.5 * peak.amplitude
 
 
+@pytest.mark.slow
 def test_of_peaks_alone_a_loss_of_stability_is_where_the_whole_curve_has_it(scene):
     """No fold tells where, and the balance does not know: the whole curve is followed."""
     loaded = package.load_scene(scene)

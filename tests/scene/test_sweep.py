@@ -104,6 +104,7 @@ def test_ranges(data):
     assert parameters(down) == [(5,)]
 
 
+@pytest.mark.slow
 def test_draws_follow_their_distribution_and_their_seed(data):
     normal = {"normal": [5.0, 0.5], "count": 4000, "seed": 1}
     uniform = {"uniform": [0.2, 0.6], "count": 4000, "seed": 1}

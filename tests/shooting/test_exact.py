@@ -55,6 +55,7 @@ def test_folds_of_the_paper_s_preload(folded):
     assert unstable.min() > down and unstable.max() < up
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "scene",
     [between(yang(10.0), 1.47, 1.56), between(yang(), 1.185, 1.245), between(two_contacts(), 1.045, 1.07)],

@@ -42,6 +42,7 @@ def test_the_greatest_amplitudes_are_found_and_few_others():
     assert len(peaks) > 10 and 3 * len(lower) < len(peaks)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_a_peak_is_found_however_near_the_guess_is(side):
     """Within rounding of its start a curve has the peak twice, or not at all."""

@@ -118,6 +118,7 @@ def test_a_motion_of_two_periods():
     assert u["down", 0.74] == pytest.approx(0.5 * span, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_where_the_period_doubles_nothing_jumps():
     """Just beyond 0.7282 a simulation repeats after two periods, and hardly differs from the motion below."""
     curve, _ = visited(yang(0.0), [0.71, 0.74, 0.78])

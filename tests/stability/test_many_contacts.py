@@ -147,6 +147,7 @@ def test_what_confirms_lacks_little_with_twice_the_harmonics_if_need_be():
     assert told == [True, True, False]
 
 
+@pytest.mark.slow
 def test_a_motion_that_is_far_is_found_from_beside_the_next_points():
     """As at each point by itself, down to 11.64 rad/s, where the upper branch of more harmonics ends."""
     system = System(elastic_strip((11.3, 20.0)), (1,))
@@ -210,6 +211,7 @@ def test_close_to_the_last_solution_the_same_is_found_sooner():
     assert sum(each for each, _ in evaluations[1:]) < sum(alone for _, alone in evaluations[1:])
 
 
+@pytest.mark.slow
 def test_where_the_pair_has_no_neighbour_none_is_sought(monkeypatch):
     """There a doubt is left, as it is where one is sought and not found; elsewhere the same is told."""
     looked = []
@@ -234,6 +236,7 @@ def test_where_the_pair_has_no_neighbour_none_is_sought(monkeypatch):
     assert lost.any() and (every.stable[~lost] == sought.stable[~lost])[~np.isnan(sought.stable[~lost])].all()
 
 
+@pytest.mark.slow
 def test_three_harmonics_tell_the_stability_beside_the_fold_at_which_the_upper_branch_ends():
     """One of both motions, balanced and finer, has a real multiplier above 1; the exact motion is stable."""
     system = System(elastic_strip((11.3, 20.0)), (1, 2, 3))

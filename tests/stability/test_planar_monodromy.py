@@ -164,6 +164,7 @@ def integrated(some, modes=(SHAPES, NATURAL, DAMPING)):
     return np.linalg.eigvals(Y)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sequence", MOTIONS)
 def test_disturbances_against_another_method(sequence):
     (some,) = (MOTIONS[sequence],)

@@ -79,6 +79,7 @@ def test_forces_that_do_what_its_negative_damping_does_balance_it(mode):
         assert np.abs(balance.residual).max() < 1e-5 * np.abs(z[:-1]).max()
 
 
+@pytest.mark.slow
 def test_the_error_of_many_unknowns_is_told_at_a_few_points_as_more_harmonics_change_it(scene):
     mode, finer = (
         nonlinear_mode(System(scene, harmonics), 7, (3e-6, 2e-5), 0.1) for harmonics in ((1,), (1, 2, 3))

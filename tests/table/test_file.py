@@ -91,6 +91,7 @@ def test_xarray_opens_it_with_the_coefficients_at_every_node(tiny_file):
             assert np.abs(data[name].values - values).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_cf_checker_has_nothing_to_say(tiny_file):
     checker = Path(sys.executable).with_name("compliance-checker")
     assert checker.exists(), "compliance-checker is one of the development packages"

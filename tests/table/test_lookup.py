@@ -215,6 +215,7 @@ class ClosedForm:
         return fourier_coefficients(n0_bar, b_bar, phi)
 
 
+@pytest.mark.slow
 def test_the_seam_is_as_far_apart_as_both_sides_err(default, fast):
     """At random places where separation begins, most near the cones; the closed form has no jump there."""
     random = np.random.default_rng(3)

@@ -30,6 +30,7 @@ def test_against_solve_ivp_with_events(name, omega):
     assert np.abs(motion.displacement(times) - expected).max() < 1e-10 * np.abs(expected).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "omega"), [("n_0 = 5", 1.3), ("two contacts", 1.3), ("three harmonics", 0.9)]
 )

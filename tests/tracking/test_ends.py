@@ -121,6 +121,7 @@ def tops(scene, dof, level, low, high):
     return found
 
 
+@pytest.mark.slow
 def test_a_peak_ends_where_another_extreme_within_the_cycle_overtakes_it(scene):
     """The amplitude is half the range of the motion: ordinary runs have the peak before, and not beyond."""
     narrow = replace(scene, frequency_range=(1.55, 1.62), max_step=0.02)

@@ -58,6 +58,7 @@ def grid(scene, what, key, span):
         yield value, np.unique(np.concatenate(there).round(11))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("preload", "key", "span"),
     [
@@ -180,6 +181,7 @@ def test_a_bound_at_which_the_gap_closes_is_a_bound(scene):
     assert found.value == pytest.approx(recorded(system, paths).amplitude[:, 0].max(), rel=EXACT)
 
 
+@pytest.mark.slow
 def test_an_isolated_branch_is_between_the_turns_that_are_told():
     """It is followed from a fold of the track, and is one of the branches of an ordinary run."""
     scene = gap5()

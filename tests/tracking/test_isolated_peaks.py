@@ -40,6 +40,7 @@ def greatest(quantities):
     return max(one.amplitude[:, 0].max() for one in quantities)
 
 
+@pytest.mark.slow
 def test_a_search_sees_the_branches_that_the_response_has():
     """With three harmonics the level led to none of them, and the greatest was a ninth of what it is."""
     system = System(blade(10.0), (1, 2, 3))

@@ -61,6 +61,7 @@ def test_optima_are_kept_until_the_response_with_them_is_written(fcm, scene):
     assert never.shown and not any(text.startswith("optimum") for _, text in never.shown)
 
 
+@pytest.mark.slow
 def test_the_progress_of_a_search_moves_with_its_work(fcm, scene):
     """It stood still for minutes, from one response that was traced to the next."""
     shown = Interrupting("never")
@@ -167,6 +168,7 @@ def test_a_peak_that_does_not_depend_on_the_number_over_a_part_of_its_range():
     assert found.values["contact.shroud.n_0"] == pytest.approx((low + high) / 2)
 
 
+@pytest.mark.slow
 def test_a_least_peak_in_a_millionth_of_the_bounds_is_that_of_narrower_ones():
     """All of the rest is flat: the contact sticks. There the peak is 1.9 times as high."""
     one = SCENE.replace("[0.4, 0.8]", "[0.4]")
@@ -206,6 +208,7 @@ def test_trials_as_high_say_that_the_number_does_not_matter():
     assert (found.kind, number) == ("flat", 0) and 0.0 < low <= 0.25 and 0.75 <= high < 1.0
 
 
+@pytest.mark.slow
 def test_a_curve_that_runs_along_the_frequency_at_the_end_of_its_range_has_ended_there():
     """It was said to have stopped where no further point could be found."""
     scene = scene_from_dict(tomllib.loads(oscillator("[response]\nfrequency = [0.7, 1.7]\n")))

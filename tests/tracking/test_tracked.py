@@ -468,6 +468,7 @@ def test_no_plateau_of_a_stuck_contact_is_taken_for_the_least_of_two_numbers():
     assert all(peak(n_0, k_u) > found.value for n_0 in (*beside, 2.0, 4.0, 12.0) for k_u in (1.5, 3.0))
 
 
+@pytest.mark.slow
 def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be_all(scene):
     """As an ordinary run says, where the level of the forces is not followed to its end."""
     assert track(scene, TrackRequest("folds", PRELOAD, (4.0, 6.0)), harmonics=1).tracking.uncertain_at == []
