@@ -219,3 +219,12 @@ def test_only_peaks_says_so(fcm, scene):
     for wrong in ([], ["--method", "exact", "--at", "1"]):
         refused = fcm("respond", scene, "--only", "peaks", *wrong)
         assert refused.code == 2 and "--only needs --method exact" in refused.err
+
+
+def test_a_step_over_a_jump_has_no_amplitude_where_the_motion_beyond_does_not_reach_it(fcm):
+    """Above 36.39 Hz the motion is irregular up to 36.41 Hz: what is steady beyond ends there."""
+    scene = Path(__file__).parents[1] / "branches/scenes/stops_and_second_harmonic.toml"
+    done = fcm("respond", scene, "--method", "exact", "--at", "36:40:2", "--json")
+    (up,) = (one for one in json.loads(done.out)["curves"][0]["jumps"] if one["sweep"] == "up")
+    assert up["frequency"] == pytest.approx(36.3906, abs=1e-3)
+    assert up["after"]["1x"] is None and up["after_stable"] is None and up["periods"] == [1, 0]

@@ -171,12 +171,17 @@ class SteppedSweep:
     def _note_jump(
         self, sweep: str, at: float, before: OrbitRecord | None, after: OrbitRecord | None
     ) -> None:
+        """Note a jump at a frequency, with no amplitude after it where that motion begins only beyond."""
         if before is not None and after is not None:
             there = self._brought_back(after, at)
             doubles = before.repeats > 1 == there.repeats and there.frequency != at
             if not doubles and self._change(before, there) > STEPPED.min_jump:
-                amplitudes = before.measure.amplitude, there.measure.amplitude
-                self.jumps.append(Jump(sweep, at, *amplitudes, (before.repeats, there.repeats)))
+                amplitude, repeats = there.measure.amplitude, there.repeats
+                if abs(there.frequency - at) > STEPPED.min_step_of_periods * at:
+                    amplitude, repeats = np.full_like(amplitude, np.nan), 0
+                self.jumps.append(
+                    Jump(sweep, at, before.measure.amplitude, amplitude, (before.repeats, repeats))
+                )
 
     def _brought_back(self, after: OrbitRecord, at: float) -> OrbitRecord:
         """The motion beyond the end of a branch at the frequency of the end itself, or as near as it goes.
