@@ -153,7 +153,7 @@ def _with_branch_points(points: _Points) -> _Points:
         for end, part in zip(ends.tolist(), share.tolist(), strict=True):
             if 0.0 < part < 1.0:
                 there = (1.0 - part) * amplitude[k] + part * amplitude[k + 1]
-                tolerance = JUMPS.amplitude_tolerance * float(there.max())
+                tolerance = JUMPS.branch_point_tolerance * float(there.max())
                 if (np.abs(amplitude[end] - there) <= tolerance).all():
                     places.append((k + 1, end))
     if not places:

@@ -14,6 +14,9 @@ class JumpOptions(Frozen):
     ----------
     amplitude_tolerance : float
         Relative difference of amplitudes at one frequency up to which they are the same point.
+    branch_point_tolerance : float
+        Difference of amplitudes, relative to the greatest, up to which the end of a stable branch lies on
+        another branch.
     frequency_tolerance : float
         Relative difference of frequencies up to which they are the same.
     flip_tolerance : float
@@ -22,6 +25,7 @@ class JumpOptions(Frozen):
     """
 
     amplitude_tolerance: float = 1e-6
+    branch_point_tolerance: float = 1e-4
     frequency_tolerance: float = 1e-13
     flip_tolerance: float = 0.01
 
