@@ -1,4 +1,4 @@
-"""Cosines and sines of harmonics at the angles among which the extremes of a displacement are sought."""
+"""Cosines and sines of harmonics at the angles where the search for extremes of a displacement starts."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from fcm.model.scene import FloatArray
 
 @lru_cache(64)  # many balances have the same harmonics
 def waves(harmonics: tuple[float, ...], samples_of_period: int) -> tuple[FloatArray, FloatArray]:
-    """cos(h theta) and sin(h theta) (harmonic, sample) of each harmonic, so many samples for each period of
-    the highest; one harmonic alone needs none."""
+    """Return cos(h theta) and sin(h theta), each (harmonic, sample).
+
+    There are samples_of_period samples for each period of the highest harmonic; none for a single harmonic.
+    """
     samples = int(samples_of_period * harmonics[-1]) if len(harmonics) > 1 else 0
     angle = np.outer(harmonics, 2.0 * np.pi * np.arange(samples) / max(samples, 1))
     return np.cos(angle), np.sin(angle)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 
 def runs(which: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """The first of each run of points, and the one behind its last.
+    """Return the first point of each run, and the point after its last.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Loops, states over a cycle and loads of the contacts, at points of traced paths."""
+"""Hysteresis loops, states over a cycle and loads of the contacts at points of traced paths."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from fcm.harmonic_balance.residual import cycles_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
 
-NO_STATE = 3  # beside the states of a cycle: no state
-OPEN = 2  # of these, by its place in the letters
-LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negative slip is -1
+NO_STATE = 3  # pads the states of a cycle
+OPEN = 2  # the state of separation
+LETTERS = np.array(["E", "P", "S", "", "N"])  # by state; negative slip is -1, the last
 
 IntArray = npt.NDArray[np.intp]
 ComplexArray = npt.NDArray[np.complex128]
@@ -42,7 +42,7 @@ class ContactRecord(Frozen):
 
     @classmethod
     def joined(cls, parts: Sequence[ContactRecord]) -> ContactRecord:
-        """The record of the points of several records, one after the other."""
+        """Concatenate the records of several sets of points."""
         return cls(
             *(joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
         )
@@ -52,7 +52,7 @@ class ContactRecord(Frozen):
         return ContactRecord(self.loop[rows], self.words[rows], self.contact_loads[rows])
 
     def with_rows(self, after: IntArray, other: ContactRecord) -> ContactRecord:
-        """The record with the points of another inserted after some points."""
+        """The record with each point of other inserted after a point of this one."""
         at, words = after + 1, self.words.astype(np.result_type(self.words, other.words))
         return ContactRecord(
             np.insert(self.loop, at, other.loop, axis=0),
@@ -62,13 +62,17 @@ class ContactRecord(Frozen):
 
 
 def loops(system: System, z: FloatArray) -> FloatArray:
-    """Loops of the fundamental (point, contact, 5): n0_bar, b_bar, phi, its a, and the force k_u a."""
+    """Loops of the fundamental (point, contact, 5): n0_bar, b_bar, phi, amplitude a, and force k_u a.
+
+    All five are NaN for a contact law of one's own. In a plane the first three are NaN, and a is the greater
+    half-axis of the ellipse.
+    """
     layout, j = system.layout, system.harmonics.index(1)
     normal = layout.directions - 1
     first = layout.directions + layout.stride * j
     out = np.zeros((z.shape[0], len(system.scene.contacts), 5))
     for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
-        if contact.law is not None:  # nothing is known of a loop
+        if contact.law is not None:  # its loop is unknown
             out[:, i] = np.nan
             continue
         V = x[:, first + 2 * normal] + 1j * x[:, first + 2 * normal + 1]
@@ -89,13 +93,11 @@ def loops(system: System, z: FloatArray) -> FloatArray:
 
 
 def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray[np.str_], FloatArray]:
-    """States of each contact over a cycle, such as "SPEN", (point, contact), and contact loads.
+    """States of each contact over a cycle (point, contact), such as "SPEN", and its loads.
 
-    The loads are (point, contact, 4).
-
-    A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE". What
-    it bears are the greatest normal and friction force, the way of the slip, and the energy that friction
-    takes. loop: theirs, as of `loops`.
+    A contact without friction is closed, "E", open, "S", or both in turn, "SE". The loads (point, contact, 4)
+    are the greatest normal force, the greatest friction force, the slip distance, and the energy that
+    friction dissipates. loop is that of `loops`.
     """
     words, harmonics = [], system.harmonics
     contact_loads = np.zeros((len(system.scene.contacts), z.shape[0], 4))
@@ -113,7 +115,7 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
 
 
 def contact_loads_along(system: System, z: FloatArray) -> FloatArray:
-    """The contact loads (point, contact, 4), as of `cycles`."""
+    """The contact loads (point, contact, 4) of `cycles`, without the states."""
     contact_loads = np.zeros((len(system.scene.contacts), z.shape[0], 4))
     for _ in _solved_contacts(system, z, contact_loads):
         pass
@@ -123,11 +125,10 @@ def contact_loads_along(system: System, z: FloatArray) -> FloatArray:
 def _solved_contacts(
     system: System, z: FloatArray, contact_loads: FloatArray
 ) -> Iterator[tuple[Contact, npt.NDArray[np.intc]]]:
-    """Each contact with the states of its cycle (point, piece); contact_loads (contact, point, 4) is filled.
+    """Yield each contact with the states of its cycle (point, piece); fill contact_loads.
 
-    The array of states is used again for the next contact.
-
-    Without friction nothing is known of a slider, and its way is 0.
+    contact_loads is (contact, point, 4). The array of states is overwritten for the next contact. A contact
+    without friction has no slider: its slip distance is 0.
     """
     laws, z = system.exact_laws(system.harmonics), np.ascontiguousarray(z)
     most = max((law.state.shape[0] for law in laws), default=0)
@@ -141,7 +142,7 @@ def _solved_contacts(
 
 
 def _greatest(U: ComplexArray, V: ComplexArray) -> FloatArray:
-    """The greater half-axis of the ellipse of two displacements at right angles.
+    """The greater half-axis of the ellipse that two perpendicular displacements describe.
 
     >>> _greatest(np.array([3.0, 1.0 + 0j]), np.array([4.0j, 1.0]))
     array([4.        , 1.41421356])
@@ -158,7 +159,7 @@ def _letters_of(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
 
 
 def _without_friction(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
-    """Words (point,) of states (point, piece) of a contact that has no loop."""
+    """Words (point,) of states (point, piece) of a contact without friction."""
     opens = (state == OPEN).any(axis=1)
     closes = ((state != OPEN) & (state != NO_STATE)).any(axis=1)
     return np.where(opens & closes, "SE", np.where(closes, "E", "S"))

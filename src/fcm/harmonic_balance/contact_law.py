@@ -1,14 +1,13 @@
 """Contact laws of the balance: forces, their tangent, and margins, from a contact's block of the unknowns.
 
 The unknowns of a contact are the mean and amplitudes of its displacement along each of its directions, laid
-out as in `fcm.structure.layout`. The last direction is its normal. Its forces on the structure are laid out
-alike: the friction along its tangential directions, and n - max(n_0, 0) along its normal. The preload is left
-out, as it is in equilibrium with the structure at rest.
+out as in `fcm.structure.layout`. The last direction is its normal. The forces on the structure have the same
+layout: friction along the tangential directions, and n - max(n_0, 0) along the normal. The preload is left
+out because the structure at rest balances it.
 
-How many directions there are, which harmonics its forces have, and where they are not smooth is for the law
-to say; nothing else knows. The law of a kernel (`KernelLaw`), on a line or in a plane, is exact for a mean
-and any harmonics. That of a contact on a line with a mean and one harmonic (`SingleHarmonicLaw`)
-is a closed form (section 4 of the paper).
+Only the law knows the number of directions, the harmonics of the forces, and where the forces are not smooth.
+`KernelLaw`, on a line or in a plane, is exact for a mean and any harmonics. `SingleHarmonicLaw`, on a line
+with a mean and one harmonic, is a closed form (section 4 of the paper).
 """
 
 from __future__ import annotations
@@ -63,24 +62,24 @@ NAN = cython.declare(cython.double, float("nan"))
 
 @cython.cclass
 class Law(ContactParameters):
-    """A contact with so many directions, whose forces may have more harmonics than its motion.
+    """Base class of contact laws; the forces may have more harmonics than the motion.
 
     Attributes
     ----------
     force (equation,), tangent (equation, width)
         By `evaluate`.
     nonlinear
-        By `evaluate`: whether it slips or separates within the cycle, so that its forces have harmonics that
-        its motion has not.
+        By `evaluate`: whether the contact slips or separates within the cycle, so that its forces have
+        harmonics that its motion lacks.
     margin, kind, angle (margins,)
         By `evaluate_margins`, as those of a `Problem`, with kinds from 0 to KINDS - 1.
     resistance (direction, direction)
-        By `compute_resistance`: derivatives of the forces by the displacements, in the mean over the cycle.
+        By `compute_resistance`: derivatives of the forces by the displacements, averaged over the cycle.
     pieces, state (piece,)
-        By `cycle`: the states that follow one another, 0 stick, 1 slip, -1 slip the other way, 2 separation.
+        By `cycle`: the sequence of states, 0 stick, 1 slip, -1 slip the other way, 2 separation.
     contact_loads (4,)
-        By `cycle`: greatest normal force, greatest friction force, way of the slip, and the energy that
-        friction takes.
+        By `cycle`: greatest normal force, greatest friction force, slip distance, and the energy that
+        friction dissipates.
     """
 
     def __init__(
@@ -106,13 +105,13 @@ class Law(ContactParameters):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Compute forces and tangent at the unknowns of the contact, which begin at x[first]."""
+        """Compute forces and tangent; the unknowns of the contact begin at x[first]."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_forces(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Compute the forces alone, where that costs less."""
+        """Compute the forces alone where that is cheaper, else forces and tangent."""
         return self.evaluate(x, first)
 
     @cython.ccall
@@ -126,28 +125,28 @@ class Law(ContactParameters):
     def squared_margin(
         self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t
     ) -> cython.double:
-        """The smooth function of the unknowns whose root the margin of a kind is; NaN if that is none."""
+        """The smooth function whose square root is the margin of a kind; NaN if the margin is no root."""
         return NAN
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def compute_resistance(self) -> cython.int:
-        """Fill `resistance` for the motion that was evaluated last."""
+        """Fill `resistance` at the motion evaluated last."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Compute the states of the cycle of a motion, and the contact loads."""
+        """Compute the states over the cycle of a motion, and the contact loads."""
         return 0
 
 
 @cython.cclass
 class KernelLaw(Law):
-    """A law with the forces of a kernel, exact for a motion of any harmonics.
+    """Contact law with the forces of a kernel, exact for a motion of any harmonics.
 
-    The kernel is a workspace that contacts may share, with the margins and the measures of its cycle; the
-    tangent is its array.
+    Contacts may share the kernel, its margins and its measures: they are workspaces. The tangent is the
+    array of the kernel.
     """
 
     def __init__(
@@ -171,11 +170,10 @@ class KernelLaw(Law):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
-        """Compute the forces, less the preload that the structure at rest balances, and their tangent if that
-        is wanted.
+        """Compute the forces without the preload that the structure at rest balances; optionally the tangent.
 
-        Where the contact never opens, the difference of mean load and preload would have their rounding.
-        That may be more than all that a small motion makes of the mean force.
+        Where the contact never opens, the mean normal force follows from the displacement. The difference of
+        mean load and preload would have their rounding error, which may exceed the force of a small motion.
         """
         i: cython.Py_ssize_t
         normal: cython.int = self.directions - 1
@@ -183,7 +181,7 @@ class KernelLaw(Law):
         for i in range(self.force.shape[0]):
             self.force[i] = self.kernel.forces[i]
         closed: cython.bint = self.kernel.behaviour == CLOSED
-        # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
+        # a contact without friction that stays closed has no further harmonics
         smooth: cython.bint = closed and not self.mu * self.k_u > 0.0
         self.nonlinear = self.kernel.kind == MIXED and not smooth
         if self.kernel.kind == STUCK or closed:
@@ -232,13 +230,13 @@ class KernelLaw(Law):
 
 
 def laws_on_a_line(kernel: PeriodicContact, contacts: Iterable[Contact]) -> list[KernelLaw]:
-    """Laws of contacts on a line, which share a kernel."""
+    """Laws of contacts on a line; all share one kernel."""
     bounds, measures = Margins(kernel.cycle), Measures(kernel.cycle)
     return [KernelLaw(kernel, bounds, measures, c) for c in contacts]
 
 
 def laws_in_a_plane(kernel: PlanarContact, contacts: Iterable[Contact]) -> list[KernelLaw]:
-    """Laws of contacts that slide in a plane, which share a kernel."""
+    """Laws of contacts that slide in a plane; all share one kernel."""
     from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures  # most scenes have none
 
     bounds, measures = PlanarMargins(kernel.cycle), PlanarMeasures(kernel.cycle)
@@ -246,15 +244,15 @@ def laws_in_a_plane(kernel: PlanarContact, contacts: Iterable[Contact]) -> list[
 
 
 def margin_kind(law: Law, i: int, contact: int) -> int:
-    """The kind of the margin i of a contact among those of all contacts; for problems in Python."""
+    """The kind of margin i of a contact, numbered over all contacts; for problems in Python."""
     return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)
 
 
 @cython.cclass
 class SingleHarmonicLaw(Law):
-    """Forces (27) and (29) with their derivatives by u_0, v_0, U, V.
+    """Forces (27) and (29) and their derivatives by u_0, v_0, U, V.
 
-    Its coefficients are a law's: the closed form, or a table.
+    The coefficients come from the closed form or from a table.
     """
 
     def __init__(self, coefficients: CoefficientLaw, contact: Contact) -> None:
@@ -284,10 +282,10 @@ class SingleHarmonicLaw(Law):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Fill the margins of a contact.
+        """Fill the margins of a contact; all are forces.
 
-        They are the forces by which it is closed at some time, and at all times; by which it is beyond the
-        slip limit (25); and, where it never slips, by which its mean friction is within its limits.
+        They are the greatest and the least normal load over the cycle; the distance below the slip limit
+        (25); and, where the contact never slips, the two distances of the mean friction from its limits.
         """
         self.limits(x, first, hypot(x[first + 4], x[first + 5]))
         return 0
@@ -310,7 +308,7 @@ class SingleHarmonicLaw(Law):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def rests(self) -> cython.bint:
-        """Whether the contact never slips nor opens, by the margins as they were last asked for."""
+        """Whether the contact never slips nor opens, by the margins filled last."""
         return self.margin[SLIPS] > 0.0 and self.margin[OPENS] > 0.0
 
     @cython.cfunc
@@ -325,7 +323,7 @@ class SingleHarmonicLaw(Law):
     def stuck(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.void:
         """Fill force and tangent of a contact that sticks: a spring.
 
-        It resists the mean displacement, too, as far as the `limits` of its friction allow.
+        The spring also resists the mean displacement, within the `limits` of the mean friction.
         """
         k: cython.double = self.k_u
         sign: cython.double = 0.0
@@ -352,14 +350,14 @@ class SingleHarmonicLaw(Law):
     @cython.cfunc
     @cython.exceptval(check=False)
     def normal(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
-        """Fill the normal force, (28) to (31): k_v b (N_b + N_s cos), less the preload that rest balances."""
+        """Fill the normal force, (28) to (31): k_v b (N_b + N_s cos), less the preload balanced at rest."""
         k: cython.double = self.k_v
         load: cython.double = self.n_0 + k * x[first + 1]
         preload: cython.double = max(self.n_0, 0.0)
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         if load >= k * b:
-            # closed throughout, without the preload: it may be far larger than what is left
+            # closed throughout: the preload, which may be far larger than the force, does not enter
             self.force[1] = k * x[first + 1] + min(self.n_0, 0.0)
             self.tangent[1, 1] = k
             for i in range(4, 6):
@@ -393,7 +391,7 @@ class SingleHarmonicLaw(Law):
     def slipping(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
         """Fill force and tangent of a contact that slips: (27) with the phase of u restored.
 
-        k_u U (F_s + i F_c), and the mean k_u a F_b.
+        The force is k_u U (F_s + i F_c), its mean k_u a F_b.
         """
         k: cython.double = self.k_u
         U_r: cython.double = x[first + 2]
@@ -438,9 +436,9 @@ class SingleHarmonicLaw(Law):
         a: cython.double,
         b: cython.double,
     ) -> cython.void:
-        """Fill slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, by the chain rule.
+        """Fill slopes: a times the derivatives of F_b, F_s, F_c by the unknowns.
 
-        They follow from those by n0_bar, b_bar, phi.
+        The chain rule gives them from the derivatives by n0_bar, b_bar, phi.
         """
         k: cython.double = self.mu / self.k_u * self.k_v
         relative: cython.double = a / b

@@ -1,4 +1,4 @@
-"""Motions across contacts at points of a balance, from which their loops follow, and friction in a plane."""
+"""Relative motions of the contacts at points of a balance, and their friction amplitudes in a plane."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from fcm.model.scene import FloatArray
 
 
 class ContactMotions(Frozen):
-    """The motions of the contacts at every point; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
+    """Relative motions of the contacts; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
 
-    motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic) across the contacts
-    friction: FloatArray | None  # (point, contact, 2) amplitude of the fundamental of that in a plane
+    motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic)
+    friction: FloatArray | None  # (point, contact, 2) amplitude of its fundamental, in a plane
     law: FloatArray  # (contact, 4) mu, k_u, k_v, n_0
     start: FloatArray  # (contact, direction) displacements at which they start unstressed
 
     def at(self, rows: npt.NDArray[np.intp]) -> ContactMotions:
-        """The motions of some points, with a gap where an index is -1."""
+        """The motions of some points; NaN where an index is -1."""
         motion, friction = self.motion[rows], None if self.friction is None else self.friction[rows]
         motion[rows < 0] = np.nan
         if friction is not None:
@@ -28,9 +28,9 @@ class ContactMotions(Frozen):
 
 
 def contact_motions(system: System, z: FloatArray) -> ContactMotions | None:
-    """Motions across contacts at points z (point, unknown + 1), and their friction in a plane.
+    """Relative motions of the contacts at points z (point, unknown + 1), and their friction in a plane.
 
-    None where each moves on a line in one harmonic and has friction: its loop says all.
+    None without contacts, and where all have friction and move on a line in one harmonic: the loops say all.
     """
     scene, layout, z = system.scene, system.layout, np.ascontiguousarray(z)
     by_loops = not scene.planar and len(system.harmonics) == 1 and all(one.mu > 0.0 for one in scene.contacts)
@@ -45,7 +45,7 @@ def contact_motions(system: System, z: FloatArray) -> ContactMotions | None:
 
 
 def _friction(system: System, z: FloatArray) -> FloatArray:
-    """Amplitudes (point, contact, 2) of the fundamental of friction forces in a plane."""
+    """Amplitudes (point, contact, 2) of the fundamental of the friction forces in a plane."""
     layout = system.layout
     friction, j = np.zeros((len(z), layout.contacts, 2)), 1 + system.harmonics.index(1)
     for i, law in enumerate(system.exact_laws(system.harmonics)):

@@ -1,7 +1,7 @@
-"""Cost model: what a balance of more harmonics would take, so that too much is said and not begun.
+"""Cost model: estimated time of a balance with more harmonics, so that too long a run is not begun.
 
-It is in seconds of a core on which numpy's sine takes 10 ns a number. It follows from the size of the
-balance, not from a clock, so that the same scene has the same answer on every machine.
+The unit is a second of a core on which numpy's sine takes 10 ns a number. The estimate depends on the size of
+the balance and on no clock, so that a scene has the same estimate on every machine.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from fcm.structure.layout import Layout, layout_of
 
 
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
-    """Estimated seconds of evaluations of the balance with a number of harmonics, each solved for a step.
+    """Estimated seconds of evaluations with a number of harmonics, each followed by a Newton step.
 
-    A condensed matrix (see `modal_condensation`) is formed first, by 2 multiplications a mode and entry.
+    Forming a condensed matrix (see `modal_condensation`) takes 2 multiplications per mode and entry.
     """
     layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
     rank = condensed_size(system, layout.ports, harmonics)
@@ -32,7 +32,7 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
 
 
 def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
-    """Seconds of one evaluation, solved by a condensed system of a rank, or as it is where that is 0."""
+    """Seconds of one evaluation and solution, by a condensed system of a rank; rank 0 is not condensed."""
     contacts, width, unknowns, harmonics = layout.contacts, layout.width, layout.unknowns, layout.harmonics
     solved = rank or unknowns
     cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
@@ -43,11 +43,10 @@ def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
 class CurveCost(Frozen):
     """Cost of the curves of a scene, measured with 50 to 200 contacts and one harmonic.
 
-    evaluations: least number of evaluations of a curve; the cost of one is `each`. evaluations_per_point:
-    evaluations of each point that the longest step leads to, which replace these if they are more. overhead:
-    seconds for each evaluation, contact and coefficient of its motion, for levels, stability and errors.
-    high_frequency: frequency relative to the highest of the harmonics, above which few modes can stand for
-    all.
+    evaluations: least number of evaluations of a curve. evaluations_per_point: evaluations per point if all
+    steps have the greatest length; the greater of the two estimates counts. each: cost of an evaluation.
+    overhead: seconds for each evaluation, contact and coefficient of its motion, for levels, stability and
+    errors. high_frequency: frequency relative to the highest harmonic, above which modes are not counted.
     """
 
     evaluations: float = 1500.0
@@ -63,8 +62,8 @@ CURVE_COST = CurveCost()
 def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost = CURVE_COST) -> float:
     """Estimated seconds for a curve of a scene, from its sizes alone.
 
-    Many contacts are taken as condensed to all modes where these are fewer than half their directions; modes
-    far above the harmonics are not counted.
+    Many contacts count as condensed to the modes if these are few compared with the contacts' directions.
+    Modes far above the harmonics are not counted.
 
     >>> from fcm import load_scene
     >>> f"{seconds_of_curve(load_scene('yang1998'), 1):.1f}"
@@ -80,18 +79,19 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost = CURVE_COST)
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
-    """Estimated seconds for following curves of a system with a number of harmonics.
+    """Estimated seconds for following the curves of a system with another number of harmonics.
 
-    evaluations are those that its own took: they grow as the harmonics do, with the corners and folds.
+    evaluations is the number with the system's own harmonics. It grows in proportion to the harmonics, since
+    corners and folds do.
     """
     return seconds_of(system, evaluations, harmonics) * harmonics / max(len(system.harmonics), 1)
 
 
 def with_twice_as_many(system: System, evaluations: int) -> System | None:
-    """A system with the harmonics up to twice the highest and one more, for what is followed again with more
-    and more of them; None where none are left, or that takes too long.
+    """The system with all harmonics up to 2 H + 1, where H is the highest; for curves followed repeatedly.
 
-    evaluations: what following it with its own harmonics took.
+    None if there are no further harmonics, or if it would take too long. evaluations: number with the
+    system's own harmonics.
     """
     highest = system.harmonics[-1]
     more = min(2 * highest + 1, LIMITS.harmonics)
@@ -104,7 +104,7 @@ def with_twice_as_many(system: System, evaluations: int) -> System | None:
 def charged_to_work(
     system: System, stepper: Stepper, progress: Progress | None, follow: Callable[[Progress], Path]
 ) -> Path:
-    """The path that follow returns; the work it takes is added to that of the system as it goes on.
+    """Return the path of follow, and add its work to that of the system while it runs.
 
     follow is called with the progress to report to.
     """

@@ -1,4 +1,4 @@
-"""The whole Jacobian of a balance, and what its structure answers to forces of its contacts, as arrays."""
+"""Dense arrays of a balance: its full Jacobian, and the response of the structure to contact forces."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 def jacobian_of(balance: Balance) -> FloatArray:
-    """The Jacobian (unknown, unknown + 1) of a balance as it was evaluated last, also of one that is
-    condensed."""
+    """The Jacobian (unknown, unknown + 1) at the last evaluation of a balance, condensed or not."""
     if not balance.rank:
         return np.array(balance.jacobian)
     tangent, n, w = np.asarray(balance.tangent), balance.unknowns, balance.width
@@ -29,7 +28,7 @@ def jacobian_of(balance: Balance) -> FloatArray:
 
 
 def apply_compliance(balance: Balance, force: FloatArray) -> FloatArray:
-    """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
+    """G F: minus the displacements (unknown, ...) that the contact forces (unknown, ...) cause."""
     receptance, (mean, first) = balance.receptance, unknown_positions(balance)
     if balance.condensed is not None:
         columns = np.ascontiguousarray(force.reshape(len(force), -1).T)
@@ -52,10 +51,10 @@ def unknown_positions(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArr
 
 
 class Amplitude:
-    """Half the peak-to-peak displacement of a degree of freedom, with its slopes.
+    """Half the peak-to-peak displacement of a degree of freedom, with its derivatives.
 
-    With the displacement's amplitudes X_h it changes by Re sum_h W_h dX_h, where W_h = exp(i h theta) at the
-    greatest displacement, minus that at the least, halved.
+    It changes by Re sum_h W_h dX_h with the amplitudes X_h of the displacement. W_h is half the difference of
+    exp(i h theta) at the greatest and at the least displacement.
     """
 
     def __init__(
@@ -68,10 +67,10 @@ class Amplitude:
         self.of_forces = np.zeros(balance.unknowns)  # its slopes by the contacts' forces
 
     def at(self, z: FloatArray, near: FloatArray | None = None) -> None:
-        """Point z (unknown + 1,) at which the balance was evaluated last.
+        """Compute value and slopes at z (unknown + 1,), where the balance was evaluated last.
 
-        With near, angles (2,), of the extremes next to these, be they the greatest of the cycle or not; the
-        value is NaN where they are no more.
+        near (2,) gives angles [rad]: then the extremes next to them count, even if others are greater. The
+        value is NaN if there are no such extremes.
         """
         balance, d, n = self.balance, self.dof, self.balance.unknowns
         direction = np.zeros(n + 1)
@@ -96,7 +95,7 @@ class Amplitude:
             self.value, self.slopes[n] = float((W @ X).real), (W @ by_omega).real
         if not balance.contacts:
             return
-        if not displacements.without_modes[d]:  # of the contacts' own displacements
+        if not displacements.without_modes[d]:  # a combination of the contacts' displacements
             of_ports = W[:, None] * np.asarray(displacements.attached)[:, d]
             self.slopes[rows], self.slopes[rows + 1] = of_ports.real, -of_ports.imag
             return
@@ -110,7 +109,7 @@ class Amplitude:
 
 
 def _weights(X: ComplexArray, harmonics: FloatArray, angles: FloatArray) -> ComplexArray:
-    """W (harmonic,) of a displacement X (harmonic,) with its greatest and least value at angles (2,)."""
+    """W (harmonic,) of a displacement X (harmonic,) whose greatest and least values are at angles (2,)."""
     if harmonics.size == 1:
         size = np.abs(X)
         return np.asarray(np.conj(X) / np.where(size > 0.0, size, 1.0), dtype=np.complex128)
@@ -121,7 +120,7 @@ def _weights(X: ComplexArray, harmonics: FloatArray, angles: FloatArray) -> Comp
 def _extremes(
     X: ComplexArray, harmonics: FloatArray, near: FloatArray, options: ExtremeOptions
 ) -> FloatArray:
-    """Angles (2,) of the maximum and minimum of Re sum X_h exp(i h theta) next to two angles, else NaN."""
+    """Angles (2,) of the maximum and minimum of Re sum X_h exp(i h theta) next to near (2,), else NaN."""
     theta: FloatArray = near
     h = np.asarray(harmonics, dtype=np.float64)
     for _ in range(options.max_iterations):

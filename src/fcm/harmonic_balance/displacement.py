@@ -1,7 +1,7 @@
-"""Displacements of the degrees of freedom that are reported, and how fast they change along a curve.
+"""Displacements of the reported degrees of freedom, and their rates of change along a curve.
 
-The greatest and the least of each over a cycle are those of a motion of several harmonics (`Extremes`); in a
-ring in which a wave travels they are those of one sector (`TravellingDisplacements`).
+`Extremes` finds the greatest and the least value of a motion of several harmonics over a cycle. In a ring
+with a travelling wave they are those of one sector (`TravellingDisplacements`).
 """
 
 from __future__ import annotations
@@ -21,11 +21,10 @@ from fcm.structure.receptance import Receptance, TravellingReceptance
 class Extremes:
     """Amplitudes of displacements x = mean + Re sum X exp(i h theta), and their rates along a curve.
 
-    re, im (harmonic, dof): amplitudes X, d_re, d_im their rates: parts (4 * harmonic, dof) one after the
-    other.
+    Input: re, im (harmonic, dof) of X, and d_re, d_im of its rate. parts (4 * harmonic, dof) holds all four.
 
-    amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate; angles
-    (2, dof): of the greatest and the least displacement, if there are several.
+    Output: amplitude (dof,) is half the peak-to-peak displacement, |X| with one harmonic; growth (dof,) is
+    its rate; angles (2, dof) are those of the greatest and the least displacement, with several harmonics.
     """
 
     def __init__(
@@ -65,7 +64,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def single(self, d: cython.Py_ssize_t) -> cython.void:
-        """Fill amplitude and growth of a degree of freedom with one harmonic: the size of that."""
+        """Fill amplitude and growth of a degree of freedom with one harmonic: |X| and its rate."""
         size: cython.double = hypot(self.re[0, d], self.im[0, d])
         self.amplitude[d] = size
         self.growth[d] = 0.0
@@ -75,7 +74,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def several(self, d: cython.Py_ssize_t) -> cython.void:
-        """Fill amplitude and growth with several harmonics: half the distance of the extremes."""
+        """Fill amplitude and growth of a degree of freedom with several harmonics."""
         k: cython.Py_ssize_t
         j: cython.int
         for k in range(self.samples):
@@ -104,7 +103,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def both(self, d: cython.Py_ssize_t) -> cython.void:
-        """Add half of the greatest and of the least of a sampled displacement to its amplitude."""
+        """Fill amplitude and growth from the samples: half the difference of the two extremes."""
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
         between: cython.double = 0.0
@@ -118,10 +117,10 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def greatest(self, d: cython.Py_ssize_t, side: cython.int, between: cython.double) -> cython.void:
-        """Add half of a displacement's maximum (side 0), or of that of minus it (1), to its amplitude.
+        """Add half the maximum of a displacement (side 0), or of its negative (side 1), to its amplitude.
 
-        Between samples an extreme is greater than these by `between` at most, the curvature times the square
-        of half their distance over 2. So the greatest may be one next to lower samples than another.
+        An extreme exceeds the samples next to it by at most `between`: half the curvature times the square of
+        half the sampling interval. So the global extreme need not be next to the greatest sample.
         """
         k: cython.Py_ssize_t
         last: cython.Py_ssize_t = self.samples - 1
@@ -147,7 +146,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def extreme(self, d: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """Find the extreme next to a sample: its `value`, the `rate` of that, and its `angle`."""
+        """Find the extreme next to a sample by Newton's method: fill `value`, `rate` and `angle`."""
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
         theta: cython.double = k * step
@@ -176,7 +175,7 @@ class Extremes:
     @cython.cfunc
     @cython.exceptval(check=False)
     def waves_at(self, theta: cython.double) -> cython.void:
-        """Fill c, s (harmonic,), cosine and sine of each harmonic at an angle."""
+        """Fill c, s (harmonic,) with the cosine and sine of each harmonic at an angle."""
         c_1: cython.double = cos(theta)
         s_1: cython.double = sin(theta)
         c: cython.double = 1.0
@@ -192,12 +191,14 @@ class Extremes:
 
 @cython.cclass
 class Displacements(Extremes):
-    """Displacements of the reported degrees of freedom, whose amplitudes are `Extremes`.
+    """Displacements of the reported degrees of freedom, with their `Extremes`.
 
-    `at` fills their parts: sums of the shapes (mode, dof) times the parts of each mode, of_modes (4 *
-    harmonic, mode); of combinations of ports sums of shares (share,) of the ports share_ports (share,), up to
-    share_end (dof,) of each. mean (dof,); rest (dof,): the answer to static loads alone; of a combination of
-    ports that of the displacements from which these are counted.
+    `at` fills the parts. Most degrees of freedom are sums of the shapes (mode, dof) times of_modes (4 *
+    harmonic, mode). Those that are combinations of ports are sums of shares (share,) times the displacements
+    of the ports share_ports (share,); share_end (dof,) is the end of each sum.
+
+    mean (dof,) is the mean displacement. rest (dof,) is the response to static loads alone; for a combination
+    of ports it is the origin from which the displacements of the ports count.
     """
 
     def __init__(
@@ -225,11 +226,10 @@ class Displacements(Extremes):
         z: cython.double[::1],
         direction: cython.double[::1],
     ) -> cython.int:
-        """Fill the displacements from the contact forces (unknown,), laid out as the unknowns, and their
-        rates.
+        """Fill the displacements and their rates from the contact forces and their rates, each (unknown,).
 
-        The receptance is at omega. What contacts' displacements make up is from these, z (unknown + 1,): of
-        a small displacement, forces that nearly balance leave few digits.
+        The receptance must be at the frequency of z. Combinations of ports are computed from the unknowns z
+        (unknown + 1,) instead: forces that nearly balance leave few digits of a small displacement.
         """
         j: cython.int
         d: cython.Py_ssize_t
@@ -309,10 +309,7 @@ class Displacements(Extremes):
     def move(
         self, receptance: Receptance, j: cython.int, i: cython.Py_ssize_t, d_omega: cython.double
     ) -> cython.void:
-        """Compute q, the amplitude of mode i under its force f in harmonic j, and its rate r.
-
-        g is the rate of f.
-        """
+        """Compute amplitude q and rate r of mode i in harmonic j, from its force f and the rate g of f."""
         c_re: cython.double = receptance.c_re[j, i]
         c_im: cython.double = receptance.c_im[j, i]
         s_re: cython.double = receptance.s_re[j, i] * d_omega
@@ -327,7 +324,7 @@ class Displacements(Extremes):
     def from_ports(
         self, d: cython.Py_ssize_t, z: cython.double[::1], direction: cython.double[::1]
     ) -> cython.void:
-        """Fill a degree of freedom that is a combination of the contacts' displacements."""
+        """Fill a degree of freedom that is a combination of ports."""
         i: cython.Py_ssize_t
         j: cython.int
         p: cython.Py_ssize_t
@@ -349,7 +346,7 @@ class Displacements(Extremes):
 
 @cython.cclass
 class TravellingDisplacements(Displacements):
-    """Displacements of a ring, each harmonic by the shapes (mode, dof) of the modes that it meets."""
+    """Displacements of a ring: each harmonic has the shapes (mode, dof) of the nodal diameter it excites."""
 
     def __init__(
         self,
@@ -376,7 +373,7 @@ class TravellingDisplacements(Displacements):
         d_force: cython.double[::1],
         d_omega: cython.double,
     ) -> cython.int:
-        """Fill the amplitudes of one harmonic, mode by mode."""
+        """Fill the amplitudes of the degrees of freedom in one harmonic, mode by mode."""
         wave: Receptance = self.waves[j]
         n: cython.Py_ssize_t = self.receptance.ports
         i: cython.Py_ssize_t
@@ -420,5 +417,5 @@ class TravellingDisplacements(Displacements):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def sum_modes(self) -> cython.int:
-        """Does nothing: `harmonic` has summed the modes."""
+        """Do nothing: `harmonic` has summed the modes."""
         return 0

@@ -1,20 +1,21 @@
-r"""The linear system of a balance of which most contacts stay stuck or open, condensed to the other forces.
+r"""Linear system of a balance with mostly stuck or open contacts, condensed to the forces of the others.
 
-A contact that stays stuck through the cycle is a pair of springs, one that stays open is nothing: both are
-linear. With T = K + D, the springs of these in K and D zero but for the forces of the other contacts,
+A contact that stays stuck through the cycle acts as springs, and one that stays open as nothing: both are
+linear. The tangent is T = K + D. K has the springs of the stuck contacts; D is zero but for the other
+contacts. Then
 
     1 + A T = (1 + A K) (1 + G D),    G = (1 + A K)^-1 A,    (1 + A K)^-1 = 1 - G K
 
-where G is the receptance of the structure on these springs: by its modes, which are found once. With E the
-rows of D that are not zero, b the derivative by the parameter and a row that closes the system,
+where G is the receptance of the structure on these springs. Its modes are computed once. E selects the rows
+of D that are not zero, and b is the derivative by the parameter. Closed by a row, the system
 
     [1 + A T  b  ] [x]   [r]        [1 + D G E      D S b     ] [y]   [D S r      ]
     [row'     rho] [l] = [s]   is   [-row' G E   rho - row' S b] [l] = [s - row' S r],   S = 1 - G K
 
-with y = D x and x = S r - G E y - S b l, of the same sign of the determinant, as that of 1 + A K is positive.
+with y = D x and x = S r - G E y - S b l. The determinant keeps its sign, as that of 1 + A K is positive.
 
-Modal damping couples the modes on springs a little. That is left out of G, so that this is not the system
-itself but close to it: what is left out is put right by iterations, see `modal_condensation`.
+Modal damping couples the modes on springs slightly. G leaves this coupling out, so that the condensed system
+is an approximation; iterations correct it, see `modal_condensation`.
 """
 
 from __future__ import annotations
@@ -29,20 +30,21 @@ from fcm.structure.receptance import Receptance
 
 
 class LinearContactOptions(Frozen):
-    """Options on which contacts of a balance are taken as linear: stuck or open all the time.
+    """Options on which contacts of a balance count as linear: stuck or open all the time.
 
     Attributes
     ----------
     tangent_tolerance : float
-        Difference of a contact's tangent from its springs, relative to them, up to which it is linear.
+        Difference of a contact's tangent from that of its springs, relative to these, up to which the contact
+        is linear.
     max_changed : int
-        Number of contacts that are stuck or open and were taken for the other, above which the modes on the
-        springs are computed again.
+        Number of contacts that have changed between stuck and open, above which the modes on the springs are
+        computed again.
     min_damping : float
-        Damping ratio that stands for that of a mode which has none, exactly at its own frequency.
+        Least damping ratio of a mode: it keeps an undamped mode finite at its natural frequency.
     max_rounding : float
-        Rounding error of the modes on the springs, relative to a displacement, from which on springs are too
-        stiff for them.
+        Rounding error of the modes on the springs, relative to a displacement, from which on these modes are
+        not used: the springs are too stiff.
     """
 
     tangent_tolerance: float = 1e-3
@@ -51,14 +53,14 @@ class LinearContactOptions(Frozen):
     max_rounding: float = 0.1
 
 
-LINEAR_CONTACTS = LinearContactOptions()  # where nothing else is said
+LINEAR_CONTACTS = LinearContactOptions()  # the default
 
 
 class LinearContacts:
-    """`choose` at the tangents first, then `factor` and `solve` the system condensed to `size - 1` forces.
+    """The system condensed to `size - 1` forces: call `choose` with the tangents, then `factor` and `solve`.
 
-    springs (port,): of all contacts stuck; counted (contact,): what of their normal springs is counted to
-    the structure in the means. Tangents are (contact, width, width), laid out as the unknowns of a contact; a
+    springs (port,): stiffnesses if all contacts stick. counted (contact,): normal stiffness that belongs to
+    the structure in the means. Tangents are (contact, width, width), laid out as the unknowns of a contact. A
     part is the mean, or the real or imaginary part of a harmonic.
     """
 
@@ -74,24 +76,24 @@ class LinearContacts:
         self.flexibility = np.ascontiguousarray(np.asarray(answer.flexibility).T)
         self.contacts, self.parts = counted.size, answer.place.shape[0]
         self.each = springs.size // counted.size
-        self.order = answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part
+        self.order = answer.place[:, : self.each].ravel()  # indices of a contact's unknowns, part by part
         self.springs = springs.reshape(self.contacts, self.each)
         self.tangent_tolerance = options.tangent_tolerance * self.springs.max(axis=1)
         self.is_stuck, self.is_open = np.zeros((2, self.contacts), dtype=np.uint8)
         counts = np.zeros_like(self.springs)
         counts[:, -1] = counted
-        # diagonals of the tangents (contact, part, port) of contacts that stay open, or stuck
+        # diagonals of the tangents (contact, part, port) of open and of stuck contacts
         self.open = np.zeros((self.contacts, self.parts, self.each))
         self.open[:, 0] = -counts
         self.stuck = self.open + self.springs[:, None]
-        self.closed: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None  # (contact,) of the modes
+        self.closed: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None  # (contact,) in the modes
         self.ports, self.size, self.max_rounding = np.zeros(0, dtype=np.intp), 0, 0.0
         self.solver = Solver(0)
 
     def choose(self, tangent: FloatArray, most: int) -> bool:
-        """Choose the linear contacts by the tangents; whether the rest makes a system of less than `most`.
+        """Choose the linear contacts by the tangents; return whether at most `most` equations are left.
 
-        If it does, the system is ready to be factored.
+        If so, the system is ready to be factored.
         """
         stuck, apart = self.is_stuck.view(np.bool_), self.is_open.view(np.bool_)
         for linear, states in ((self.stuck, self.is_stuck), (self.open, self.is_open)):
@@ -117,7 +119,7 @@ class LinearContacts:
         return self.size <= most
 
     def _find_modes(self, closed: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> None:
-        """Find the modes with the springs of some contacts."""
+        """Compute the modes of the structure on the springs of the contacts closed (contact,)."""
         self.closed, receptance = closed, self.receptance
         P, natural, rate = (np.asarray(a) for a in (receptance.shapes, receptance.natural, receptance.rate))
         self.K = (self.springs * closed[:, None]).ravel()
@@ -135,8 +137,10 @@ class LinearContacts:
 
     @np.errstate(invalid="ignore", over="ignore", divide="ignore")
     def factor(self, row: FloatArray, by: FloatArray) -> float:
-        """Factor the system closed by a row (unknown + 1,), by (unknown,) the derivative by the parameter;
-        the sign of its determinant, or 0."""
+        """Factor the system closed by a row (unknown + 1,); return the sign of its determinant, or 0.
+
+        by (unknown,) is the derivative by the parameter.
+        """
         h = np.asarray(self.receptance.harmonics)[:, None] * self.receptance.omega
         c = 1.0 / (self.square - h * h + 1j * h * self.rate)
         self.c_re, self.c_im = np.ascontiguousarray(c.real), np.ascontiguousarray(c.imag)
@@ -192,14 +196,14 @@ class LinearContacts:
         return found
 
     def _with_springs(self, x: FloatArray) -> FloatArray:
-        """Displacements (part, port) with the springs acting against them."""
+        """S x: displacements x (part, port) with the springs acting against them."""
         force = x * self.K
         force[0] = x[0] * self.K_mean
         held: FloatArray = x - self._displaced(force, self.shapes, self.shapes)
         return held
 
     def _other_forces(self, x: FloatArray) -> FloatArray:
-        """Forces (part force,) that displacements (part, port) cause beside those of the springs."""
+        """D x: forces (part force,) of displacements x (part, port) in addition to those of the springs."""
         around = x[:, self.other_stiffness].transpose(1, 0, 2)[self.number]  # (force, part, port)
         y = np.matmul(
             self.D.reshape(self.ports.size, self.parts, self.parts * self.each),
@@ -208,8 +212,10 @@ class LinearContacts:
         return np.ascontiguousarray(y[:, :, 0].T).ravel()
 
     def _displaced(self, force: FloatArray, on: FloatArray, at: FloatArray, way: float = 1.0) -> FloatArray:
-        """Displacements (part, port) at shapes (mode, port) under forces on others; with the way -1 of the
-        transposed system."""
+        """Displacements (part, port) at shapes `at` (mode, port) under forces at shapes `on`.
+
+        With way -1, those of the transposed system.
+        """
         q = force @ on.T
         answer = np.empty_like(q)
         answer[0] = self.mean @ q[0] if way > 0.0 else q[0] @ self.mean

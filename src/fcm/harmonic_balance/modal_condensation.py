@@ -1,27 +1,28 @@
-r"""The linear system of a balance of many contacts, condensed to the modes that matter beside the contacts.
+r"""Linear system of a balance with many contacts, condensed to the modes that are soft against the contacts.
 
-The contacts' displacements answer to their forces through the modes: the Jacobian of a balance is 1 + A B
+The contacts' displacements respond to their forces through the modes: the Jacobian of a balance is 1 + A B
 with A (unknown, rank), B (rank, unknown); rank is the number of modes times 1 + 2 harmonics. With b the
 derivative by the parameter and a row that closes the system,
 
     [1 + A B   b  ] [x]   [r]            [1 + B A      B b     ] [y]   [B r      ]
     [row'      rho] [l] = [s]    is      [-row' A   rho - row' b] [l] = [s - row' r],   x = r - A y - b l,
 
-of the same determinant, and no worse conditioned at a fold.
+The determinant is the same, and the condition at a fold no worse.
 
-A mode far above the harmonics is stiff beside the contacts. With modal mass 1 and shapes p on the ports it
-yields y = sum_p k_p p^2 / (w^2 - (H omega)^2) times as much as the contacts' springs k. Modes of which that
-is small are left out of the condensed system. This is then the preconditioner of the whole one, with all
-modes, whose solution takes few iterations. With y the greatest yield of the modes left out, the spectrum is
-within 1 and 1 + y, so that an iteration leaves the part
+A mode far above the harmonics is stiff against the contacts. With modal mass 1 and shapes p on the ports, its
+compliance relative to the contacts' springs k is y = sum_p k_p p^2 / (w^2 - (H omega)^2). The condensed
+system leaves out modes of small y. It then preconditions the full system, whose solution takes few
+iterations. With y the greatest of the modes left out, the spectrum lies between 1 and 1 + y, so that an
+iteration leaves the part
 
     (sqrt(1 + y) - 1) / (sqrt(1 + y) + 1)
 
-of an error (Saad 2003, 6.11). As many modes are kept as make factorisation and iterations cheapest.
+of an error (Saad 2003, 6.11). The number of retained modes minimises the cost of factorisation and
+iterations.
 
 Where most contacts stay stuck or open, the forces of the others may be fewer than these modes. Then the
-system is condensed to these forces, see `fcm.harmonic_balance.linear_contacts`. A small system is solved as
-fast as it is.
+system is condensed to these forces, see `fcm.harmonic_balance.linear_contacts`. A small system is not
+condensed.
 """
 
 from __future__ import annotations
@@ -43,28 +44,27 @@ class CondensationOptions(Frozen):
     Attributes
     ----------
     min_unknowns : int
-        Number of unknowns from which on condensing is faster; and number of those of the condensed system,
-        from which on it is condensed further, to the forces of some contacts.
+        Number of unknowns from which on a system is condensed. From the same number on, a condensed system is
+        condensed further, to the forces of some contacts.
     max_fraction : float
         Largest size of the condensed system, relative to the number of unknowns.
     compliance_limits : tuple of float
-        Compliances beside the contacts up to which a mode is left out: the cheapest of these limits is taken.
+        Compliances, relative to the contacts, up to which a mode is left out; the cheapest limit is taken.
     solutions : int
-        Number of solutions with one factorisation that is assumed for that choice.
+        Number of solutions per factorisation that this choice assumes.
     product_speed : float
-        Speed of a product of matrices, relative to that of a matrix and a vector, that is assumed for that
-        choice.
+        Speed of a matrix-matrix product, relative to a matrix-vector product, that this choice assumes.
     tolerance : float
         Length of the last correction of a solution, relative to the solution.
     newton_tolerance : float
-        Length of the last correction of a Newton step, relative to the square of the step in units of scale:
-        the step itself leaves as much.
+        Length of the last correction of a Newton step, relative to the square of the step in units of scale.
+        The error of the step itself is of that order.
     min_step : float
         Length of a step, in units of scale, below which `tolerance` is relative to this length.
     max_corrections : int
         Most corrections in a row.
     max_contraction : float
-        What these leave, relative to what was left before, above which twice as many modes are taken.
+        Error after these corrections, relative to that before, above which twice as many modes are retained.
     """
 
     min_unknowns: int = 200
@@ -79,13 +79,13 @@ class CondensationOptions(Frozen):
     max_contraction: float = 0.1
 
 
-CONDENSATION = CondensationOptions()  # where nothing else is said
+CONDENSATION = CondensationOptions()  # the default
 
 
 def modal_compliance(
     natural: FloatArray, shapes: FloatArray, flexibility: FloatArray, springs: FloatArray, highest: float
 ) -> FloatArray:
-    """How much each mode (mode,) yields up to a frequency, beside springs (port,); inf if it resonates.
+    """Compliance of each mode (mode,) up to a frequency, relative to springs (port,); inf if it resonates.
 
     >>> modal_compliance(np.array([1.0, 10.0]), np.ones((2, 1)), np.diag([1.0, 0.01]), np.array([3.0]), 5.0)
     array([ inf, 0.04])
@@ -100,8 +100,7 @@ def modal_compliance(
 def retained_modes(
     yields: FloatArray, ports: int, parts: int, options: CondensationOptions = CONDENSATION
 ) -> int:
-    """Number of modes to which many contacts are condensed, each in so many parts; 0 where these are not much
-    fewer than the ports.
+    """Number of modes to condense to, each in a number of parts; 0 if not much fewer than the ports.
 
     >>> modes = np.r_[np.full(40, 10.0), np.full(250, 0.5), np.full(310, 0.1)]
     >>> retained_modes(modes, 600, 7), retained_modes(modes[::5], 120, 3)
@@ -111,7 +110,7 @@ def retained_modes(
     few = {stiff: modes for stiff, modes in number.items() if modes < options.max_fraction * ports}
 
     def cost(stiff: float) -> float:
-        """Multiplications for one factorisation and what is solved with it."""
+        """Multiplications for one factorisation and its solutions."""
         rank, root = parts * few[stiff], math.sqrt(1.0 + stiff)
         factored = rank**3 / 3.0 + rank * rank * ports
         by_iteration = math.log((root + 1.0) / (root - 1.0)) if stiff > 0.0 else math.inf
@@ -123,7 +122,7 @@ def retained_modes(
 
 
 class Condensable(Protocol):
-    """A system of many contacts: how it may be condensed, and how much its modes yield beside these."""
+    """A system with many contacts: options of its condensation, and compliances of its modes."""
 
     @property
     def condensation(self) -> CondensationOptions: ...
@@ -133,8 +132,10 @@ class Condensable(Protocol):
 
 
 def condensed_size(system: Condensable, ports: int, harmonics: int) -> int:
-    """Size of the condensed system; 0 where the system itself is to be solved, as where its unknowns are few:
-    then nobody asks how much its modes yield."""
+    """Size of the condensed system; 0 where the system is solved as it is.
+
+    For few unknowns the compliances of the modes are not computed.
+    """
     parts = 1 + 2 * harmonics
     if ports * parts < system.condensation.min_unknowns or not system.modal_compliance.size:
         return 0
@@ -142,10 +143,10 @@ def condensed_size(system: Condensable, ports: int, harmonics: int) -> int:
 
 
 class CondensedSystem:
-    """A balance as it was evaluated last, closed by a row: `factor`, then `solve`.
+    """Linear system of a balance at its last evaluation, closed by a row: call `factor`, then `solve`.
 
-    Unknowns are sorted into parts (part, port): the mean, and real and imaginary part of each harmonic;
-    those of the condensed system are (part, mode).
+    Unknowns are sorted into parts (part, port): the mean, and real and imaginary part of each harmonic.
+    The unknowns of the condensed system are (part, mode).
     """
 
     def __init__(
@@ -164,7 +165,7 @@ class CondensedSystem:
         self.choose_modes(retained_modes(yields, answer.receptance.ports, parts, options))
         self.linear_contacts = LinearContacts(answer, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
-        self.omega, self.sign = 0.0, 0.0  # of what was factored
+        self.omega, self.sign = 0.0, 0.0  # at the last factorisation
 
     @property
     def by_contacts(self) -> bool:
@@ -172,16 +173,15 @@ class CondensedSystem:
         return self.equations.held is not None
 
     def choose_modes(self, modes: int) -> None:
-        """Condense to a number of modes, those that matter most."""
+        """Condense to a number of modes, the most compliant ones."""
         self.modes = min(max(modes, 1), self.ranking.size)
         self.equations.choose_modes(np.sort(self.ranking[: self.modes]))
 
     @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
-        """Factor the system closed by a row (unknown + 1,) in units of scale; the sign of its determinant, or
-        0.
+        """Factor the system closed by a row (unknown + 1,); return the sign of its determinant, or 0.
 
-        by (unknown,) is the derivative by the parameter.
+        The row is in units of scale; by (unknown,) is the derivative by the parameter.
         """
         np.divide(row, scale, out=self.row)
         self.scale[:], self.omega = scale, self.answer.receptance.omega
@@ -197,10 +197,10 @@ class CondensedSystem:
 
     @np.errstate(invalid="ignore", over="ignore")
     def solve(self, right: FloatArray, step: bool = True) -> None:
-        """Replace a right side (unknown + 1,) in units of scale by the solution in these.
+        """Replace a right side (unknown + 1,) by the solution, both in units of scale.
 
-        step: it is one of Newton's method, or a direction if the equations have no right side but the last.
-        The structure answers as where the system was factored: a right side may be that of another frequency.
+        step: the solution is a Newton step, or the tangent if only the last entry of the right side is not 0.
+        The receptance is that of the factorisation, even if the right side belongs to another frequency.
         """
         receptance, now = self.answer.receptance, self.answer.receptance.omega
         receptance.at(self.omega)
@@ -208,7 +208,7 @@ class CondensedSystem:
         receptance.at(now)
 
     def _solve_there(self, right: FloatArray, step: bool) -> None:
-        """Replace a right side by the solution, with the structure at the frequency of what was factored."""
+        """Replace a right side by the solution; the receptance is at the frequency of the factorisation."""
         whole, found = right * self.scale, np.empty_like(right)
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
@@ -223,7 +223,7 @@ class CondensedSystem:
                 self.choose_modes(2 * self.modes)
             self.equations.held = None
             self.sign = float(self.equations.factor())
-            if self.modes == self.ranking.size:  # that is the system itself
+            if self.modes == self.ranking.size:  # all modes: this is the full system
                 left, change = np.empty((2, right.size))
                 self.equations.multiply(found, left)
                 self.equations.condensed(whole - left, change)
@@ -231,11 +231,11 @@ class CondensedSystem:
         np.divide(found, self.scale, out=right)
 
     def _corrected(self, whole: FloatArray, found: FloatArray, enough: float) -> tuple[bool, float]:
-        """Whether corrections of a solution, as long as they shrink, leave no more than enough; and -1 where
-        those of the first hold another sign of the determinant, else 1.
+        """Correct a solution while the corrections shrink; return whether this suffices, and a sign.
 
-        Where a contact in a plane begins to slip its tangent has no bound: that takes some more of them, but
-        no more modes at all other points.
+        The sign is -1 where the first corrections show that the determinant has the other sign, else 1. Where
+        a contact in a plane begins to slip, its tangent is unbounded. More corrections are cheaper there than
+        more modes at all other points.
         """
         before, turned, options = np.inf, 0.0, self.options
         while (left := self.equations.correct(whole, found, enough, options.max_corrections)) > enough:
@@ -246,10 +246,7 @@ class CondensedSystem:
         return True, turned or self.equations.turned
 
     def _tolerance(self, found: FloatArray, step: bool) -> float:
-        """Length that the last correction of a solution may have, in units of scale.
-
-        It is larger for a Newton step than for a direction.
-        """
+        """Greatest length of the last correction, in units of scale; larger for a step than for a tangent."""
         size, options = float(np.linalg.norm(found / self.scale)), self.options
         of_step = options.newton_tolerance * min(size, 1.0) ** 2 if step else 0.0
         return max(options.tolerance * max(size, options.min_step), of_step)

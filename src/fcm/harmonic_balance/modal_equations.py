@@ -1,11 +1,11 @@
-r"""The linear system of a balance of many contacts by way of the modes, without arrays of ports by ports.
+r"""Linear system of a balance with many contacts, formed by modes without arrays of ports by ports.
 
-The answer of the structure to forces of the contacts, and with it the system closed by a row, are formed with
-all modes, and condensed to some of them.
+`ModalCompliance` is the response of the structure to contact forces with all modes. `ModalEquations` is the
+system closed by a row, condensed to some of the modes.
 
-The notation is that of `modal_condensation`. `multiply` is the whole system times a vector, and `condensed`
-the solution of the condensed system. `correct` solves the whole system by GMRES (Saad and Schultz 1986), with
-the condensed system as the preconditioner.
+The notation is that of `modal_condensation`. `multiply` applies the full system to a vector, and `condensed`
+solves the condensed system. `correct` solves the full system by GMRES (Saad and Schultz 1986), with the
+condensed system as the preconditioner.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fcm.structure.receptance import Receptance
 if cython.compiled:
     from cython.cimports.fcm.harmonic_balance.modal_equations import add_rows, add_rows_of_several
 
-DIVERGED = cython.declare(cython.double, 1e300)  # what is longer is no number
+DIVERGED = cython.declare(cython.double, 1e300)  # a greater length counts as infinite
 
 
 @cython.cfunc
@@ -31,9 +31,9 @@ DIVERGED = cython.declare(cython.double, 1e300)  # what is longer is no number
 def sum_of_rows(
     by: cython.double[::1], matrix: cython.double[:, ::1], out: cython.double[::1]
 ) -> cython.void:
-    """Fill out (column,) with the rows of a matrix (row, column), each times a number by (row,)."""
+    """Fill out (column,) with by (row,) times matrix (row, column)."""
     if not cython.compiled:
-        with np.errstate(invalid="ignore", over="ignore"):  # where Newton's method has gone astray
+        with np.errstate(invalid="ignore", over="ignore"):  # where Newton's method has diverged
             np.matmul(by, matrix, out=out)
     elif matrix.shape[1] > 0:
         add_rows(
@@ -47,10 +47,7 @@ def sum_of_rows(
 def sums_of_rows(
     by: cython.double[:, ::1], matrix: cython.double[:, ::1], out: cython.double[:, ::1]
 ) -> cython.void:
-    """Fill each row of out (part, column) with the rows of a matrix, times the numbers by (part, row).
-
-    As `sum_of_rows` for each part; matrix (row, column).
-    """
+    """Fill out (part, column) with by (part, row) times matrix (row, column)."""
     if not cython.compiled:
         with np.errstate(invalid="ignore", over="ignore"):
             np.matmul(by, matrix, out=out)
@@ -65,14 +62,14 @@ def sums_of_rows(
 class ModalCompliance:
     """The compliance of the modes of a receptance at its present frequency; forces are laid out as unknowns.
 
-    flexibility (mode, mode): displacements under mean forces. place (part, port): where the mean and the real
-    and imaginary part of each harmonic of a port are among the unknowns.
+    flexibility (mode, mode): mean displacements under mean forces. place (part, port): index, among the
+    unknowns, of the mean and of the real and imaginary part of each harmonic of a port.
     """
 
     def __init__(self, receptance: Receptance, flexibility: npt.NDArray[np.float64]) -> None:
         self.receptance, self.shapes = receptance, receptance.shapes
         self.by_port = np.ascontiguousarray(np.asarray(receptance.shapes).T)
-        self.flexibility = np.ascontiguousarray(flexibility.T)  # by the mode that is pushed
+        self.flexibility = np.ascontiguousarray(flexibility.T)  # a row for each mode that is loaded
         self.diagonal = not np.any(flexibility != np.diag(flexibility.diagonal()))
         mean, wave = np.asarray(receptance.mean_at), np.asarray(receptance.wave_at)
         rows = [wave + receptance.stride * j + i for j in range(receptance.count) for i in (0, 1)]
@@ -84,7 +81,7 @@ class ModalCompliance:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def displace(self, force: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """Fill out (unknown,) with minus the displacements under forces (unknown,): what these take away."""
+        """Fill out (unknown,) with G F, the displacements that contact forces (unknown,) take away."""
         self.collect(force)
         self.means()
         self.apply_compliance(self.receptance.c_re, self.receptance.c_im)
@@ -94,10 +91,7 @@ class ModalCompliance:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def rate(self, force: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """Fill out (unknown,) with the derivatives by the frequency of what `displace` fills.
-
-        The means have none.
-        """
+        """Fill out (unknown,) with the derivative of G F by the frequency, 0 for the means."""
         self.collect(force)
         self.on_modes[0, :] = 0.0
         self.apply_compliance(self.receptance.s_re, self.receptance.s_im)
@@ -129,7 +123,7 @@ class ModalCompliance:
     @cython.cfunc
     @cython.exceptval(check=False)
     def apply_compliance(self, re: cython.double[:, ::1], im: cython.double[:, ::1]) -> cython.void:
-        """Replace the forces on the modes by their answers, by compliances (harmonic, mode)."""
+        """Replace the harmonic forces on the modes by displacements, with compliances (harmonic, mode)."""
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
         for j in range(re.shape[0]):
@@ -153,11 +147,12 @@ class ModalCompliance:
 
 @cython.cclass
 class ModalEquations:
-    """`choose_modes` modes, `set_closing_row` the system, `factor` it; tangent (contact, width, width) of
-    the contacts' forces.
+    """The system of a balance closed by a row: call `choose_modes`, `set_closing_row`, then `factor`.
 
-    held: None, or what solves in the place of `condensed`; most: corrections of a solution at most. turned:
-    -1 where, by the directions of the last of these, the determinant has another sign than the condensed one.
+    tangent (contact, width, width): of the contact forces. most: greatest number of GMRES directions. held:
+    None, or the system of linear contacts that `condensed` uses instead of the modes. turned: -1 if the last
+    `correct` shows that the determinant of the full system has the opposite sign to the condensed one, else
+    1.
     """
 
     def __init__(self, answer: ModalCompliance, tangent: npt.NDArray[np.float64], most: int) -> None:
@@ -167,7 +162,7 @@ class ModalEquations:
         self.held: Any = None
         self.contacts, self.width, self.parts = contacts, width, answer.parts
         self.each = width // answer.parts
-        # of a contact's unknowns: part by part, direction by direction
+        # indices (part, direction) of a contact's unknowns
         self.order = np.ascontiguousarray(np.asarray(answer.place)[:, : self.each])
         self.row, self.scale, self.whole = np.zeros((3, unknowns + 1))
         self.by, self.force = np.zeros((2, unknowns))
@@ -185,7 +180,7 @@ class ModalEquations:
         self.mean = np.ascontiguousarray(np.asarray(answer.flexibility)[np.ix_(chosen, chosen)])
         self.solver = Solver(self.rank + 1)
         self.pushed, self.answered = np.zeros((2, self.parts, modes))
-        # forces by modes: on ports (port, part, part, mode), and on modes
+        # forces by displacements of the modes: on ports (port, part, part, mode), and on modes
         by_mode, on_modes = (
             np.zeros((ports, self.parts * self.rank)),
             np.zeros((modes, self.parts * self.rank)),
@@ -199,8 +194,10 @@ class ModalEquations:
     def set_closing_row(
         self, row: cython.double[::1], by: cython.double[::1], scale: cython.double[::1]
     ) -> cython.int:
-        """Close the system by a row (unknown + 1,) in units of scale; by (unknown,) is the derivative by the
-        parameter."""
+        """Close the system by a row (unknown + 1,) in units of scale.
+
+        by (unknown,) is the derivative by the parameter.
+        """
         i: cython.Py_ssize_t
         for i in range(self.by.shape[0]):
             self.by[i] = by[i]
@@ -211,7 +208,7 @@ class ModalEquations:
     @cython.ccall
     @cython.exceptval(-2.0, check=False)
     def factor(self) -> cython.double:
-        """Factor the system condensed to the modes; the sign of the determinant, or 0."""
+        """Factor the system condensed to the modes; return the sign of its determinant, or 0."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -263,7 +260,7 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def by_modes(self) -> cython.int:
-        """Fill the forces on the modes (mode, part, part mode) that their displacements cause."""
+        """Fill on_modes (mode, part, part mode): forces on the modes by displacements of the modes."""
         c: cython.Py_ssize_t
         d: cython.Py_ssize_t
         e: cython.Py_ssize_t
@@ -280,7 +277,7 @@ class ModalEquations:
                     for k in range(self.parts):
                         slope: cython.double = self.tangent[c, row, self.order[k, 0]]
                         other: cython.double = self.tangent[c, row, self.order[k, last]] if last > 0 else 0.0
-                        for m in range(self.modes):  # both at once: no number is stored and loaded again
+                        for m in range(self.modes):  # both terms at once: one store for each number
                             self.by_mode[p, i, k, m] = (
                                 slope * self.by_port[first, m] + other * self.by_port[first + last, m]
                             )
@@ -289,16 +286,16 @@ class ModalEquations:
                             for m in range(self.modes):
                                 self.by_mode[p, i, k, m] += slope * self.by_port[first + e, m]
         by_mode, on_modes = self.sums
-        with np.errstate(invalid="ignore", over="ignore"):  # where Newton's method has gone astray
+        with np.errstate(invalid="ignore", over="ignore"):  # where Newton's method has diverged
             np.matmul(self.chosen, by_mode, out=on_modes)
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def condensed(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """Fill out (unknown + 1,) with the solution for a right side by the condensed system alone.
+        """Fill out (unknown + 1,) with the solution of the condensed system for a right side.
 
-        It is condensed to the modes, or to contacts beside those that are held.
+        The system is condensed to modes, or to the forces of some contacts (`held`).
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -332,7 +329,7 @@ class ModalEquations:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def multiply(self, x: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """Fill out (unknown + 1,) with what the whole system makes of x (unknown + 1,)."""
+        """Fill out (unknown + 1,) with the full system times x (unknown + 1,)."""
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.by.shape[0]
         across: cython.double = 0.0
@@ -350,8 +347,10 @@ class ModalEquations:
     def correct(
         self, right: cython.double[::1], found: cython.double[::1], enough: cython.double, most: cython.int
     ) -> cython.double:
-        """Correct what was found for a right side by at most so many directions, to what is enough in units
-        of scale; the length that is left of a correction. Fill `turned`."""
+        """Correct a solution `found` for a right side by GMRES; return the length of the next correction.
+
+        It stops when this length, in units of scale, is enough, or after `most` directions. Fill `turned`.
+        """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.int
@@ -390,7 +389,7 @@ class ModalEquations:
             size = fabs(self.reduced[taken])
             if not size > enough or further == 0.0:
                 break
-        if taken > 0 and self.cosine[taken - 1] < 0.0:  # all but the last of the diagonal of R are positive
+        if taken > 0 and self.cosine[taken - 1] < 0.0:  # only the last diagonal entry of R may be negative
             self.turned = -1.0
         for k in range(taken - 1, -1, -1):
             part: cython.double = self.reduced[k]
@@ -405,10 +404,10 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(-1.0, check=False)
     def krylov(self, k: cython.int) -> cython.double:
-        """Make the next direction of the basis, orthogonal to those before.
+        """Append a unit vector to the Krylov basis, orthogonal to the others (Arnoldi's method).
 
-        Returned is its length before it has that of 1; its parts along the others are in R, turned as the
-        columns before.
+        Return its length before normalisation. Column k of R holds its components along the others, after
+        the Givens rotations of the earlier columns.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -439,14 +438,14 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(check=False)
     def forces(self, x: cython.double[::1]) -> cython.void:
-        """The change of the contacts' forces (unknown,) by displacements x."""
+        """Fill force (unknown,) with the change of the contact forces by displacements x."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         w: cython.Py_ssize_t = self.width
         for c in range(self.contacts):
             for i in range(w):
-                even: cython.double = 0.0  # two sums that do not wait for one another
+                even: cython.double = 0.0  # two independent sums
                 odd: cython.double = 0.0
                 for k in range(0, w - 1, 2):
                     even += self.tangent[c, i, k] * x[c * w + k]
@@ -469,7 +468,7 @@ class ModalEquations:
     @cython.cfunc
     @cython.exceptval(check=False)
     def respond(self, out: cython.double[::1]) -> cython.void:
-        """Fill the first of out with the answers of the modes to the forces on them (part mode,)."""
+        """Fill the first entries of out (part mode,) with the displacements of the modes under `pushed`."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.modes
@@ -498,10 +497,10 @@ def linear_contacts(
     slight: cython.double[::1],
     found: cython.uchar[::1],
 ) -> cython.int:
-    """Fill found (contact,) with whether a contact's tangent is that of a linear contact.
+    """Fill found (contact,) with 1 where a contact's tangent is that of a linear contact, else 0.
 
-    The diagonal of the tangent, in an order, is compared with a linear one (contact, part, port), but for
-    what is slight (contact,).
+    The diagonal of the tangent, sorted by order, must equal linear (contact, part, port) within slight
+    (contact,).
     """
     c: cython.Py_ssize_t
     i: cython.Py_ssize_t
@@ -520,7 +519,7 @@ def linear_contacts(
 @cython.cfunc
 @cython.exceptval(check=False)
 def _dot(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
-    """Scalar product of two vectors, in four sums that do not wait for one another."""
+    """Scalar product of two vectors, in four independent sums."""
     n: cython.Py_ssize_t = a.shape[0]
     i: cython.Py_ssize_t = 0
     p: cython.double = 0.0

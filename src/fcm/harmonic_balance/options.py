@@ -1,8 +1,7 @@
 """Tolerances and limits of harmonic balance.
 
-`HarmonicBalanceOptions` has them all, but for those of the condensation of many contacts, which are in
-`modal_condensation`.
-They are an argument of `System`, and what is computed of a system takes its options.
+`HarmonicBalanceOptions` has all but those of the condensation, which are in `modal_condensation`. The options
+are an argument of `System`, and everything computed from a system uses them.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ class ExtremeOptions(Frozen):
     max_steps : int
         Most Newton steps from a sample to the extreme next to it.
     max_iterations, angle_tolerance : int, float
-        Most Newton steps from the extreme of a motion nearby, and the length [rad] of a step that ends them:
-        the value then errs by its square.
+        Most Newton steps from the extreme of a nearby motion, and the length [rad] of a step that is the
+        last: the error of the value is of the order of its square.
     step_tolerance : float
-        [rad] Length of a Newton step from a sample after which the angle is accepted: it then errs by the
-        square of that step.
+        [rad] Length of a Newton step from a sample after which the angle is accepted: its error is of the
+        order of the square of that step.
     block : int
         Number of degrees of freedom that are sampled together, so that their samples stay in the processor's
         cache.
     many_dofs : int
-        Number of degrees of freedom above which sums over modes and waves are left to BLAS.
+        Number of degrees of freedom above which BLAS computes sums over modes and harmonics.
     """
 
     samples: int = 12
@@ -45,27 +44,25 @@ class ExtremeOptions(Frozen):
 
 
 class SpectrumOptions(Frozen):
-    """Options on which harmonics of the exact forces are looked at, and at which points.
+    """Options on which harmonics of the exact forces are computed, and at which points.
 
     Attributes
     ----------
     highest_factor : float
-        Highest harmonic of the exact forces that is looked at, relative to the highest of the balance, at
-        least.
+        Least ratio of the highest harmonic computed of the exact forces to the highest of the balance.
     few_products : int
         Number of modes times ports up to which a sum over them is faster without BLAS.
     leading_share : float
-        Share of a harmonic that meets a mode, relative to the greatest share at that point, above which it
-        leads there.
+        Share of a harmonic that is in resonance with a mode, relative to the greatest share at that point,
+        above which it leads there.
     point_interval : int
-        Number of points of a curve from one to the next at which the exact forces are computed, where there
-        are many points.
+        Interval, in points of a curve, at which the exact forces are computed with many modes or contacts.
     least_amplitude : float
-        Least amplitude that a share is referred to, relative to the greatest amplitude of all degrees of
+        Least amplitude that a share is relative to, as a part of the greatest amplitude of all degrees of
         freedom.
     min_further, max_further : int
-        Least and greatest number of harmonics of an enriched motion beyond the highest balanced one; between
-        them there are as many as that harmonic.
+        Least and greatest number of harmonics that an enriched motion has beyond the highest balanced one;
+        between them the number equals that harmonic.
     compiled_ports : int
         Number of ports up to which the equations of one harmonic are solved without leaving compiled code.
     """
@@ -81,20 +78,20 @@ class SpectrumOptions(Frozen):
 
 
 class DigitOptions(Frozen):
-    """Options on where digits are counted, and how many are lost.
+    """Options on where the loss of digits by rounding is estimated, and how.
 
     Attributes
     ----------
     stiff_ratio : float
-        Ratio k |G| of a contact's stiffness to that of the structure, above which lost digits are counted.
+        Ratio k |G| of a contact's stiffness to that of the structure, above which rounding is estimated.
     last_digit : float
         Relative rounding error of a number: that of float64.
     summed_roundings : float
-        Number of rounding errors that are taken to add up in a sum.
+        Number of rounding errors that are assumed to add up in a sum.
     max_points : int
-        Most points of a curve at which lost digits are counted, where contacts are many.
+        Most points of a curve at which rounding is estimated, where contacts are many.
     min_unknowns : int
-        Number of unknowns from which on no inverse is made: errors are then estimated from random signs.
+        Number of unknowns from which on no inverse is computed: errors are estimated from random signs.
     max_signs : int
         Number of vectors of errors with random signs in that estimate.
     deviation_factor : float
@@ -114,20 +111,18 @@ class DigitOptions(Frozen):
 
 
 class StiffContactOptions(Frozen):
-    """Contacts for which a lower stiffness is advised, by k |G|.
+    """Options on when a lower contact stiffness is advised, by k |G|.
 
-    That is their stiffness relative to the structure's there.
+    k |G| is the stiffness of a contact relative to that of the structure there.
 
     Attributes
     ----------
     max_stiffness : float
-        k |G| above which a lower stiffness is advised: from here on curves were seen to stop.
+        k |G| above which a lower stiffness is advised: with stiffer contacts curves were seen to stop.
     rigid_stiffness : float
-        k |G| of the advised stiffness, with which a contact is nearly rigid: the root of its inverse is a
-        thousandth.
+        k |G| of the advised stiffness, with which a contact is nearly rigid: 1 / sqrt(k |G|) is 0.001.
     max_stiffness_in_time, rigid_stiffness_in_time : float
-        The two numbers above for motions followed in time, whose curves take far longer with stiffer
-        contacts.
+        The two limits above for integration in time, which takes far longer with stiffer contacts.
     """
 
     max_stiffness: float = 1e7
@@ -144,7 +139,7 @@ class StaticLoadOptions(Frozen):
     initial_share : float
         Share of the static loads at which the curve starts.
     min_share_unit : float
-        Least unit of the share along the curve: above it the share is measured by itself.
+        Least unit of the share along the curve; a greater share is its own unit.
     max_step : float
         Longest step along the curve of the share, in scaled unknowns.
     balance_tolerance : float
@@ -159,7 +154,7 @@ class StaticLoadOptions(Frozen):
 
 
 class RigidMotionOptions(Frozen):
-    """Options on when a motion is no steady state, or not determined, because of a rigid-body mode.
+    """Options on when a rigid-body mode makes a motion undetermined, or no steady state.
 
     Attributes
     ----------
@@ -181,12 +176,11 @@ class EvaluationCost(Frozen):
     Attributes
     ----------
     cycle : float
-        [s] for each contact, times one plus the number of harmonics; the contact slips.
+        [s] for each contact that slips, times one plus the number of harmonics.
     entry : float
-        [s] for each entry of the contacts' tangents and of the matrix, which is filled, copied and solved
-        with.
+        [s] for each entry of the contacts' tangents and of the matrix, to fill, copy and solve.
     system : float
-        [s] for each third power of the number of unknowns that are solved for: a third of a multiplication.
+        [s] times the third power of the number of unknowns solved for: a third of a multiplication.
     """
 
     cycle: float = 1.4e-6
@@ -200,11 +194,11 @@ class WorkOptions(Frozen):
     Attributes
     ----------
     max_seconds : float
-        [s] Most work of all rounds of more and more harmonics: levels, branches and errors. With more, no
+        [s] Most work of all rounds with more and more harmonics: levels, branches and errors. Above it no
         further round begins.
     max_seconds_repeated : float
-        [s] The same limit where curves are followed a dozen times, as in a search, or with one harmonic more
-        each time.
+        [s] This limit where curves are followed a dozen times, as in a search, or with one harmonic more each
+        time.
     """
 
     max_seconds: float = 30.0
@@ -236,13 +230,13 @@ class UnitOptions(Frozen):
     greatest_fraction : float
         Least unit of a displacement, relative to the greatest value of all displacements.
     preload_fraction : float
-        Least unit of a normal displacement, relative to n_0 / k_v. What rounding of the preload makes of it
-        is then less than `NewtonOptions.max_rounding`, by a factor of 50.
+        Least unit of a normal displacement, relative to n_0 / k_v. The rounding error of the preload is then
+        50 times less than `NewtonOptions.max_rounding`.
     min_contacts : int
-        Number of contacts from which on all displacements have one unit. What a single contact does then
-        matters as far as it moves beside the others, and its corners turn the curve by no more than that.
+        Number of contacts from which on all displacements have one unit. A contact then counts by its motion
+        relative to the others, and its corners turn the curve by no more than that.
     min_level_unit : float
-        Least unit of the level of the forces: above it the level is measured by itself.
+        Least unit of the level of the forces; a greater level is its own unit.
     """
 
     own_fraction: float = 0.1
@@ -262,10 +256,10 @@ class DampedOptions(Frozen):
     max_steps : int
         Number of steps after which a guess is given up as too far away.
     min_damping : float
-        Damping factor of a step, down to which it is shortened; below it the method diverges.
+        Least damping factor of a step; if a smaller one is needed, the method diverges.
     min_factor, max_factor : float
-        Least ratio by which a step is shortened at once, and greatest ratio of one step's damping factor to
-        that before.
+        Least ratio by which a step is shortened at once, and greatest ratio of a step's first damping factor
+        to that of the step before.
     final_step : float
         Length of a step below which it is the last.
     """
@@ -279,7 +273,7 @@ class DampedOptions(Frozen):
 
 
 class ProlongationOptions(Frozen):
-    """Options on how a point is moved to the balance of more harmonics.
+    """Options on the prolongation of a point to the balance with more harmonics.
 
     Steps are relative to the size of the solution.
 
@@ -290,26 +284,26 @@ class ProlongationOptions(Frozen):
     final_step : float
         Length of a Newton step below which it is the last.
     max_change : float
-        Change of the displacements, relative to the solution's size, beyond which the solution found is
-        another one.
+        Change of the displacements, relative to the solution's size, beyond which the solution is a different
+        one.
     min_cosine : float
         Cosine between the directions of the two curves, below which the solution lies on another part.
     homotopy_parts : tuple of float
-        Parts of the equations' change, in turn, where the change at once is too much.
+        Homotopy parameters, in turn, where Newton's method fails to converge at once.
     costly_size : int
-        Number of unknowns from which on no homotopy is tried. Hundreds of them led nowhere.
+        Number of unknowns from which on no homotopy is tried. Hundreds of homotopies there found nothing.
     chord_size : int
-        Number of unknowns from which on a Jacobian takes far longer than a residual, and chord steps are
-        always tried.
+        Number of unknowns from which on chord steps are always tried: a Jacobian takes far longer than a
+        residual.
     chord_step : float
         Length of a Newton step below which the same Jacobian is used for the next ones.
     max_chord_steps : int
         Most Newton steps in a row with the same Jacobian.
     chord_contraction : float
-        Length of such a step, relative to the one before, from which on the Jacobian is computed anew.
+        Length of a chord step, relative to the one before, from which on the Jacobian is computed anew.
     first_step_ratio : float
-        Length of the first Newton step of a costly problem, relative to `max_change`, beyond which it
-        diverges.
+        Length of the first Newton step of a costly problem, relative to `max_change`, beyond which it is
+        given up as diverging.
     damped : DampedOptions
         Options of Newton's method for many contacts.
     """
@@ -336,11 +330,11 @@ class HarmonicBalanceOptions(Frozen):
     extremes, spectrum, digits, stiff, rest, rigid, cost, work, workspace, units
         Options of the parts, each of a class of its own.
     samples : int
-        Number of samples for each period of the highest harmonic, at least, where a contact's own law is
+        Least number of samples for each period of the highest harmonic, where a contact law of one's own is
         sampled over the cycle.
     own_law_changes : float
-        Difference of the changes of a contact's own law from central differences, relative to the greatest of
-        them, above which the law is refused.
+        Difference of the changes of a contact law of one's own from central differences, relative to the
+        greatest of them, above which the law is refused.
     """
 
     extremes: ExtremeOptions = field(default_factory=ExtremeOptions)
@@ -357,6 +351,6 @@ class HarmonicBalanceOptions(Frozen):
     own_law_changes: float = 1e-3
 
 
-HARMONIC_BALANCE = HarmonicBalanceOptions()  # where nothing else is said
+HARMONIC_BALANCE = HarmonicBalanceOptions()  # the default
 PROLONGATION = ProlongationOptions()
-MIN_AMPLITUDE = 1e-150  # amplitudes below count as this in a division: its square is a number still
+MIN_AMPLITUDE = 1e-150  # least amplitude in a division: its square does not underflow

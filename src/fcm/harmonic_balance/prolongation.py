@@ -1,14 +1,14 @@
-"""Prolongation of solutions to more harmonics, and homotopies that lead to what is asked for.
+"""Prolongation of solutions to more harmonics, and homotopies to a solution.
 
-The parameter of a homotopy is the level of the forces, from a structure at rest (`ForceLevelProblem`); or the
-part of a guess's residual that is taken off, F(z) - taken F(guess) = 0, which the guess solves with taken = 1
-(`Homotopy`).
+A homotopy parameter is the level of the forces, starting from a structure at rest (`ForceLevelProblem`). The
+other is the subtracted part of the residual at a guess: F(z) - part F(guess) = 0 has the solution guess for
+part = 1 (`Homotopy`).
 
-`Prolongation` moves points of a balance, in the plane normal to its curve, to that of one with more
-harmonics. Of many contacts Newton's method is damped: where they stick and slip at once its steps from a
-motion without the further harmonics lead too far. A step is shortened until the next one, with the same
-Jacobian, would be shorter by a part of it (the natural monotonicity test; Deuflhard, Newton Methods for
-Nonlinear Problems, 2004, section 3.3). A point that was found may be given for the one beside it, see
+`Prolongation` moves a point of a balance to the curve of a balance with more harmonics, in the plane normal
+to its own curve. With many contacts Newton's method is damped: its full steps from a motion without the
+further harmonics are too long where some contacts stick and others slip. A step is shortened until the next
+step, with the same Jacobian, is sufficiently shorter (natural monotonicity test; Deuflhard, Newton Methods
+for Nonlinear Problems, 2004, section 3.3). A solution may predict the next one, see
 `Prolongation.predict_from`.
 """
 
@@ -27,7 +27,7 @@ from fcm.harmonic_balance.residual import Balance
 
 @cython.cclass
 class ForceLevelProblem(Problem):
-    """A balance at omega, followed in the level of its forces."""
+    """The balance at a fixed frequency omega, with the level of the forces as parameter."""
 
     def __init__(
         self, balance: Balance, omega: cython.double = 0.0, units: UnitOptions = HARMONIC_BALANCE.units
@@ -35,7 +35,7 @@ class ForceLevelProblem(Problem):
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.group, self.residual, self.jacobian = balance.group, balance.residual, balance.jacobian
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
-        self.unbounded *= self.unbounded  # as much again as the level may grow
+        self.unbounded *= self.unbounded  # the level may grow by this factor, too
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
         self.many, self.has_root_margins, self.min_level_unit = (
             self.costly,
@@ -47,7 +47,7 @@ class ForceLevelProblem(Problem):
     def begin(self, omega: float, lightly: bool = False) -> None:
         """Prepare for another curve, at omega.
 
-        lightly: slight corners are stepped over however few the unknowns.
+        lightly: steps pass over slight corners even if there are few unknowns.
         """
         self.omega, self.costly = omega, lightly or self.many
         self.balance.largest[:] = 0.0
@@ -129,8 +129,7 @@ class ForceLevelProblem(Problem):
 
 @cython.cclass
 class Homotopy(Problem):
-    """A problem of which the part `subtracted_part` of the residual at a guess, `initial_residual`, is
-    taken away."""
+    """The problem F(z) - subtracted_part * initial_residual = 0, with initial_residual = F(guess)."""
 
     def __init__(self, inner: Problem) -> None:
         Problem.__init__(self, inner.unknowns, 0, 0, inner.rank)
@@ -174,10 +173,11 @@ class Homotopy(Problem):
 
 @cython.cclass
 class Prolongation:
-    """`find_normal` a point of the balance of fewer harmonics finds one of the balance of more.
+    """Find points of a balance with more harmonics near points of a balance with fewer, by `find_normal`.
 
-    That is then newton.z, the direction of its curve newton.tangent; found (1 + dof,) its frequency and
-    amplitudes. A displacement is known when a Newton step changes it by less than the part `tolerance`.
+    A point found is newton.z, the direction of its curve newton.tangent, and found (1 + dof,) has its
+    frequency and amplitudes. Newton's method has converged when a step is shorter than `tolerance` times the
+    distance moved.
     """
 
     def __init__(
@@ -226,7 +226,7 @@ class Prolongation:
         self.min_factor, self.max_factor = damped.min_factor, damped.max_factor
 
     def set_harmonics(self, fewer: list[int]) -> None:
-        """Take points of a balance of the harmonics `fewer`; the others are zero in the guesses."""
+        """Expect points of a balance with the harmonics `fewer`; the others are zero in the guesses."""
         if fewer == self.fewer:
             return
         self.fewer = fewer
@@ -237,9 +237,9 @@ class Prolongation:
         self.guess[:], self.row[:], self.prediction[:] = 0.0, 0.0, 0.0
 
     def reset(self, fewer: list[int], contacts: list[tuple[float, float, float, float]]) -> None:
-        """Take points of the harmonics `fewer` and other parameters of the contacts, and forget the rest.
+        """Prepare for points with the harmonics `fewer` and for other contacts; forget the prediction.
 
-        contacts: their mu, k_u, k_v, n_0.
+        contacts: mu, k_u, k_v, n_0 of each.
         """
         self.set_harmonics(fewer)
         for law, numbers in zip(self.balance.laws, contacts, strict=True):
@@ -251,9 +251,10 @@ class Prolongation:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def predict_from(self, z: cython.double[::1], there: cython.double[::1]) -> cython.int:
-        """Predict, with many contacts, that the next point is as far from its guess as there is from z.
+        """With many contacts, use there - z as the predicted offset of the next point from its guess.
 
-        z (fewer unknowns + 1,), there (unknown + 1,). If that leads nowhere, the guess itself is tried.
+        z (fewer unknowns + 1,) is a guess, there (unknown + 1,) the point found from it. If the prediction
+        fails, the guess itself is tried.
         """
         i: cython.Py_ssize_t
         if self.damps:
@@ -267,9 +268,9 @@ class Prolongation:
     def find_normal(
         self, z: cython.double[::1], direction: cython.double[::1], briefly: cython.bint = False
     ) -> cython.bint:
-        """Whether there is a point near z (fewer unknowns + 1,), normal to the direction of the curve.
+        """Find a point near z (fewer unknowns + 1,) in the plane normal to direction; return success.
 
-        Briefly, as for one among many points: where there are many unknowns it is not sought by parts.
+        briefly: no homotopy is tried where there are many unknowns, as for one of many points.
         """
         i: cython.Py_ssize_t
         total: cython.double = 0.0
@@ -290,7 +291,10 @@ class Prolongation:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def find_at_frequency(self, z: cython.double[::1], gradually: cython.bint) -> cython.bint:
-        """Whether there is a point near z (unknown + 1,) at the same frequency; by parts if not at once."""
+        """Find a point near z (unknown + 1,) at its frequency; return whether there is.
+
+        gradually: if Newton's method fails, try the homotopy.
+        """
         self.prediction[:] = 0.0
         self.hold(z)
         return (self.correct_at_once(z) or (gradually and self.correct_by_homotopy(z))) and self.report()
@@ -298,9 +302,9 @@ class Prolongation:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def rebalance(self, z: cython.double[::1], lack: cython.double[::1]) -> cython.bint:
-        """Correct z (unknown + 1,) at the same frequency, where so much is lacking in the equations.
+        """Solve F = lack (unknown,) near z (unknown + 1,) at its frequency; return whether that succeeds.
 
-        lack (unknown,); the solution is left in newton.z. False where there is none near.
+        The solution is left in newton.z.
         """
         self.prediction[:] = 0.0
         self.hold(z)
@@ -310,7 +314,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def hold(self, z: cython.double[::1]) -> cython.int:
-        """Seek points at the frequency of z (unknown + 1,)."""
+        """Set Newton's method up to hold the frequency of z (unknown + 1,)."""
         i: cython.Py_ssize_t
         self.brief = self.costly_size
         self.balance.evaluate_scale(z)
@@ -322,7 +326,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def report(self) -> cython.bint:
-        """Fill found with frequency and amplitudes of the point; returns true."""
+        """Fill found with frequency and amplitudes of the point; return true."""
         i: cython.Py_ssize_t
         self.balance.evaluate_outputs(self.newton.z, self.still)
         self.found[0] = self.newton.z[self.balance.unknowns]
@@ -333,7 +337,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct(self) -> cython.bint:
-        """Move the guess to the curve, at once or by homotopy; whether that leads to a point."""
+        """Correct the guess by Newton's method or homotopy; return whether it leads to this curve."""
         if self.correct_at_once(self.guess) and self.keeps_direction():
             return True
         return not self.brief and self.correct_by_homotopy(self.guess) and self.keeps_direction()
@@ -341,9 +345,9 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_at_once(self, guess: cython.double[::1], taken: cython.double = 0.0) -> cython.bint:
-        """Whether Newton's method leads from a guess to a point near it.
+        """Correct a guess by Newton's method; return whether it converges to a point near the guess.
 
-        taken: the part of what was removed from the equations that is taken away.
+        taken: the subtracted part of the initial residual. With many contacts the prediction is tried first.
         """
         i: cython.Py_ssize_t
         leads: cython.bint = False
@@ -363,10 +367,9 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_by_homotopy(self, guess: cython.double[::1]) -> cython.bint:
-        """Whether Newton's method leads from a guess to a point as the equations change gradually.
+        """Correct a guess by the homotopy; return whether it leads to a point near the guess.
 
-        They begin as those that the guess solves. It is not tried with many contacts: there it leads nowhere
-        that damped steps do not.
+        It is not tried with many contacts: there it finds nothing that damped steps do not find.
         """
         if self.damps:
             return False
@@ -382,9 +385,10 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keeps_direction(self) -> cython.bint:
-        """Whether the curve of more harmonics has the same direction at the point found.
+        """Whether the curve with more harmonics has nearly the same direction at the point found.
 
-        With many contacts by what both directions strain the springs in the harmonics that both have.
+        With many contacts the directions are compared in the common harmonics, weighted by the energy in the
+        contact springs.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -411,7 +415,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def newton_to_tolerance(self) -> cython.bint:
-        """Newton's method as `Newton.correct`, up to the precision that a displacement needs."""
+        """Newton's method as in `Newton.correct`, to the accuracy that `tolerance` asks for."""
         count: cython.int
         step: cython.double
         first: cython.double = 0.0
@@ -443,7 +447,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def damped_newton(self) -> cython.bint:
-        """Damped Newton's method for many contacts: steps obey the natural monotonicity test."""
+        """Damped Newton's method for many contacts: steps satisfy the natural monotonicity test."""
         i: cython.Py_ssize_t
         count: cython.int
         step: cython.double
@@ -463,7 +467,7 @@ class Prolongation:
             while True:
                 for i in range(self.guess.shape[0]):
                     newton.z[i] = self.begin[i] + part * newton.scale[i] * self.way[i]
-                # what is left is less than the last step by far
+                # the remaining error is far less than the last step
                 if part == 1.0 and (
                     step < self.damped_final_step or step < self.tolerance * self.distance_from(newton.guess)
                 ):
@@ -478,7 +482,7 @@ class Prolongation:
                 if then < 1e30:
                     for i in range(self.guess.shape[0]):
                         bend += (newton.delta[i] - (1.0 - part) * self.way[i]) ** 2
-                    bend = 0.5 * part * part * step / sqrt(bend)  # a part that bends by half of the step
+                    bend = 0.5 * part * part * step / sqrt(bend)  # damping factor from the curvature
                 part = max(self.min_factor * part, min(0.5 * part, bend))
             if part == 1.0 and then < self.chord_contraction * step:
                 self.move()
@@ -491,9 +495,9 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def chord_steps_converge(self, enough: cython.double, before: cython.double) -> cython.bint:
-        """Whether steps with the same Jacobian come to one shorter than enough, which is the last.
+        """Take chord steps (same Jacobian); return whether one is shorter than enough.
 
-        before: the length of the step before. A step that does not shrink as fast as the others is not taken.
+        before: length of the step before. A step that does not contract enough is not taken and ends them.
         """
         count: cython.int
         step: cython.double
@@ -512,7 +516,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(check=False)
     def move(self) -> cython.void:
-        """Add the Newton step that is in delta to the point."""
+        """Add the Newton step delta to the point."""
         i: cython.Py_ssize_t
         for i in range(self.guess.shape[0]):
             self.newton.z[i] += self.newton.scale[i] * self.newton.delta[i]
@@ -530,10 +534,9 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def strain_from(self, guess: cython.double[::1]) -> cython.double:
-        """Distance of the point from a guess by what that strains the contacts' springs, relative to what the
-        point and the guess do.
+        """Distance of the point from a guess in the energy norm of the contact springs, relative to both.
 
-        Of many contacts those that hardly move may move by any part of that.
+        In this norm, contacts that hardly move may change by any part of their own motion.
         """
         i: cython.Py_ssize_t
         size: cython.double = max(self.strain(guess), self.strain(self.newton.z))
@@ -544,7 +547,7 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def strain(self, x: cython.double[::1]) -> cython.double:
-        """The root of twice the energy in the contacts' springs at displacements."""
+        """The energy norm of displacements: the root of twice the energy in the contact springs."""
         i: cython.Py_ssize_t
         energy: cython.double = 0.0
         for i in range(self.balance.unknowns):
@@ -554,6 +557,6 @@ class Prolongation:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def spring(self, i: cython.Py_ssize_t) -> cython.double:
-        """The stiffness of the contact that an unknown is a displacement of, along that."""
+        """The stiffness of the contact spring along the displacement that is unknown i."""
         law: Law = self.balance.laws[i // self.balance.width]
         return law.k_v if self.normal[i % self.balance.width] else law.k_u

@@ -1,4 +1,4 @@
-"""What is reported at the points of traced paths: displacements, amplitudes, contact forces."""
+"""Quantities reported at the points of traced paths: displacements, amplitudes, contact forces."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class PointRecord(Frozen):
-    """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
+    """Points of several paths, concatenated; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
 
     path: IntArray  # (point,) number of the path
     z: FloatArray  # (point, unknown + 1)
@@ -35,10 +35,10 @@ class PointRecord(Frozen):
 
 
 class ReportedQuantities(Frozen):
-    """The quantities reported along a path, as of a `PointRecord`.
+    """The quantities reported along a path, with the shapes of `PointRecord`.
 
-    growth (point, dof): of the amplitude along the path's direction. linear (point,): where no contact slips
-    or separates.
+    growth (point, dof): rate of the amplitude along the path's direction. linear (point,): where no contact
+    slips or separates.
     """
 
     X: ComplexArray
@@ -49,7 +49,7 @@ class ReportedQuantities(Frozen):
     linear: npt.NDArray[np.bool_]
 
     def with_rows(self, after: IntArray, other: ReportedQuantities) -> ReportedQuantities:
-        """The quantities with those at the points of another inserted after some points."""
+        """The quantities, with each point of other inserted after a point of this one."""
         rows = zip(vars(self).values(), vars(other).values(), strict=True)
         return ReportedQuantities(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
 
@@ -68,7 +68,8 @@ def reported_at(
 ) -> ReportedQuantities:
     """The reported quantities at points z (point, unknown + 1).
 
-    Without directions there, (point, unknown + 1), growth is 0. Forces are times level (point,), 1 without.
+    direction (point, unknown + 1): without it growth is 0. level (point,): factor of the harmonic forces, 1
+    by default.
     """
     points = PointQuantities(system.shared_balance, len(z))
     along = np.zeros_like(z) if direction is None else direction
@@ -89,7 +90,7 @@ def reported_at(
 def recorded(
     system: System, paths: Sequence[Path], quantities: Sequence[ReportedQuantities] | None = None
 ) -> PointRecord:
-    """The points of paths; quantities is what is reported along each, if it is known."""
+    """The record of the points of paths; quantities (one for each path) are computed if not given."""
     z = np.concatenate([path.z for path in paths])
     if quantities is None:
         quantities = [reported_quantities(system, path) for path in paths]
@@ -104,9 +105,9 @@ def recorded(
 
 
 def table_errors(system: System, points: PointRecord) -> FloatArray:
-    """Relative errors (point,) of the table's own solutions: one Newton step of its balance.
+    """Errors (point,) that the table alone would make: the length of one Newton step of its balance.
 
-    Relative to the unknowns' size; 0 where no contact slips or separates, or no table is used.
+    They are relative to the size of the unknowns; 0 where no contact slips or separates, or without a table.
     """
     error = np.zeros(points.path.size)
     if system.table_balance is None:
@@ -114,7 +115,7 @@ def table_errors(system: System, points: PointRecord) -> FloatArray:
     system.table_balance.reset_balance()
     slips = ~points.linear
     z, tangent = (np.ascontiguousarray(of[slips]) for of in (points.z, points.tangent))
-    # a unit of the unknowns is their size times the root of their number
+    # the scale of an unknown is the size times the root of the number of ports
     error[slips] = distances(system.table_balance.shared_stepper.newton, z, tangent) * np.sqrt(
         system.layout.ports
     )
@@ -122,5 +123,5 @@ def table_errors(system: System, points: PointRecord) -> FloatArray:
 
 
 def joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Arrays one after the other in one; a single one is not copied."""
+    """Concatenate arrays; a single array is not copied."""
     return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -1,16 +1,16 @@
-"""Harmonic balance of means and any harmonics, condensed to the contacts, as a problem to be followed.
+"""Harmonic balance of means and any harmonics, condensed to the contacts, as a continuation problem.
 
 The modes are summed into the receptance G(h omega) between the contacts' ports. So the unknowns are the
 relative displacements of the contacts alone, whatever the number of modes:
 
     X_h = X_external,h - G(h omega) F_h,    x_0 = x_rest - G(0) f_0
 
-with x_rest the answer to static loads alone, of which `share` is applied. Displacements are counted from
-where the contacts start unstressed, by the scene's [start]: x_rest is less that. The residual has the unit of
-a displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
+with x_rest the response to static loads alone, of which `share` is applied. Displacements count from where
+the contacts are unstressed, as [start] of the scene says; so does x_rest. The residual has the unit of a
+displacement, and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
 
-The answer G F of the structure to forces of its contacts is laid out as the unknowns, see
-`fcm.structure.layout`. Each harmonic has its own receptance, the mean the static one.
+The response G F of the structure to contact forces is laid out as the unknowns, see `fcm.structure.layout`.
+Each harmonic has its own receptance, the mean the static one.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ else:
     from fcm.harmonic_balance.contact_law import KINDS, Law
     from fcm.harmonic_balance.modal_equations import ModalCompliance
 
-    def PyErr_CheckSignals() -> None:  # the interpreter does
+    def PyErr_CheckSignals() -> None:  # the interpreter does it itself
         pass
 
 
@@ -45,7 +45,7 @@ else:
 def apply_to_forces(
     receptance: Receptance, force: cython.double[::1], out: cython.double[::1]
 ) -> cython.void:
-    """Fill out (unknown,) with the answer to forces (unknown,)."""
+    """Fill out (unknown,) with the response G F to forces (unknown,)."""
     p: cython.Py_ssize_t
     q: cython.Py_ssize_t
     for p in range(receptance.ports):
@@ -88,7 +88,7 @@ def apply_to_waves(
 def apply_to_tangents(
     receptance: Receptance, tangent: cython.double[:, :, ::1], out: cython.double[:, ::1]
 ) -> cython.void:
-    """Fill out (unknown, unknown) with the answers to the changes of forces by tangents (contact, w, w)."""
+    """Fill out (unknown, unknown) with G dF/dX for tangents dF/dX (contact, width, width)."""
     contacts: cython.Py_ssize_t = tangent.shape[0]
     w: cython.Py_ssize_t = tangent.shape[1]
     each: cython.Py_ssize_t = receptance.ports // contacts if contacts > 0 else 0
@@ -131,8 +131,10 @@ def apply_to_tangents(
 def slope(
     receptance: Receptance, force: cython.double[::1], load: cython.double, out: cython.double[::1]
 ) -> cython.void:
-    """Fill out (unknown,) with the derivative by the frequency of the answer to forces, less that to a level
-    of the external ones; the means have none."""
+    """Fill out (unknown,) with the derivative of the residual by the frequency; 0 for the means.
+
+    It is that of the response to the contact forces, less that to the external forces times load.
+    """
     p: cython.Py_ssize_t
     for p in range(receptance.ports):
         out[receptance.mean_at[p]] = 0.0
@@ -149,8 +151,10 @@ def subtract_external(
     load: cython.double,
     out: cython.double[::1],
 ) -> cython.void:
-    """Take from out (unknown,) the answer X (forced harmonic, port) to a level of the external forces, or its
-    derivative."""
+    """Subtract load times X (forced harmonic, port) from out (unknown,).
+
+    X is the response to the external forces, or its derivative; load is the level of these forces.
+    """
     j: cython.int
     p: cython.Py_ssize_t
     for j in range(receptance.count):
@@ -164,7 +168,7 @@ def subtract_external(
 
 @cython.cclass
 class Balance(Problem):
-    """The balance of laws (contact,) on a structure; unknowns laid out as in `fcm.structure.layout`."""
+    """The balance of contact laws on a structure; unknowns are laid out as in `fcm.structure.layout`."""
 
     def __init__(
         self,
@@ -187,15 +191,15 @@ class Balance(Problem):
             width,
         )
         self.layout, self.directions, self.ports = layout, layout.directions, layout.ports
-        self.group = laws[0].margins if laws else 0  # all contacts have as many
-        self.has_root_margins = layout.directions > 2  # in a plane a circle begins to slip all around at once
+        self.group = laws[0].margins if laws else 0  # the same for all contacts
+        self.has_root_margins = layout.directions > 2  # circular motion begins to slip at all angles at once
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
         self.rest, self.reported = np.zeros(layout.ports), np.ones(displacements.dofs)
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
-        self.condensed: CondensedSystem | None = None  # of the rank, see `condense`
-        self.answer: ModalCompliance | None = None  # then
+        self.condensed: CondensedSystem | None = None  # of size rank, see `condense`
+        self.answer: ModalCompliance | None = None  # that of `condensed`
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
         self.own, self.greatest, self.of_preload = (
             units.own_fraction,
@@ -205,7 +209,7 @@ class Balance(Problem):
         self.alike = len(laws) >= units.min_contacts
 
     def condense(self, condensed: CondensedSystem) -> None:
-        """Solve the systems of Newton's method by a condensed system; only where the problem has a rank."""
+        """Solve the linear systems of Newton's method by a condensed system; only if rank > 0."""
         self.condensed, self.answer = condensed, condensed.answer
 
     @cython.ccall
@@ -230,10 +234,7 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def evaluate_contacts(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
-        """Fill the residual and the contacts' forces at z, and the tangents if these are wanted.
-
-        Tangents that are not wanted stay as they were.
-        """
+        """Fill the residual and the contact forces at z; with tangents, those of the contacts too."""
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         self.receptance.at(z[self.unknowns])
@@ -271,7 +272,7 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def contact_forces(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
-        """Fill forces and tangents of the contacts, without those counted to the structure."""
+        """Fill forces and tangents of the contacts, without the stiffness that counts to the structure."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -296,9 +297,12 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
-        """Displacements by their present size, in each direction of a contact, or where contacts are many of
-        all; both directions of sliding by that in the plane, normal ones by no less than the rounding of the
-        preload leaves of them. The frequency by its range."""
+        """Fill the units: of displacements their present size, of the frequency the width of its range.
+
+        Each direction of a contact has its own unit; the two tangential directions of a plane share one. With
+        many contacts all displacements have one. The unit of a normal displacement has a lower bound, so that
+        rounding of the preload does not matter.
+        """
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -334,7 +338,8 @@ class Balance(Problem):
     def together(self) -> cython.int:
         """Replace the sizes of displacements by common ones.
 
-        With many contacts all have their root mean square; else the two directions of sliding have one.
+        With many contacts this is the root mean square of all. Else the two tangential directions of a plane
+        share one.
         """
         p: cython.Py_ssize_t
         total: cython.double = 0.0
@@ -351,7 +356,7 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_margins(self, z: cython.double[::1]) -> cython.int:
-        """Fill the margins of the contacts, one after the other."""
+        """Fill the margins of all contacts in turn."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         at: cython.Py_ssize_t = 0
@@ -374,10 +379,10 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_outputs(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
-        """Fill the amplitudes of the reported degrees of freedom, and their growth.
+        """Fill the amplitudes of the degrees of freedom, and their growth along direction.
 
-        None of what no result has: where loads act the sum of many displacements may cancel, and its growth
-        is that of rounding. Steps would become as short as it varies.
+        The growth of unreported ones is 0. Where loads act, their displacement may be a sum that cancels: its
+        growth would be rounding error and shorten the steps.
         """
         self.receptance.at(z[self.unknowns])
         self.forces_at(z, direction)
@@ -391,7 +396,10 @@ class Balance(Problem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces_at(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
-        """Forces at z, a last Newton step from where they were evaluated, and their rates."""
+        """Fill now with the forces at z, linearised at the last evaluation, and rate with their rates.
+
+        z is one last Newton step from that evaluation.
+        """
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -435,8 +443,8 @@ class Balance(Problem):
 class PointQuantities:
     """Reported quantities at points (point, unknown + 1) with directions, filled by `evaluate`.
 
-    re, im (point, harmonic, dof), mean, amplitude, growth (point, dof), force (point, unknown): see
-    `Displacements`; the growth is that along the direction. linear (point,): 1 where no contact slips or
+    re, im (point, harmonic, dof), mean, amplitude, growth (point, dof) are those of `Displacements`, with the
+    growth along the direction; force (point, unknown). linear (point,): 1 where no contact slips or
     separates, else 0.
     """
 
@@ -451,7 +459,10 @@ class PointQuantities:
     def evaluate(
         self, z: cython.double[:, ::1], direction: cython.double[:, ::1], level: cython.double[::1]
     ) -> PointQuantities:
-        """Fill the quantities with the forces times level (point,); signals are polled between points."""
+        """Fill the quantities at points z; the external forces are multiplied by level (point,).
+
+        Signals are polled between points.
+        """
         b: Balance = self.balance
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
@@ -482,9 +493,9 @@ def cycles_of(
     state: cython.int[:, ::1],
     contact_loads: cython.double[:, ::1],
 ) -> None:
-    """Fill states and contact loads for the cycles of a contact whose motions begin at x[:, first].
+    """Fill states and contact loads over the cycles of a contact whose unknowns begin at x[:, first].
 
-    state (point, piece): beyond the last as before. contact_loads (point, 4): see `Law`.
+    state (point, piece): entries after the last piece stay as they are. contact_loads (point, 4): see `Law`.
     """
     i: cython.Py_ssize_t
     p: cython.int

@@ -1,23 +1,23 @@
-r"""Effect of the harmonics that a balance leaves out, if there were no feedback.
+r"""Effect of the harmonics that a balance leaves out, without their feedback on the contact forces.
 
-The exact friction and normal forces of a motion of few harmonics have all harmonics. The response to one of
-them is its coefficient times the receptance of the structure at its frequency,
+The exact friction and normal forces of a motion with few harmonics have all harmonics. The response to one of
+them is the receptance of the structure at its frequency times its coefficient,
 
     X_h = -G(h omega) F_h
 
-so that it is the structure as much as the contact that decides which harmonics matter.
+so that the structure decides as much as the contact which harmonics matter.
 
-A balanced motion with these harmonics (`EnrichedMotion`) is nearer to the true one. The errors of its
-multipliers are five to ten times smaller, and their differences from those of the balance estimate the errors
-of the latter.
+A balanced motion with these harmonics added (`EnrichedMotion`) is closer to the exact one. The errors of its
+Floquet multipliers are five to ten times smaller. The differences from the multipliers of the balance
+estimate the errors of the latter.
 
-A structure that is softer than its contacts, as the halves of a joint, would so respond with many times the
-motion itself. Where |G K| > 1 at a port the mean stiffness of the contacts over the cycle resists, too,
+For a structure softer than its contacts, such as the halves of a joint, this response would be many times the
+motion itself. Where |G K| > 1 at a port, the mean stiffness K of the contacts over the cycle enters,
 
-    (1 + G(h omega) K) X_h = -G(h omega) F_h,
+    (1 + G(h omega) K) X_h = -G(h omega) F_h
 
-with K the mean of their stiffnesses. On a line these are k_u while they stick, k_v while they are closed, and
-+-mu k_v, by the normal displacement, while they slip.
+On a line the stiffnesses are k_u while a contact sticks, k_v while it is closed, and +-mu k_v (friction by
+normal displacement) while it slips.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ else:
 
 
 def highest_harmonic(system: System) -> int:
-    """Harmonic up to which the forces of a system's motions are looked at."""
+    """Highest harmonic of the exact forces that is computed for a system."""
     return max(LIMITS.harmonics, int(system.options.spectrum.highest_factor * max(system.harmonics)))
 
 
 @lru_cache(maxsize=256)
 def left_out(highest: int, harmonics: tuple[int, ...]) -> npt.NDArray[np.intp]:
-    """The harmonics up to the highest that are not among some."""
+    """The harmonics from 1 to highest that are not among harmonics."""
     return np.setdiff1d(np.arange(1, highest + 1), harmonics, assume_unique=True)
 
 
 @cython.cclass
 class FurtherHarmonics:
-    """The harmonics of the exact forces of motions of a system's balance."""
+    """The harmonics of the exact forces at solutions of a balance."""
 
     def __init__(self, system: System) -> None:
         linear, self.highest = system.linear, highest_harmonic(system)
@@ -76,18 +76,18 @@ class FurtherHarmonics:
         self.reset(system)
 
     def reset(self, system: System) -> None:
-        """Take another system with the same structure and harmonics, whose contacts may differ."""
+        """Use another system with the same structure and harmonics; its contacts may differ."""
         self.system = system
         self.laws = system.exact_laws(tuple(range(1, self.highest + 1)))
 
     def shares(
         self, z: FloatArray, amplitude: FloatArray, known: tuple[int, ...] | None = None
     ) -> FloatArray:
-        """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).
+        """Response in each harmonic left out, relative to the amplitude (point, dof): (point, harmonic).
 
-        Of motions z (point, unknown + 1) the greatest of all degrees of freedom of finite amplitude;
-        zero for known harmonics, those of the balance unless others are given: then, for harmonics of the
-        balance, what they have.
+        It is the greatest of all degrees of freedom at points z (point, unknown + 1); an infinite amplitude
+        excludes a degree of freedom. It is 0 for the known harmonics, by default those of the balance. A
+        harmonic of the balance that is not among the known ones has a share, too.
         """
         found, own = np.zeros((len(z), self.highest)), self.others
         if known is not None:
@@ -100,8 +100,11 @@ class FurtherHarmonics:
         return found
 
     def resonances(self, z: cython.double[:, ::1], amplitude: cython.double[:, ::1]) -> npt.NDArray[np.intp]:
-        """Points of a curve z (point, unknown + 1) where a harmonic that is left out meets a mode and leads
-        there, each with those beside it."""
+        """Points of a curve z (point, unknown + 1) where a harmonic left out is in resonance and leads.
+
+        Resonance means that a multiple of the frequency passes a natural frequency. The neighbours of each
+        point are included.
+        """
         if self.modes is None and self.system.scene.ring is None:
             return self.resonances_of_many(np.asarray(z), np.asarray(amplitude))
         m: cython.Py_ssize_t
@@ -124,10 +127,10 @@ class FurtherHarmonics:
     def resonances_of_many(
         self, z: npt.NDArray[np.float64], amplitude: npt.NDArray[np.float64]
     ) -> npt.NDArray[np.intp]:
-        """Points of a curve where a harmonic left out meets a mode and leads, with many modes or contacts.
+        """Compute `resonances` with many modes or contacts.
 
-        The forces, which change slowly, are those of every so many points, and a harmonic that meets a mode
-        is compared with the greatest share there.
+        The forces change slowly and are computed at intervals of points. The harmonic in resonance is
+        compared with the greatest share at the nearest of these points.
         """
         omega, linear, count = z[:, -1], self.system.linear, self.system.options.spectrum.point_interval
         every = np.arange(min(count // 2, len(z) - 1), len(z), count)
@@ -161,10 +164,7 @@ class FurtherHarmonics:
     def is_leading(
         self, z: cython.double[::1], amplitude: cython.double[::1], h: cython.Py_ssize_t
     ) -> cython.bint:
-        """Whether the share of harmonic h + 1 at a point is nearly the greatest.
-
-        It is not where contacts are linear.
-        """
+        """Whether the share of harmonic h + 1 leads at a point; false if all contacts are linear there."""
         k: cython.Py_ssize_t
         most: cython.double = 0.0
         bent: cython.bint = False
@@ -180,7 +180,7 @@ class FurtherHarmonics:
         return self.share[h] > self.leading * most
 
     def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""
+        """Whether no contact slips or separates (point,), so that the forces have no further harmonics."""
         linear = np.ones(len(z), dtype=np.bool_)
         for i in range(len(z)):
             for c, law in enumerate(self.laws):
@@ -191,7 +191,7 @@ class FurtherHarmonics:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def shares_at(self, z: cython.double[::1], amplitude: cython.double[::1]) -> cython.int:
-        """Fill share (harmonic,), as one row of `shares`."""
+        """Fill share (harmonic,), a row of `shares`."""
         c: cython.Py_ssize_t
         h: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -206,7 +206,7 @@ class FurtherHarmonics:
                     self.force[h, c * self.directions + k, 0] = law.force[at]
                     self.force[h, c * self.directions + k, 1] = law.force[at + 1]
         for k in range(self.size.shape[0]):
-            if isfinite(amplitude[k]):  # infinite: of a degree of freedom that does not count
+            if isfinite(amplitude[k]):  # an infinite amplitude excludes a degree of freedom
                 most = max(most, amplitude[k])
         for k in range(self.size.shape[0]):
             self.size[k] = max(amplitude[k], self.least * most)
@@ -218,7 +218,7 @@ class FurtherHarmonics:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def shares_of_many(self, omega: cython.double) -> cython.int:
-        """The shares with many modes, by BLAS, or of a ring."""
+        """Fill share with many modes, by BLAS, or for a ring."""
         others, size = np.asarray(self.others), np.asarray(self.size)
         force = np.asarray(self.force).view(np.complex128)[others - 1, :, 0][None]
         linear, at = self.system.linear, np.array([omega])
@@ -230,7 +230,7 @@ class FurtherHarmonics:
 def enriched_harmonics(
     harmonics: list[int], options: SpectrumOptions = HARMONIC_BALANCE.spectrum
 ) -> list[int]:
-    """Harmonics of the enriched motion: all up to the highest, and as many again beyond it."""
+    """Harmonics of the enriched motion: all up to the highest, and about as many beyond it."""
     highest = max(harmonics)
     further = min(max(highest, options.min_further), options.max_further)
     return list(range(1, highest + further + 1))
@@ -238,15 +238,15 @@ def enriched_harmonics(
 
 @cython.cclass
 class EnrichedMotion:
-    """The motion of a balance enriched by further harmonics, from the exact forces on it.
+    """The motion of a balance enriched by further harmonics, the response to its exact contact forces.
 
-    `at` a point z of the balance fills x, the unknowns of the enriched motion.
+    `at` fills x, the unknowns of the enriched motion, for a point z of the balance. laws (contact,) have the
+    harmonics of the balance for the motion, and the finer harmonics for the forces.
 
-    shift is the greatest amplitude that was added to a displacement of a contact, tangential or normal,
-    relative to the greatest amplitude of the same displacement. For a small normal motion opens and closes a
-    contact as much as a large one does. Beside a deep mean indentation, or a wide gap, it does not: shift is
-    relative to that where it is more. And across the motion in its plane a small one turns the slip by
-    little. laws (contact,) have the balance's motion, and forces of the finer harmonics.
+    shift is the greatest amplitude added to a displacement of a contact, relative to the greatest balanced
+    amplitude of that displacement. Tangential and normal displacements have separate references, since even
+    a small normal motion may open and close a contact. The mean indentation or gap is the reference where it
+    is greater. In a plane both tangential directions share one: a small motion across turns the slip little.
     """
 
     def __init__(
@@ -266,7 +266,7 @@ class EnrichedMotion:
         where = [harmonics.index(h) if h in harmonics else -1 for h in finer]
         self.place, self.shift = np.array(where, dtype=np.intc), 0.0
         self.resistance = np.zeros((self.contacts, self.directions, self.directions))
-        self.stiffness: npt.NDArray[np.float64] | None = None  # the same by modes, for all harmonics
+        self.stiffness: npt.NDArray[np.float64] | None = None  # resistance on the modes
         size = 2 * receptance.ports if self.few else 0
         self.matrix, self.right = np.zeros((size, size)), np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
@@ -312,8 +312,10 @@ class EnrichedMotion:
     def relative_addition(
         self, first: cython.Py_ssize_t, ports: cython.Py_ssize_t, least: cython.double
     ) -> cython.double:
-        """The greatest amplitude that was added to some displacements of a contact, relative to the greatest
-        that there was, and to a least; 0 if there was none."""
+        """Greatest amplitude added at some ports, relative to the greatest balanced one or to least.
+
+        0 if there is no such reference.
+        """
         h: cython.Py_ssize_t
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -352,7 +354,7 @@ class EnrichedMotion:
     @cython.cfunc
     @cython.exceptval(check=False)
     def displace(self, h: cython.Py_ssize_t) -> cython.void:
-        """Fill x with the answer of the structure in one harmonic left out, at few ports."""
+        """Fill x with the response of the structure in one harmonic left out, at few ports."""
         p: cython.Py_ssize_t
         q: cython.Py_ssize_t
         c: cython.Py_ssize_t
@@ -381,7 +383,7 @@ class EnrichedMotion:
                     self.right[2 * p + 1] -= G_re * self.force[c, at + 1] + G_im * self.force[c, at]
                     if not resisted:
                         continue
-                    re = im = 0.0  # a displacement may change the forces in other directions, too
+                    re = im = 0.0  # a displacement may also change forces in other directions
                     for e in range(each):
                         re += self.receptance.G_re[h, p, c * each + e] * self.resistance[c, e, d]
                         im += self.receptance.G_im[h, p, c * each + e] * self.resistance[c, e, d]
@@ -400,9 +402,9 @@ class EnrichedMotion:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def displace_many(self, h: cython.int) -> cython.int:
-        """Fill x with the answer of the structure in one harmonic left out, at many ports.
+        """Fill x with the response of the structure in one harmonic left out, at many ports.
 
-        It is computed by modes where these are fewer.
+        It is computed by modes where the receptance matrix is not formed.
         """
         receptance, each = self.receptance, self.directions
         at = np.asarray(receptance.wave_at) + receptance.stride * h

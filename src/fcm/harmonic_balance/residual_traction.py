@@ -1,22 +1,23 @@
-r"""Range of a peak with the residual traction of the contacts that stick all through the cycle.
+r"""Range of a peak over the residual tractions of the contacts that stick through the whole cycle.
 
-The slider of such a contact may rest anywhere between its slip limits, and a motion belongs to each place.
-The balance is of contacts that begin unstressed, or with the friction of [start]. With the mean friction t of
-those that stick, a peak changes by
+The slider of such a contact may rest anywhere between its slip limits, and each position has its own motion.
+The balance itself assumes contacts that begin unstressed, or with the friction of [start]. With the mean
+friction t of the contacts that stick, a peak changes by
 
     dA = sum_i g_i . dt_i,    |k_u u~_i + t_i| <= mu n_i  at every angle
 
-so that it changes most where each t_i is at its limit, along g_i or against it. Both members of the family
-are balanced exactly, with the limits of their own motion and along its g, and their peaks found. As others
-may be further off, this is an estimate and no bound.
+so that it changes most where each t_i is at its limit, along g_i or against it. These two members of the
+family are balanced exactly, with the limits and the g of their own motion, and their peaks are computed.
+Other members may differ more: this is an estimate and no bound.
 
-Where all else is linear the peak is the same for every t, and g is zero, until another contact opens, closes
-or slips. Then g is that of the mean load of the contact that comes nearest to it.
+Where everything else is linear, the peak is the same for every t and g is zero, until another contact opens,
+closes or slips. Then g is that of the mean load of the contact that comes nearest to such a change.
 
-A member ends where those contacts begin to slip. Its peak may be there, and that of the motion itself, too:
-in such a corner of the curve.
+A member's curve ends where those contacts begin to slip. The peak may lie at this end, a corner of the curve;
+so may the peak of the original motion.
 
-On a line t_i is a number and its limits an interval; in a plane it is a vector, within what all discs share.
+On a line t_i is a number and its limits are an interval. In a plane t_i is a vector in the intersection of
+the discs of all angles.
 """
 
 from __future__ import annotations
@@ -40,24 +41,24 @@ _End = tuple[float, float, FloatArray]  # of a stretch of a curve: length, slope
 class TractionOptions(Frozen):
     """Options on how the members of a family of motions with other residual tractions are found.
 
-    start_distance : distance at which the slider begins that comes to rest at its limit, in the size of its
-        motion and its limits.
-    min_change : change of the peak by a contact's traction, relative to the peak, below which it is ignored.
-    min_factor, max_factor, min_step : factor on a step that led to no motion; factor on one that did, along
-        the curve and on the way to the limits; and step relative to that way below which there is no motion.
-    max_members : most members on the way to the limits: near a corner of the curve steps may stay as short as
-        they are.
-    max_rounds : most times that the limits are computed, of the motion and along the derivatives at the
-        member found last.
+    start_distance : initial distance of a slider, relative to its motion and its limits, from which it comes
+        to rest at its limit.
+    min_change : change of the peak by the tractions, relative to the peak, below which they are ignored.
+    min_factor, max_factor, min_step : factor on a step that failed; factor on one that succeeded, along the
+        curve and towards the limits; and step, relative to the distance to the limits, below which there is
+        no member.
+    max_members : most steps towards the limits: near a corner of the curve steps may stay short.
+    max_rounds : most times that the limits are computed, with motion and derivatives of the last member.
     traction_tolerance : distance of a traction from its limit, relative to the greatest traction, that is
         accepted.
     stick_tolerance : difference of the forces of a contact from those of its springs, relative to these, up
         to which it always sticks.
-    initial_step, max_points, peak_tolerance : first length along the curve, most points, and relative
-        accuracy of the height, of a peak.
-    peak_threshold : amplitude relative to the peak of another degree of freedom, from which on a peak counts
-        as that peak, too.
-    max_peaks : most peaks of a curve that are looked at one by one.
+    initial_step, max_points, peak_tolerance : first step along the curve, most points, and relative accuracy
+    of
+        the height, in the search for a peak.
+    peak_threshold : amplitude of another degree of freedom at a peak, relative to its own peak, from which on
+        the same change holds for both.
+    max_peaks : most peaks of a curve that are computed.
     """
 
     start_distance: float = 10.0
@@ -80,7 +81,7 @@ TRACTION = TractionOptions()
 
 
 class FixedTractionContact(Law):
-    """A contact that always sticks, with a mean friction force (direction,) that is given."""
+    """Law of a contact that always sticks, with a prescribed mean friction force (direction,)."""
 
     def __init__(self, contact: Contact, law: KernelLaw) -> None:
         super().__init__(law.width, law.directions, law.margins, contact)
@@ -99,7 +100,7 @@ class FixedTractionContact(Law):
         return 0
 
     def mean_from(self, block: FloatArray, start: FloatArray) -> FloatArray | None:
-        """Mean friction force of a contact that began at a place; None where it slips or opens."""
+        """Mean friction force of a contact whose slider began at start; None where it slips or opens."""
         self.kernel.at(block, ContactParameters(self.mu, self.k_u, self.k_v, self.n_0, *start.tolist()))
         force, spring = np.array(self.kernel.forces), (self.springs * block)[self.directions :]
         off = np.abs(force[self.directions :] - spring).max()
@@ -107,7 +108,7 @@ class FixedTractionContact(Law):
 
 
 class _FixedTractionBalance:
-    """A balance some of whose contacts are held by given forces, and its peaks from a given one on."""
+    """A balance with prescribed mean friction in some contacts, and the search for its peaks."""
 
     def __init__(self, system: System, options: TractionOptions) -> None:
         self.system, self.options = system, options
@@ -121,7 +122,7 @@ class _FixedTractionBalance:
         self.scale = np.ones(self.balance.unknowns + 1)
 
     def fix(self, contacts: npt.NDArray[np.intp], mean: FloatArray) -> None:
-        """Hold some contacts, and no others, by mean friction forces (contact, direction)."""
+        """Prescribe the mean friction forces (contact, direction) of some contacts, and of no others."""
         laws: list[Law] = list(self.free)
         self.held = contacts.tolist()
         for i, one in zip(contacts.tolist(), mean, strict=True):
@@ -129,7 +130,10 @@ class _FixedTractionBalance:
         self.balance.laws = laws
 
     def solved(self, guess: FloatArray, row: FloatArray) -> FloatArray | None:
-        """The point in the plane across a row, in scaled coordinates; the tangent is then that there."""
+        """The solution near guess in the plane normal to row, in scaled coordinates; None if there is none.
+
+        newton.tangent is then the tangent of the curve there.
+        """
         self.system.work.poll()
         newton = self.newton
         newton.scale[:], newton.z[:], newton.row[:] = self.scale, guess, row
@@ -145,24 +149,24 @@ class _FixedTractionBalance:
         return np.array(self.balance.output), np.array(self.balance.growth)
 
     def begin(self, z: FloatArray, edge: bool) -> FloatArray | None:
-        """The direction of the curve at a point; that of the frequency at the end of a range."""
+        """The direction of the curve at a point; the frequency axis if edge, at an end of the range."""
         self.balance.evaluate_scale(z)
         self.scale = np.array(self.balance.scale)
         row = np.eye(z.size)[-1]
         return row if self.solved(z, row) is None or edge else np.array(self.newton.tangent)
 
     def sticks(self, z: FloatArray) -> bool:
-        """Whether the contacts that are held would stick all through the cycle, at whatever place."""
+        """Whether the contacts with prescribed friction would stick through the whole cycle."""
         blocks, origin = self.system.layout.blocks(z[None])[0], np.zeros(self.system.layout.directions - 1)
         each = ((self.laws[i], np.ascontiguousarray(blocks[i])) for i in self.held)
         return all(law.mean_from(block, origin) is not None for law, block in each)
 
     def peak(self, z: FloatArray, row: FloatArray, dof: int) -> FloatArray | None:
-        """The peak of a degree of freedom next to a point, uphill on the curve as far as the range goes.
+        """The peak of a degree of freedom next to a point: uphill on the curve within the frequency range.
 
-        Where the contacts that are held begin to slip the member ends, and its last point is its peak; it is
-        sought downhill from a point that slips. Across the row there may be none after a change of state, but
-        at the same frequency.
+        A member ends where the contacts with prescribed friction begin to slip; its last point may be the
+        peak. From a point that slips, the search goes downhill. After a change of state the plane normal to
+        row may have no solution; then the first point is computed at the same frequency.
         """
         low, high = self.system.scene.frequency_range
         options, here = self.options, self.solved(z, row)
@@ -198,7 +202,7 @@ class _FixedTractionBalance:
     def _last_sticking(
         self, here: FloatArray, ahead: FloatArray, sticks: float, slips: float, dof: int
     ) -> FloatArray | None:
-        """The last point that sticks, by bisection between two lengths along a direction."""
+        """The last point that sticks, by bisection between the lengths sticks and slips along a direction."""
         for _ in range(self.options.max_points):
             at = 0.5 * (sticks + slips)
             point = self.solved(here + at * self.scale * ahead, ahead)
@@ -211,7 +215,7 @@ class _FixedTractionBalance:
         return self.solved(here + sticks * self.scale * ahead, ahead)
 
     def _between(self, here: FloatArray, ahead: FloatArray, low: _End, high: _End, dof: int) -> FloatArray:
-        """The peak between two points at lengths along a direction, by their slopes: the Illinois method."""
+        """The peak between two points along a direction: the root of the slope by the Illinois method."""
         last = 0
         for _ in range(self.options.max_points):
             (a, up, _), (b, down, _) = low, high
@@ -229,7 +233,7 @@ class _FixedTractionBalance:
             if abs(growth[dof]) * (high[0] - low[0]) < self.options.peak_tolerance * height[dof]:
                 break
         peak = max((low[2], high[2]), key=lambda one: self.amplitudes(one, ahead)[0][dof])
-        self.solved(peak, ahead)  # for the tangent there
+        self.solved(peak, ahead)  # sets newton.tangent
         return peak
 
     def derivatives(
@@ -237,7 +241,7 @@ class _FixedTractionBalance:
     ) -> tuple[FloatArray, FloatArray]:
         """Derivatives of amplitudes and of mean normal displacements by the mean friction at some ports.
 
-        Along a row; (port, dof) of the amplitudes, (port, contact) of the displacements.
+        They are (port, dof) and (port, contact), in the plane normal to row.
         """
         balance, scale, layout = self.balance, self.scale, self.system.layout
         normal = np.asarray(balance.layout.mean_at)[layout.directions - 1 :: layout.directions]
@@ -264,7 +268,7 @@ class _FixedTractionBalance:
 
 
 class _Family:
-    """The members of the family of one peak whose tractions are at their limits."""
+    """The members of the family of one peak that have their tractions at the limits."""
 
     def __init__(
         self, members: _FixedTractionBalance, z: FloatArray, stuck: BoolArray, dof: int, edge: bool
@@ -274,16 +278,16 @@ class _Family:
         self.along = directions - 1
         self.ports = (directions * self.contacts[:, None] + np.arange(self.along)).ravel()
         contacts = [members.system.scene.contacts[i] for i in self.contacts]
-        self.fixed = np.zeros((len(contacts), self.along), dtype=np.bool_)  # beside others in a plane
+        self.fixed = np.zeros((len(contacts), self.along), dtype=np.bool_)  # no motion: contacts on a line
         self.fixed[:, 1:] = np.array([c.second is None for c in contacts])[:, None]
         members.fix(self.contacts[:0], np.zeros((0, self.along)))
         self.z, self.row = z, members.begin(z, edge)
 
     def change(self) -> FloatArray:
-        """Greatest relative changes of the amplitudes (dof,); NaN where no motion was found.
+        """Greatest relative changes of the amplitudes (dof,); NaN where no member was found.
 
-        In a corner of the curve, as where one begins to slip, the peak is the point itself, and only the
-        member with its traction has a direction there.
+        In a corner of the curve, as where a contact begins to slip, the peak is the point itself. Only the
+        member with the traction of that point has a tangent there.
         """
         members = self.members
         nothing = np.full(members.balance.outputs, np.nan)
@@ -317,9 +321,10 @@ class _Family:
     def _visited(
         self, z: FloatArray, row: FloatArray, mean: FloatArray, sense: float
     ) -> list[FloatArray] | None:
-        """Amplitudes (dof,) of the members on the way to the greatest, or the least, peak; None without one.
+        """Amplitudes (dof,) of the members visited towards the greatest (sense 1) or least (-1) peak.
 
-        Beyond a change of state a derivative may point the wrong way: each member at its limits counts.
+        None if no member was found. Every member at its limits counts, since a derivative may point the wrong
+        way after a change of state.
         """
         members, visited = self.members, list[FloatArray]()
         members.fix(self.contacts, mean)
@@ -336,7 +341,7 @@ class _Family:
                     return visited
                 by, size = towards, np.linalg.norm(towards, axis=1, keepdims=True)
             limits = self._limits(z, -sense * by / np.where(size > 0.0, size, 1.0))
-            if limits is None:  # one slips there
+            if limits is None:  # a contact slips there
                 return visited
             limits = np.where(size > 0.0, limits, mean)
             if np.abs(limits - mean).max() <= self.options.traction_tolerance * np.abs(limits).max():
@@ -353,10 +358,10 @@ class _Family:
         return visited
 
     def _by_nearest_load(self, z: FloatArray, normal: FloatArray) -> FloatArray | None:
-        """The derivative (contact, direction) of a load by the friction forces: of that contact which they
-        bring nearest to a change of state, or beyond. None where they bring none to it.
+        """Derivative (contact, direction), by the friction forces, of the load of one contact.
 
-        normal (port, contact): those of the mean normal displacements.
+        It is the contact that these forces bring nearest to a change of state, or beyond; None if they bring
+        no contact to it. normal (port, contact) are the derivatives of the mean normal displacements.
         """
         members, layout = self.members, self.members.system.layout
         laws, blocks = members.free, layout.blocks(z[None])[0]
@@ -377,8 +382,11 @@ class _Family:
         return found if change[near] > margin[near] else None
 
     def _limits(self, z: FloatArray, towards: FloatArray) -> FloatArray | None:
-        """The mean friction forces (contact, direction) of sliders that began unstressed, or far beyond their
-        limits towards a side (contact, direction)."""
+        """Mean friction forces (contact, direction) of sliders that began far beyond their limits.
+
+        towards (contact, direction) gives the side; sliders with 0 there began unstressed. None if a contact
+        slips or opens.
+        """
         members, layout = self.members, self.members.system.layout
         blocks = layout.blocks(z[None])[0]
         found = np.zeros_like(towards)
@@ -400,7 +408,7 @@ class _Family:
         return float(law.mu * (abs(law.n_0) + law.k_v * normal) + law.k_u * x.sum())
 
     def _moved(self, z: FloatArray, row: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray | None:
-        """The peak with other forces, in as many steps as it takes; None where that is too many."""
+        """Continue the peak from the friction forces begin to end; None if it takes too many steps."""
         members, done, share = self.members, 0.0, 1.0
         for _ in range(self.options.max_members):
             at = min(done + share, 1.0)
@@ -425,28 +433,28 @@ def peak_changes(
     stuck: BoolArray,
     options: TractionOptions = TRACTION,
 ) -> FloatArray:
-    """Relative changes of peaks (dof,) by residual tractions: an estimate, see the module.
+    """Estimate the relative changes of peaks (dof,) by residual tractions, as the module describes.
 
     Parameters
     ----------
     system : System
     z : (point, unknown + 1)
-        Of a curve; where a peak is at an end of the scene's range, its frequency is held.
+        Points of a curve; a peak at an end of the scene's range keeps its frequency.
     amplitude : (point, dof)
     top : (dof,)
         The points at which the peaks are.
     stuck : (dof, contact)
-        Whether a contact sticks all through the cycle there, and another may feel it.
+        Whether a contact sticks through the whole cycle there, and its traction may affect another contact.
     options : TractionOptions, optional
 
     Returns
     -------
     (dof,)
-        0 where nothing sticks that matters; NaN where no such motion was found, or there are too many peaks.
+        0 where no such contact sticks; NaN where no member was found, or there are too many peaks.
 
     Examples
     --------
-    A contact that sticks presses on nothing else, so that its traction changes no peak:
+    Here no other contact feels the traction of one that sticks, so that it changes no peak:
 
     >>> import fcm, numpy as np
     >>> system = System(fcm.load_scene("yang1998-n5"))

@@ -1,14 +1,14 @@
-r"""Digits of displacements where contacts are much stiffer than the structure.
+r"""Rounding error of displacements where contacts are much stiffer than the structure.
 
-The balance x = X - G F of displacements subtracts nearly equal numbers where a contact hardly moves. As many
-digits are lost as k |G| has before its point. A displacement that is small beside others may lose all of
-them. Where every contact only sticks or is open, the same motion is
+The balance x = X - G F subtracts nearly equal numbers where a contact hardly moves. It loses as many digits
+as k |G| has before its decimal point, and a relatively small displacement may lose all. Where every contact
+only sticks or is open, the same motion solves
 
     (H + k) x = f,    H = G^-1,    f = H X,
 
-the sum of stiffnesses and of forces on the contacts. Nothing cancels in it, provided that f is known as it is
-given: what acts along a contact's own direction is. Elsewhere it is told what digits are lost: the balance's
-own rounding, through the inverse of its Jacobian across the curve.
+a sum of stiffnesses and of forces on the contacts. Nothing cancels here, provided that f is known as given:
+forces along a contact's own direction are. Elsewhere the lost digits are reported: the rounding of the
+balance, through the inverse of its Jacobian across the curve.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class PreciseFundamental(NamedTuple):
-    """The fundamental where contacts are stiff, with the digits that can be kept.
+    """The fundamental at stiff contacts, solved without cancellation.
 
-    z (unknown + 1,) with it; X (dof,) of the degrees of freedom, of use for those that are no combination of
-    contacts' displacements; and how far the displacements (port,) and (dof,) are off by rounding.
+    z (unknown + 1,) contains it. X (dof,) is that of the degrees of freedom, used for those that are no
+    combination of contacts' displacements. ports (port,) and dofs (dof,) are rounding errors.
     """
 
     z: FloatArray
@@ -48,12 +48,12 @@ class PreciseFundamental(NamedTuple):
 def with_precise_fundamental(
     system: System, points: PointRecord, quick: npt.NDArray[np.bool_] | None = None
 ) -> tuple[PointRecord, FloatArray]:
-    """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
+    """Recompute points at stiff contacts; return them with the relative rounding of amplitudes (point, dof).
 
-    Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
-    Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
-    between two of these have the greater rounding of both. quick: the points stay as they are, and those
-    marked (point,), whose errors are known, are looked at like those of many contacts.
+    Where contacts are not stiff, points stay as they are and their rounding counts as 0. In a ring only the
+    rounding is computed. With many contacts it is computed at some points; a point between two of these gets
+    the greater rounding. With quick (point,) all points stay as they are, and the rounding is computed at
+    some of the marked points.
     """
     options, rounding = system.options.digits, np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)
@@ -100,14 +100,14 @@ def with_precise_fundamental(
 
 
 def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatArray:
-    """The greatest k |G| of the contacts at frequencies (point,); 0 where digits are counted of none."""
+    """The greatest k |G| of the contacts at frequencies (point,); 0 where no contact can be stiff."""
     linear = system.linear
     if not springs.size:
         return np.zeros(omega.size)
     if isinstance(linear, RingLinear):
         balance = system.new_balance()
         return np.array([_stiffest(balance, w, springs) for w in omega])
-    # a mode is nowhere softer than at its resonance: most structures need not be looked at point by point
+    # no mode is softer than at its resonance: for most structures this bound suffices
     least = np.minimum(np.sqrt(2.0) * linear.damping, 1.0) * linear.natural**2
     if (
         least.all()
@@ -131,7 +131,7 @@ def _receptance(balance: Balance) -> ComplexArray:
 
 
 class _Forces:
-    """The forces of a scene: those along contacts' directions, by port, and the others on the modes."""
+    """The forces of a scene: those along a contact's direction by port, the others by mode."""
 
     def __init__(self, system: System) -> None:
         scene = system.scene
@@ -164,7 +164,7 @@ class _Forces:
 
 
 def _share(direction: FloatArray, port: FloatArray) -> float:
-    """Factor by which a direction is a port's direction; 0 if it is not parallel to it."""
+    """Factor such that direction = factor * port; 0 if they are not parallel."""
     most = int(np.abs(port).argmax())
     same = port[most] != 0.0 and np.array_equal(direction * port[most], port * direction[most])
     return float(direction[most] / port[most]) if same else 0.0
@@ -173,7 +173,7 @@ def _share(direction: FloatArray, port: FloatArray) -> float:
 def _precise(
     balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces, options: DigitOptions
 ) -> PreciseFundamental | None:
-    """The point evaluated last with the digits that can be kept; None where that is as it is."""
+    """Solve (H + k) x = f at the point evaluated last; None where this is not possible."""
     G, held = _receptance(balance), _port_stiffness(balance, springs)
     receptance, linear, at, omega = (
         balance.receptance,
@@ -181,7 +181,7 @@ def _precise(
         _fundamental_positions(balance),
         float(z[-1]),
     )
-    other = len(linear.driven) > 1  # whose answer is no fundamental
+    other = len(linear.driven) > 1  # forces of another harmonic
     if (
         held is None
         or other
@@ -196,7 +196,7 @@ def _precise(
     computed = H @ (linear.ports.T @ (compliance * others))
     x = np.linalg.solve(H + np.diag(held), forces.on_ports(omega) + computed)
     z[at], z[at + 1] = x.real, x.imag
-    # the contacts take f - H x: what is left on the modes is P H x, and the others' forces without their f
+    # the contacts take f - H x: on the modes remain P H x, and the other forces without their part in f
     left = linear.ports @ (H @ x - computed) + others
     size = np.abs(H) @ np.abs(x) + np.abs(computed).max(initial=0.0)
     last_digit = options.last_digit
@@ -213,8 +213,10 @@ def _precise(
 def _as_balanced(
     balance: Balance, linear: Linear, springs: FloatArray, tangent: FloatArray, options: DigitOptions
 ) -> tuple[FloatArray, FloatArray]:
-    """How far the displacements (port,) and (dof,) of the point evaluated last are off by rounding, from what
-    its equations are summed of."""
+    """Rounding errors of the displacements (port,) and (dof,) at the point evaluated last.
+
+    They follow from the sizes of the terms in its equations.
+    """
     receptance, n, at = balance.receptance, balance.unknowns, _fundamental_positions(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
@@ -240,10 +242,10 @@ def _as_balanced(
 def moved_across_curve(
     balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray, options: DigitOptions
 ) -> FloatArray:
-    """Displacements (unknown,) of a point across the curve by errors (unknown,) of the equations, at most.
+    """Upper bound of the displacements (unknown,) across the curve by errors (unknown,) of the equations.
 
-    nan in a corner that the curve does not leave in the direction given. Of many contacts it is no bound but
-    some times the root of the mean square, over errors of random signs: no inverse is made of so many.
+    nan in a corner where the curve does not have the direction of tangent. With many contacts, where no
+    inverse is computed, it is an estimate: a multiple of the root mean square over errors of random signs.
     """
     balance.evaluate_scale(z)
     scale = np.array(balance.scale)
@@ -269,10 +271,10 @@ def moved_across_curve(
 def _ways(
     balance: Balance, matrix: FloatArray | None, row: FloatArray, scale: FloatArray, errors: FloatArray
 ) -> FloatArray:
-    """Displacements (way, unknown + 1) of a point, in units of scale, by errors (way, unknown) of the
-    equations.
+    """Displacements (way, unknown + 1) of a point, in units of scale, by errors (way, unknown).
 
-    They are solved for with the matrix, or where there is none with the condensed system."""
+    They are solved for with the matrix, or with the condensed system if matrix is None.
+    """
     if matrix is not None:
         right = np.vstack((errors.T, np.zeros(len(errors))))
         return np.asarray(np.linalg.solve(matrix, right).T, dtype=np.float64)
@@ -285,13 +287,13 @@ def _ways(
 
 
 def _fundamental_positions(balance: Balance) -> npt.NDArray[np.intp]:
-    """Indices of the real part of each port's fundamental among the unknowns."""
+    """Index (port,) of the real part of each port's fundamental among the unknowns."""
     places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.receptance.first]
     return places
 
 
 def _port_stiffness(balance: Balance, springs: FloatArray) -> FloatArray | None:
-    """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
+    """The stiffness of each port (port,) if every contact only sticks or stays open, else None."""
     d, stride = balance.directions, balance.receptance.stride
     j = d + stride * balance.receptance.first
     held = np.empty(springs.size)

@@ -1,9 +1,8 @@
-"""A contact with a law of one's own, as the balance sees it: its forces sampled over a cycle.
+"""Contact laws of one's own in the balance: forces sampled over a cycle (alternating frequency and time).
 
     x(theta_s) = x_0 + Re sum_j X_j exp(i h_j theta_s),    F_h = 2/S sum_s f(theta_s) exp(-i h theta_s)
 
-so that what the law does beyond the harmonic S/2 folds back (alternating frequency and time; Cameron and
-Griffin, Journal of Applied Mechanics 56, 1989).
+Harmonics of the law beyond S/2 are aliased (Cameron and Griffin, Journal of Applied Mechanics 56, 1989).
 """
 
 from __future__ import annotations
@@ -21,10 +20,10 @@ from fcm.structure.layout import Layout
 
 
 class SampledLaw(Law):
-    """Forces of the harmonics `outputs` of a motion with others, and their tangent.
+    """Forces in the harmonics `outputs` of a motion with other harmonics, and their tangent.
 
-    It has as many margins as the other contacts, and none of them is one: where the law is not smooth is not
-    known. What it bears is sampled; of the way of a slip nothing is known, which is 0 here.
+    There are as many margins as in the other contacts, all marked as absent: it is unknown where the law is
+    not smooth. The contact loads are sampled; the slip distance is unknown and counts as 0.
     """
 
     def __init__(
@@ -56,7 +55,7 @@ class SampledLaw(Law):
         self.force, self.tangent = np.zeros(answer.width), np.zeros((answer.width, motion.width))
 
     def set_parameters(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
-        """Take the numbers of the same contact, which the law has not."""
+        """Do nothing: a law of one's own does not use the parameters of the contact."""
 
     def evaluate(self, x: FloatArray, first: int) -> int:
         """Compute forces and tangent from the sampled law."""
@@ -74,7 +73,7 @@ class SampledLaw(Law):
         return 0
 
     def compute_resistance(self) -> int:
-        """Fill the resistance: the tangent of the means."""
+        """Fill `resistance` with the tangent of the means."""
         self.resistance[:, :] = np.asarray(self.tangent)[: self.directions, : self.directions]
         return 0
 
@@ -94,7 +93,7 @@ class SampledLaw(Law):
         return np.asarray(self.variation @ block)
 
     def _sampled(self, motion: FloatArray, variation: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Forces of the law, less those at rest, and their changes; ContactLawError if they are of no use."""
+        """Forces of the law, less those at rest, and their changes; ContactLawError if they are invalid."""
         found = self.own.forces(motion, variation)
         if not isinstance(found, tuple | list) or len(found) != 2:
             what = f"an array of shape {found.shape}" if isinstance(found, np.ndarray) else _kind(found)
@@ -119,7 +118,7 @@ class SampledLaw(Law):
 
 
 def _kind(found: object) -> str:
-    """What a law has returned in place of two arrays.
+    """Describe what a law has returned instead of two arrays.
 
     >>> _kind((1.0, 2.0, 3.0)), _kind(None)
     ('3 values', 'a NoneType')
@@ -128,9 +127,9 @@ def _kind(found: object) -> str:
 
 
 def check_own_laws(scene: Scene) -> None:
-    """Raise ContactLawError where a contact's own law gives no forces of a motion, or not their changes.
+    """Raise ContactLawError where a contact law of one's own returns invalid forces or wrong changes.
 
-    `ContactLaw.off_by` is taken at motions as large as those at which the contact may slip, and larger ones.
+    `ContactLaw.off_by` is evaluated at motions of the size at which the contact may slip, and at larger ones.
     """
     most = HARMONIC_BALANCE.own_law_changes
     for contact in scene.contacts:
@@ -148,7 +147,7 @@ def check_own_laws(scene: Scene) -> None:
 def _off_by(contact: Contact, law: ContactLaw, directions: int) -> float:
     """Greatest error of a law's changes at motions of two sizes.
 
-    Of each the least of two motions: one may have a sample where the forces have a corner.
+    For each size the lesser error of two motions counts: one may have a sample in a corner of the forces.
     """
     slip = contact.mu * abs(contact.n_0) / contact.k_u if contact.k_u > 0.0 else 0.0
     motions = np.random.default_rng(1).normal(size=(2, 2, directions, 8)) * (slip or 1.0)
@@ -160,7 +159,7 @@ def _off_by(contact: Contact, law: ContactLaw, directions: int) -> float:
 
 
 def _waves(layout: Layout, harmonics: Sequence[int], angle: FloatArray) -> FloatArray:
-    """Motion over the cycle by each unknown of a contact alone: (direction, sample, unknown)."""
+    """Motion (direction, sample, unknown) over the cycle for a unit value of each unknown of a contact."""
     found = np.zeros((layout.directions, angle.size, layout.width))
     for d in range(layout.directions):
         found[d, :, d] = 1.0

@@ -1,12 +1,12 @@
-"""Rest under static loads: the equilibrium to which they bring the structure and its contacts.
+"""Equilibrium of the structure and its contacts under static loads.
 
-The loads grow from nothing, all in proportion, with no harmonic force beside them. A closed contact resists
-with k_u (u - 0) as far as mu n allows, for it is unstressed without them, and with its k_v; what is a preload
-without the loads is one still. So contacts that stick hold rigid-body modes that move none along its normal:
-such a mode rests where their friction balances the loads along it. Vibration leaves it there in the mean.
-The harmonic balance has this equilibrium as the limit of small forces.
+All loads grow from zero in proportion, without harmonic forces. A closed contact resists with k_u u as far as
+mu n allows, as it is unstressed without the loads, and with k_v. Preloads remain. So contacts that stick can
+hold a rigid-body mode that moves no contact along its normal: the mode rests where their friction balances
+the loads along it. Vibration leaves its mean there. This equilibrium is the limit of the harmonic balance for
+small forces.
 
-Where contacts start with friction, by [start], that grows with the loads, and strains the structure as well.
+Initial friction of contacts, by [start], grows with the loads and strains the structure as well.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ class RestError(ValueError):
 
 
 class HeldStructure(Frozen):
-    """The structure in coordinates that the contacts at their stiffest hold: its modes, but of rigid-body
-    modes adrift those combinations that move no contact with friction.
+    """The structure in coordinates that the contacts, if all stick, hold.
 
-    modes (mode, coordinate); stiffness (coordinate,), 0 of rigid-body motions; ports (coordinate, port);
-    load (coordinate,).
+    The coordinates are the modes; rigid-body modes adrift are replaced by those of their combinations that
+    move a contact with friction. modes (mode, coordinate); stiffness (coordinate,), 0 for rigid-body motions;
+    ports (coordinate, port); load (coordinate,).
     """
 
     modes: FloatArray
@@ -61,7 +61,7 @@ class HeldStructure(Frozen):
 
     @classmethod
     def of(cls, system: System) -> HeldStructure:
-        """The coordinates of a system, as `HeldStructure`."""
+        """The held structure of a system."""
         linear = system.linear
         turn, count = _held_by_friction(linear, system.springs(stuck=True))
         modes = np.hstack(
@@ -80,17 +80,19 @@ class HeldStructure(Frozen):
 
 
 def _held_by_friction(linear: Linear, springs: FloatArray) -> tuple[FloatArray, int]:
-    """A turn (adrift, adrift) of the rigid-body modes adrift, of which the first move contacts with friction,
-    and how many these are."""
+    """Rotate the rigid-body modes adrift so that the first ones move contacts with friction.
+
+    Return the rotation (adrift, adrift) and the number of these modes.
+    """
     turn, size, _ = np.linalg.svd(linear.ports[linear.adrift] * (springs > 0.0))
     return turn, int(np.count_nonzero(size > RIGID_BODY.min_normal_motion * size.max(initial=0.0)))
 
 
 class StaticLoadProblem(Problem):
-    """Forces of the structure, the contacts and the static loads, followed in the share of the loads.
+    """Static equilibrium as a continuation problem, with the share of the loads as parameter.
 
-    Unknowns are the coordinates of `HeldStructure`. Shares are measured by themselves, and below a unit by
-    that.
+    The unknowns are the coordinates of `HeldStructure`. unit is the least unit of the share; a greater share
+    is its own unit.
     """
 
     def __init__(
@@ -106,14 +108,14 @@ class StaticLoadProblem(Problem):
             held,
         )
         self.counted, self.mean_at, self.moved = system.linear.counted, system.layout.mean_at, 0.0
-        self.force = np.zeros(held.ports.shape[1])  # of the contacts, beyond their preloads
+        self.force = np.zeros(held.ports.shape[1])  # of the contacts, without their preloads
         self.sliders = system.scene.sliders()
         self.at = np.zeros(balance.unknowns + 1)
-        self.at[-1] = max(float(system.linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
+        self.at[-1] = max(float(system.linear.natural.max(initial=0.0)), 1.0)  # any frequency will do
         self.stiffest = held.stiffness + held.ports**2 @ system.springs(stuck=True)
 
     def evaluate(self, z: FloatArray) -> int:
-        """Residual and derivatives, each coordinate's over its stiffness with the contacts."""
+        """Fill residual and Jacobian; each row is divided by the stiffness with all contacts stuck."""
         y, share, d = np.asarray(z)[:-1], float(z[-1]), self.balance.directions
         at = self._placed(z)
         self.balance.evaluate(at)
@@ -131,7 +133,7 @@ class StaticLoadProblem(Problem):
         return 0
 
     def evaluate_scale(self, z: FloatArray) -> int:
-        """Fill the units: of coordinates the greatest root mean square so far of the ports' displacements."""
+        """Fill the units; those of coordinates follow from the greatest RMS port displacement so far."""
         y, ports = np.asarray(z)[:-1], self.held.ports
         self.moved = max(self.moved, float(np.sqrt(np.mean((y @ ports) ** 2))))
         motion = np.abs(ports).max(axis=1)
@@ -150,7 +152,7 @@ class StaticLoadProblem(Problem):
     def balances_rigid_body(self, z: FloatArray, tolerance: float) -> bool:
         """Whether contact forces balance the loads along all rigid-body motions.
 
-        Where no contact holds one the equations are singular, and what solves them is rounding.
+        Where no contact holds such a motion, the equations are singular and their solution is rounding error.
         """
         self.evaluate(z)
         rigid = self.held.stiffness == 0.0
@@ -168,16 +170,18 @@ class StaticLoadProblem(Problem):
 
 
 class AtRest(NamedTuple):
-    """Displacements at rest under the static loads: of the ports (port,), from where contacts start
-    unstressed, and of the modes adrift (mode,), where the friction of contacts that stick holds them; 0 of
-    other modes."""
+    """Displacements at rest under the static loads.
+
+    ports (port,) count from where contacts start unstressed. adrift (mode,) are those of the modes adrift,
+    which the friction of sticking contacts holds; 0 for other modes.
+    """
 
     ports: FloatArray
     adrift: FloatArray
 
 
 def equilibrium(system: System) -> AtRest:
-    """The equilibrium of a system under its static loads and the friction it starts with; else zeros.
+    """Equilibrium of a system under its static loads and initial friction; zeros if it has neither.
 
     Raises
     ------
@@ -226,8 +230,10 @@ def normal_forces_at_rest(scene: Scene) -> FloatArray:
 
 
 def loads_move_rigid_body(linear: Linear, springs: FloatArray) -> bool:
-    """Whether static loads push along a rigid-body mode that not even springs (port,) hold, those of contacts
-    that are all stuck."""
+    """Whether static loads push along a rigid-body mode that the springs (port,) do not hold.
+
+    springs are the stiffnesses with all contacts stuck.
+    """
     if not linear.adrift.any():
         return False
     turn, count = _held_by_friction(linear, springs)
@@ -236,13 +242,12 @@ def loads_move_rigid_body(linear: Linear, springs: FloatArray) -> bool:
 
 
 def check_contacts_can_close(system: System) -> None:
-    """Raise RestError where no contact can bear a normal force in the mean, though contacts must hold the
-    structure.
+    """Raise RestError where no contact can bear a mean normal force, though contacts must hold the structure.
 
-    In the mean the forces of a steady state balance along each rigid-body mode. Without preloads or loads
-    these are normal forces, none of them negative, and friction of no more than mu times each. If they are
-    all zero wherever they balance, which a linear program tells, no contact closes. The circle of friction in
-    a plane is within a square here, so that nothing is refused that may close.
+    In a steady state the mean forces balance along each rigid-body mode. Without preloads or loads they are
+    normal forces >= 0, and friction of at most mu times each. A linear program maximises the normal forces.
+    If its maximum is 0, no contact closes. A square replaces the friction circle of a plane and contains it,
+    so that no structure is refused whose contacts may close.
     """
     scene, linear = system.scene, system.linear
     rigid = (linear.natural == 0.0) & ~linear.adrift
@@ -268,14 +273,14 @@ def check_contacts_can_close(system: System) -> None:
 
 
 def _linear(system: System, held: HeldStructure, share: float) -> Iterator[FloatArray]:
-    """Linear equilibria: with the contacts as they are without the loads, then all stuck, then all open."""
+    """Yield linear equilibria: with the contacts as without loads, then all stuck, then all open."""
     n_0 = np.array([c.n_0 for c in system.scene.contacts])
     d, sliders = system.layout.directions, system.scene.sliders()
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
         springs = system.springs(stuck=True) * np.repeat(closed, d)
         if not held.rigid_by(springs):
             continue
-        force = 0.0 - share * springs * sliders  # of the springs where u = v = 0
+        force = 0.0 - share * springs * sliders  # spring forces at u = v = 0
         force[d - 1 :: d] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
         stiffness = np.diag(held.stiffness) + (held.ports * springs) @ held.ports.T
         unit = 1.0 / np.sqrt(stiffness.diagonal())
@@ -299,7 +304,7 @@ def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     z[balance.layout.mean_at], z[-1] = ports, 1.0
     balance.evaluate(z)
     force = np.asarray(balance.force)[balance.layout.mean_at]
-    q = linear.flexibility @ (linear.load - linear.ports @ force)  # of mass 1, rigid ones turned
+    q = linear.flexibility @ (linear.load - linear.ports @ force)  # mass-normalised, rigid-body modes rotated
     q += system.adrift_at_rest
     moved, rigid = q / np.sqrt(modal.mass), linear.natural == 0.0
     if rigid.any():

@@ -1,10 +1,10 @@
-"""Contacts so much stiffer than the structure that rounding decides what they do: what to take instead.
+"""Advice on contacts so much stiffer than the structure that rounding decides their state.
 
-A contact's force is its stiffness times a difference of displacements, of which one rounding stays. Beside
-the force that the structure bears this is k |G| roundings. Where the force changes from stick to slip no
-curve is followed through more than some 1e-9 of it. Long before, the contact is nearly rigid: the effect of
-its compliance falls at least as the root of the stiffness, as where a mass bounces on it. How nearly depends
-on the structure, where a resonance or a bounce magnifies that effect.
+A contact force is the stiffness times a difference of displacements, which has one rounding error. Relative
+to the force that the structure bears, this is k |G| rounding errors. At a change from stick to slip no curve
+can be followed with an error above some 1e-9. A far softer contact is already nearly rigid: the effect of its
+compliance falls at least as the inverse root of the stiffness, as for a mass that bounces on it. A resonance
+or a bounce of the structure magnifies this effect.
 """
 
 from __future__ import annotations
@@ -16,10 +16,9 @@ from fcm.model.scene import FloatArray
 
 
 def too_stiff(system: System, moves: bool = False) -> str:
-    """Sentence on a contact whose stiffness leaves no digits, and what to take instead; empty without any.
+    """Sentence on the stiffest contact, if it is too stiff, with a stiffness to use instead; else empty.
 
-    moves: whether what is said is of the motion in time, which has the digits, but of which every vibration
-    on a contact that sticks is followed.
+    moves: for integration in time, which loses no digits but follows every vibration on a sticking contact.
     """
     springs = system.springs(stuck=True)
     if not springs.size:
@@ -46,7 +45,7 @@ def too_stiff(system: System, moves: bool = False) -> str:
 
 
 def _least_receptance(system: System) -> FloatArray:
-    """Receptances |G| of each port in its own direction, the least at the ends of the range."""
+    """Receptance |G| (port,) of each port on itself, the lesser of those at the two ends of the range."""
     receptance, found = system.shared_balance.receptance, []
     for omega in system.scene.frequency_range:
         receptance.at(omega)

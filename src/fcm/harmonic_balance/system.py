@@ -1,4 +1,4 @@
-"""A scene (of one curve) as a balance of some harmonics."""
+"""`System`: a scene of one curve with its linear structure and the balanced harmonics."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ Options = TypeVar("Options")
 
 
 class System(Frozen):
-    """A scene with its linear structure, and the harmonics that are balanced, the first of which is 1.
+    """A scene with its linear structure and the balanced harmonics, the first of which is 1.
 
-    The harmonics of its forces are balanced whatever harmonics are asked for.
+    The harmonics of the forces are always balanced, even if not asked for.
 
-    With one harmonic the coefficients of a table may be the contacts' law, see `table_balance`: that of
-    this balance if it is not corrected. condensation says when the linear systems of many contacts are
-    condensed, options has all other tolerances and limits of the balance. What is computed from it, as its
-    branches, has options classes of its own: other_options are those that are not the default.
+    With one harmonic, a table may give the coefficients of the contact laws: this balance uses it if
+    corrected is false, see `table_balance`. condensation has the options on linear systems of many contacts,
+    options all other tolerances and limits of the balance. other_options has instances of options classes for
+    computations that use the system, such as branches, where they are not the default.
     """
 
     scene: Scene
@@ -67,7 +67,7 @@ class System(Frozen):
     port_responses: dict[float, ComplexArray] = field(
         init=False, default_factory=dict
     )  # see `linear_contacts`
-    cache: dict[object, object] = field(init=False, default_factory=dict)  # known of its contacts' states
+    cache: dict[object, object] = field(init=False, default_factory=dict)  # results on its contacts' states
     work: WorkCount = field(init=False, default_factory=WorkCount, compare=False)
 
     def __post_init__(self) -> None:
@@ -76,7 +76,7 @@ class System(Frozen):
         object.__setattr__(self, "coefficients", ClosedForm() if self.table is None else self.table.law())
 
     def of(self, scene: Scene) -> System:
-        """A balance of another scene with the same harmonics and options."""
+        """A new system of another scene, with the same harmonics and options."""
         return System(
             scene,
             self.harmonics,
@@ -88,7 +88,7 @@ class System(Frozen):
         )
 
     def option(self, default: Options) -> Options:
-        """The options of a class that were given for what is computed from the system, or the default."""
+        """The options in other_options that have the class of default, or default itself."""
         given = (one for one in self.other_options if isinstance(one, type(default)))
         return next(given, default)
 
@@ -97,7 +97,7 @@ class System(Frozen):
         return self._with(harmonics=self._with_driven(harmonics))
 
     def with_scene(self, scene: Scene) -> System:
-        """The system of another scene, with the same harmonics and options; its work is counted together."""
+        """The system of another scene, with the same harmonics, options and work count."""
         return self._with(scene=scene, linear=linear_of(scene), port_responses={}, cache={})
 
     def _with_driven(self, harmonics: tuple[int, ...]) -> tuple[int, ...]:
@@ -106,12 +106,15 @@ class System(Frozen):
 
     @cached_property
     def own_laws(self) -> bool:
-        """Whether a contact has a law of its own."""
+        """Whether any contact has a law of one's own."""
         return any(one.law is not None for one in self.scene.contacts)
 
     @cached_property
     def preload_unit(self) -> float:
-        """The greatest preload, where the other curves of a sweep may be the same but for that; else 0."""
+        """The greatest preload if curves of a sweep may be the same but for a factor, else 0.
+
+        This requires that only preloads are swept, and that all are nonzero.
+        """
         scene = self.scene
         swept = [key.startswith("contact.") and key.endswith(".n_0") for key in scene.parameters]
         plain = type(self.linear) is Linear and self.corrected and not scene.strained and not self.own_laws
@@ -122,12 +125,12 @@ class System(Frozen):
     def normalised(self) -> System:
         """The system with all preloads divided by the greatest."""
         contacts = tuple(replace(one, n_0=one.n_0 / self.preload_unit) for one in self.scene.contacts)
-        own, work = self.work, WorkCount()  # which those that share the curve are charged with
-        work.poll = lambda: own.poll()  # of now, which may be another later
+        own, work = self.work, WorkCount()  # charged to the systems that share the curve
+        work.poll = lambda: own.poll()  # looked up at each call, as it may change
         return self._with(scene=replace(self.scene, contacts=contacts), work=work)
 
     def _with(self, **other: object) -> System:
-        """The system with other fields; of what follows from them the equilibrium of its scene is kept."""
+        """The system with other fields; it keeps the cached equilibrium if the scene is the same."""
         found = object.__new__(type(self))
         kept = {*self.__dataclass_fields__} | ({"_at_rest"} if "scene" not in other else set())
         found.__dict__.update({name: value for name, value in vars(self).items() if name in kept}, **other)
@@ -143,14 +146,16 @@ class System(Frozen):
         return layout_of(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
 
     def extended(self, z: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
-        """Unknowns (..., unknown + any) with other harmonics, and what follows them, as those of this: what
-        these lack is zero."""
+        """Convert unknowns (..., unknown + any) from other harmonics to those of this system.
+
+        Missing harmonics are zero; the entries after the unknowns are kept.
+        """
         return self.layout_of(harmonics).with_harmonics(z, harmonics, self.harmonics)
 
     @cached_property
     def _at_rest(self) -> AtRest:
         """The equilibrium at rest, see `harmonic_balance.static_equilibrium`."""
-        from fcm.harmonic_balance.static_equilibrium import equilibrium  # which balances a system
+        from fcm.harmonic_balance.static_equilibrium import equilibrium  # that module imports this one
 
         return equilibrium(self)
 
@@ -173,7 +178,7 @@ class System(Frozen):
 
     @property
     def shared_balance(self) -> Balance:
-        """A balance that is shared by whatever looks at points or follows curves, one after the other."""
+        """The balance that all evaluations and curves of this system share, one after the other."""
         return self._workspace.reset_for(self).balance
 
     @property
@@ -183,7 +188,7 @@ class System(Frozen):
 
     @property
     def level_problem(self) -> tuple[ForceLevelProblem, Stepper]:
-        """The `shared_balance` as a problem in the level of its forces."""
+        """The `shared_balance` with the level of its forces as parameter, and its stepper."""
         return self._workspace.reset_for(self).level_problem
 
     @cached_property
@@ -192,9 +197,9 @@ class System(Frozen):
 
     @contextmanager
     def exclusive_balance(self) -> Iterator[None]:
-        """Context in which no other system takes this balance, as one of a progress would.
+        """Context in which no other system uses this balance, as a progress callback might.
 
-        Nor does one after an error, in the middle of which it was left: it is forgotten.
+        After an error the balance may be inconsistent and is not used again.
         """
         mine = self._workspace
         before, mine.exclusive = mine.exclusive, True
@@ -206,17 +211,17 @@ class System(Frozen):
         mine.exclusive = before
 
     def reset_balance(self) -> Balance:
-        """The `shared_balance` at the level 1, as if nothing had been followed yet."""
+        """The `shared_balance` at level 1, as before any curve was followed."""
         balance = self.shared_balance
         balance.largest[:] = 0.0
         balance.load = 1.0
         return balance
 
     def new_balance(self, loaded: bool = True) -> Balance:
-        """A new balance, to be followed in the frequency.
+        """A new balance with the frequency as parameter.
 
-        loaded: whether with the static loads. The unknowns are displacements from where contacts start
-        unstressed, see `Scene.sliders`.
+        loaded: whether static loads act. The unknowns are displacements from where contacts start unstressed,
+        see `Scene.sliders`.
         """
         low, high = self.scene.frequency_range
         linear = self.linear
@@ -239,7 +244,7 @@ class System(Frozen):
 
     @cached_property
     def modal_compliance(self) -> FloatArray:
-        """Compliance of each mode (mode,) beside the contacts; empty for a ring."""
+        """Compliance of each mode (mode,) relative to the contacts; empty for a ring."""
         linear, highest = self.linear, max(self.harmonics) * self.scene.frequency_range[1]
         if type(linear) is not Linear:
             return np.zeros(0)
@@ -248,9 +253,10 @@ class System(Frozen):
 
     @cached_property
     def table_balance(self) -> System | None:
-        """The system that is balanced by the table, to tell how far its solutions are off; None without one.
+        """The system balanced by the table, from which the errors of the table are computed.
 
-        Where solving takes the time the closed form costs no more than a table, and none is looked at.
+        None without a table, with further harmonics, or for a condensed system: there solving takes most of
+        the time, so that a table saves none.
         """
         with_one = self.harmonics == (1,) and self._of_one_harmonic
         if self.table is None or not self.corrected or not with_one or self.shared_balance.rank:
@@ -259,24 +265,24 @@ class System(Frozen):
 
     @property
     def _of_one_harmonic(self) -> bool:
-        """Whether the law of one harmonic holds for all contacts: on a line, without own laws."""
+        """Whether `SingleHarmonicLaw` holds for all contacts: on a line, without laws of one's own."""
         return not self.scene.planar and not self.own_laws
 
     def laws(self) -> list[Law]:
-        """Contact laws of the balance; those on a line with one harmonic in closed form, or by the table."""
+        """Contact laws of the balance; on a line with one harmonic in closed form, or by the table."""
         if self.harmonics != (1,) or not self._of_one_harmonic:
             return self.exact_laws(self.harmonics)
         of = ClosedForm() if self.corrected else self.coefficients
         return [SingleHarmonicLaw(of, c) for c in self.scene.contacts]
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
-        """Contact laws with the exact forces of the motion, in some harmonics."""
+        """Contact laws with the exact forces of the motion, in the harmonics outputs."""
         return self.exact_laws_of(self.harmonics, outputs)
 
     def exact_laws_of(self, harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> list[Law]:
-        """Contact laws with the exact forces of a motion with other harmonics."""
+        """Contact laws of a motion with other harmonics, with the exact forces in the harmonics outputs."""
         found: list[Law] = []
-        if self.scene.planar:  # one on a line is one in whose second direction nothing moves
+        if self.scene.planar:  # a contact on a line does not move in the second direction
             found += laws_in_a_plane(planar_contact(harmonics, outputs), self.scene.contacts)
         else:
             found += laws_on_a_line(periodic_contact(harmonics, outputs), self.scene.contacts)
@@ -289,23 +295,23 @@ class System(Frozen):
         return found
 
     def springs(self, stuck: bool) -> FloatArray:
-        """Stiffnesses of all contacts (port,), all stuck or all open."""
+        """Stiffnesses (port,) with all contacts stuck, or 0 with all open."""
         along = self.scene.directions_of_contact - 1
         each = [(*[c.k_u if c.mu > 0.0 else 0.0] * along, c.k_v) for c in self.scene.contacts]
         return np.array(each).ravel() * float(stuck)
 
 
 class _Workspace:
-    """A balance and its fronts, shared in turn by systems that differ in their contacts alone.
+    """A balance and its steppers, shared in turn by systems that differ only in their contacts.
 
-    exclusive: no other system takes it now.
+    exclusive: no other system may use it now.
     """
 
     def __init__(self, system: System) -> None:
         self.system, self.balance, self.exclusive = system, system.new_balance(), False
 
     def reset_for(self, system: System) -> _Workspace:
-        """Take a system with other contacts, and forget what is known."""
+        """Switch to a system with other contacts, and reset the balance."""
         if self.system is not system:
             self.system, self.balance.laws = system, system.laws()
             system.reset_balance()
@@ -322,13 +328,13 @@ class _Workspace:
 
 
 class _WorkspaceCache(threading.local):
-    """The workspaces that each thread used last, by what they are for."""
+    """The workspaces that each thread used last, by structure, range and harmonics."""
 
     def __init__(self) -> None:
         self.by_key: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
 
     def forget(self, workspace: _Workspace) -> None:
-        """Give a workspace to no further system."""
+        """Remove a workspace from the cache."""
         for key in [key for key, kept in self.by_key.items() if kept is workspace]:
             del self.by_key[key]
 
@@ -337,7 +343,7 @@ _WORKSPACES = _WorkspaceCache()
 
 
 def _workspace_of(system: System) -> _Workspace:
-    """The workspace for a system: if it is small, that of a system before it, as in a sweep."""
+    """The workspace for a system; a small system uses that of an earlier one, as in a sweep."""
     scene, kept = system.scene, _WORKSPACES.by_key
     large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.max_size
     if scene.ring is not None or scene.strained or system.own_laws or large:
@@ -345,7 +351,7 @@ def _workspace_of(system: System) -> _Workspace:
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, scene.reported, system.harmonics, *approximate)
     found = kept.pop(key, None)
-    own = system.options, system.condensation  # whose hash takes as long as a point
+    own = system.options, system.condensation  # not in the key: their hash takes as long as a point
     if found is None or (found.system.options, found.system.condensation) != own:
         found = _Workspace(system)
     kept[key] = found
@@ -355,7 +361,7 @@ def _workspace_of(system: System) -> _Workspace:
 
 
 def _displacements(linear: Linear, receptance: Receptance, options: ExtremeOptions) -> Displacements:
-    """The displacements of the structure that a receptance belongs to."""
+    """The displacements of a structure, with the class that its receptance needs."""
     if not (isinstance(linear, RingLinear) and isinstance(receptance, TravellingReceptance)):
         return Displacements(receptance, linear, options)
     shapes = [linear.wave(int(h)).dofs for h in receptance.harmonics]

@@ -1,4 +1,4 @@
-"""The greatest values over a cycle of many motions of several harmonics at once."""
+"""Extremes over a cycle of many motions with several harmonics at once."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def half_peak_to_peak(
 def greatest(
     X: ComplexArray, h: npt.NDArray[np.intp], options: ExtremeOptions = HARMONIC_BALANCE.extremes
 ) -> FloatArray:
-    """The greatest of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof).
+    """Maximum (point, dof) over a cycle of x = Re sum X_h exp(i h theta), X (point, harmonic, dof).
 
-    Sought at all extremes next to samples that may be as high. Between samples x rises by the curvature times
-    the square of half their distance over 2, at most.
+    All local maxima next to samples that may be highest are computed. Between samples x rises by at most half
+    the curvature times the square of half the sampling interval.
     """
     samples = options.samples * h[-1]
     step = 2.0 * np.pi / samples
@@ -43,8 +43,7 @@ def greatest(
 def _extreme(
     X: ComplexArray, h: npt.NDArray[np.intp], start: FloatArray, step: float, steps: int
 ) -> FloatArray:
-    """The displacements (n,) of motions X (n, harmonic) at extremes next to angles, by steps of Newton's
-    method."""
+    """Displacements (n,) of motions X (n, harmonic) at the extremes next to angles, by Newton's method."""
     theta = start
     for _ in range(steps):
         turns = X * np.exp(1j * h * theta[:, None])

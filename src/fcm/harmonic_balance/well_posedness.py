@@ -1,9 +1,9 @@
-"""Points that are no steady states, or not determined, because of a rigid-body mode.
+"""Points at which a rigid-body mode makes the motion undetermined, or no steady state.
 
-Friction does not depend on where a mode adrift is, so that the balance leaves its mean where it is at
-rest. Where all contacts slip, nothing balances that: the structure creeps on. Contacts that stick hold it by
-residual friction, as long as their share does not make them slip. And while no closed contact carries any
-load along the other rigid-body modes, the structure floats in its gaps.
+Friction does not depend on the position of a mode adrift, so that the balance keeps its mean as it is at
+rest. Where all contacts slip, nothing balances a mean force along this mode: the structure creeps. Contacts
+that stick hold it by residual friction, unless this force makes them slip. Along the other rigid-body modes
+the structure floats in its gaps while no closed contact carries load.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ REASONS = {
 def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, BoolArray]:
     """Whether "pushed" and "floating" of REASONS apply at points z (point, unknown + 1), each (point,).
 
-    force (point, unknown): of the contacts, laid out as the unknowns.
+    force (point, unknown): contact forces, laid out as the unknowns. Empty without rigid-body modes.
     """
     if system.linear.natural.size == 0 or system.linear.natural.min() > 0.0:
         return {}
@@ -39,9 +39,9 @@ def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, 
 
 
 def hold_unknown(system: System, z: FloatArray, force: FloatArray) -> BoolArray:
-    """Whether contacts that stick may hold the structure at points, or slip: z, force as of `undetermined`.
+    """Points (point,) where it is unknown whether sticking contacts hold the structure or slip.
 
-    Their stability is not known.
+    z, force are those of `undetermined`. The stability of these points is unknown.
     """
     if not system.linear.adrift.any():
         return np.zeros(len(z), dtype=np.bool_)
@@ -49,10 +49,11 @@ def hold_unknown(system: System, z: FloatArray, force: FloatArray) -> BoolArray:
 
 
 def _pushed(system: System, z: FloatArray, x: FloatArray, force: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Whether the mean friction on a mode adrift does not balance the static loads on it and nothing holds
-    it; and whether something may.
+    """Whether points are pushed along a mode adrift, and where this is unknown, each (point,).
 
-    x, force (point, contact, width) at points z (point, unknown + 1).
+    A point is pushed if mean friction and static loads on the mode do not balance and no sticking contact
+    holds it. It is unknown whether contacts hold that would need more friction than they have left. x, force
+    (point, contact, width) at points z (point, unknown + 1).
     """
     layout, linear = system.layout, system.linear
     d, first = layout.directions, layout.directions + layout.stride * system.harmonics.index(1)
@@ -88,7 +89,7 @@ def _sticking(system: System, z: FloatArray) -> BoolArray:
 
 
 def _friction_margin(system: System, x: FloatArray, force: FloatArray) -> FloatArray:
-    """Least distance of friction from its limit over the cycle (point, contact); 0 if it is beyond."""
+    """Least distance of friction from its limit over the cycle (point, contact); 0 beyond the limit."""
     layout, contacts = system.layout, system.scene.contacts
     d, harmonics = layout.directions, np.array(system.harmonics)
     samples = system.options.extremes.samples * int(harmonics.max())
@@ -105,9 +106,10 @@ def _friction_margin(system: System, x: FloatArray, force: FloatArray) -> FloatA
 
 
 def _balanced(ports: FloatArray, push: FloatArray, weight: FloatArray) -> tuple[FloatArray, float]:
-    """The rest of a push (mode,) once contacts take it, and the greatest friction that one of them takes.
+    """Distribute a push (mode,) over contacts by least squares; return the rest and the greatest share.
 
-    By their weights (contact,) and ports (mode, contact, direction); the friction is relative to its weight.
+    ports (mode, contact, direction). The share of a contact is its friction relative to its weight
+    (contact,).
     """
     ways = (ports * weight[:, None]).reshape(len(push), -1)
     taken = np.linalg.lstsq(ways, push, rcond=None)[0]
@@ -116,7 +118,7 @@ def _balanced(ports: FloatArray, push: FloatArray, weight: FloatArray) -> tuple[
 
 
 def _floating(system: System, x: FloatArray, force: FloatArray) -> BoolArray:
-    """Whether the contacts that carry load leave a rigid-body mode free, of those that all would hold."""
+    """Whether a rigid-body mode that all contacts together would hold is free, as some carry no load."""
     contacts, linear = system.scene.contacts, system.linear
     k_v, n_0 = np.array([c.k_v for c in contacts]), np.array([c.n_0 for c in contacts])
     held = (linear.natural == 0.0) & ~linear.adrift

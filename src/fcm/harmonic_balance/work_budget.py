@@ -1,4 +1,4 @@
-"""Count of the work done with a system, in seconds of `cost_model`, and its limit."""
+"""Count and limit of the work done with a system, in seconds of `cost_model`."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class WorkLimitError(Exception):
 
 
 class WorkCount:
-    """Work of a system, and of all that are made from it with other harmonics.
+    """Work of a system and of all systems made from it.
 
-    poll is called now and then, and tell with what is at work.
+    poll is called regularly during the work; tell is called with a description of the present task.
     """
 
     def __init__(self) -> None:
@@ -24,7 +24,7 @@ class WorkCount:
         self.tell: Callable[[str], object] = str
 
     def add(self, seconds: float) -> None:
-        """Add seconds of work; raises `WorkLimitError` if that exceeds the limit."""
+        """Add seconds of work; raise `WorkLimitError` if the total exceeds the limit."""
         self.poll()
         self.seconds += seconds
         if self.seconds > self.limit:
@@ -32,7 +32,7 @@ class WorkCount:
 
     @contextmanager
     def limited_to(self, seconds: float) -> Iterator[None]:
-        """Context in which the work, with all that was done before, may not exceed a limit."""
+        """Context in which the total work, with that done before, may not exceed a limit."""
         before, self.limit = self.limit, min(self.limit, seconds)
         try:
             yield
