@@ -1,4 +1,4 @@
-"""Response curves of a scene as results: traced or exact, swept, with what is left out, written to files."""
+"""Response curves of a scene as results: traced or exact, swept, with statements of what was left out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sentences on a curve that is complete, but falls short of the accuracy that was asked for."""
+"""Sentences on a complete curve that falls short of the requested accuracy."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from fcm.units import in_unit
 def shortfall(
     found: RefinedResponse, lost: Sequence[StabilityLimit], accuracy: float, spent: float = 0.0
 ) -> str:
-    """Sentence on what keeps a curve from the accuracy, and what more would take; empty if nothing does.
+    """Sentence on why a curve misses the accuracy, and the cost of more harmonics; empty if it does not.
 
-    lost: how far the frequencies are off at which stability is lost without a fold. spent: processor time [s]
-    of the curve until now, with its stability and errors: more harmonics take these as well.
+    lost: frequencies at which stability is lost without a fold, with their errors. spent: processor time [s]
+    of the curve so far, with stability and errors, which more harmonics need as well.
     """
     if not found.reached:
         return _of_harmonics(found, accuracy, spent)
@@ -30,7 +30,7 @@ def shortfall(
 
 
 def remedy(harmonics: Sequence[int], *, exact: bool = False) -> str:
-    """Sentence on what helps where a curve with these harmonics falls short and no further ones are named.
+    """Sentence on remedies for a curve with these harmonics, where no further ones are proposed.
 
     exact: whether the exact motion can be computed instead.
 
@@ -50,7 +50,7 @@ def remedy(harmonics: Sequence[int], *, exact: bool = False) -> str:
 
 
 def exact_is_advised(scene: Scene) -> bool:
-    """Whether the exact motion of a scene is computed, and of so few contacts that it takes no minutes."""
+    """Whether the exact motion of a scene can be computed, with few enough contacts to be fast."""
     return in_time(scene) is InTime.COMPUTED and len(scene.contacts) <= SENTENCES.contacts_in_time
 
 
@@ -59,7 +59,7 @@ def _remedy(found: RefinedResponse) -> str:
 
 
 def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
-    """Sentence on too large errors of peaks and folds, and how long more harmonics would take."""
+    """Sentence on too large errors of peaks and folds, and on the time that more harmonics would take."""
     folds, said = found.folds, _with_harmonics(found)
     unknown = np.count_nonzero(np.isnan(folds))
     if np.isnan(found.max_error) and np.isnan(found.peak[found.dofs_of_interest]).any():
@@ -90,10 +90,10 @@ def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
 
 
 def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> float:
-    """Seconds that a curve takes with more harmonics, to a digit.
+    """Estimated seconds of a curve with more harmonics, to one digit.
 
-    To trace it takes what the size of its equations says, and its errors and stability in proportion to the
-    harmonics.
+    The time for tracing follows from the size of the equations. The time for errors and stability grows in
+    proportion to the number of harmonics.
     """
     further = max(spent - found.seconds, 0.0) * len(more) / len(found.system.harmonics)
     whole = found.seconds_with(more) + further
@@ -101,8 +101,10 @@ def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> flo
 
 
 def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
-    """The degrees of freedom whose peaks fall short, the worst of them first. Empty where none do; where all
-    do, the worst if it is low beside the greatest peak."""
+    """Name the degrees of freedom whose peaks fall short, the worst first; empty if none do.
+
+    If all do, name only the worst, and only if its peak is much lower than the greatest.
+    """
     asked, dofs = found.dofs_of_interest, found.system.scene.modal.dofs
     off = np.flatnonzero(asked & ~(found.peak <= accuracy))
     if not off.size:
@@ -120,7 +122,7 @@ def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
 
 
 def _of_stability(found: RefinedResponse, off: Sequence[StabilityLimit]) -> str:
-    """Sentence on frequencies at which stability is lost that are too far off: the worst of them."""
+    """Sentence on the frequency of a loss of stability that has the greatest error."""
     worst = max(off, key=lambda one: 0.0 if np.isnan(one.error) else one.error)
     error = "is unknown" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
     unit = found.system.scene.frequency_unit

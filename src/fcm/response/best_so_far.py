@@ -1,4 +1,4 @@
-"""The best curve that there is while more harmonics are looked for, and what is said of it."""
+"""The best curve so far while more harmonics are tried, and messages about it."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from fcm.response.options import SWEEP
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
 
-Tell = Callable[[str], None]  # what there is, and what is at work
+Tell = Callable[[str], None]  # receives the state and the present task
 
 
 class BestSoFar:
-    """The best response that was traced until now; receives each, as `fcm.accuracy.refinement.OnTraced`.
+    """The best response traced so far; receives each one, as `fcm.accuracy.refinement.OnTraced`.
 
-    found is the last, and stable (path,) whether each of its points is, once that is known.
+    found is the last response. stable has the stability of its points for each path, once it is known.
 
-    How often all is traced again nobody knows. So each response takes half of what is left of the progress,
-    and half of that while it is traced. Of what comes then it is taken that it lasts as long as all before.
+    The number of repetitions is unknown. So each response takes half of the remaining progress, one half of
+    that while it is traced. The checks after it are assumed to take as long as everything before.
     """
 
     def __init__(self, tell: Tell | None, progress: Progress | None = None) -> None:
@@ -30,7 +30,7 @@ class BestSoFar:
         self.progress, self.left, self.told, self.share = progress, 1.0, 0.0, 0.0
         self.begun = self.since = self.shown = time.monotonic()
         self.found: UncheckedResponse | None = None
-        self.cut = False  # whether that does not come to its end
+        self.cut = False  # whether found is interrupted before its end
         self.stable: list[FloatArray] = []
 
     def __call__(self, found: UncheckedResponse, error: float, more: tuple[int, ...]) -> None:
@@ -41,18 +41,18 @@ class BestSoFar:
             self.tell_work(counted(len(more), "harmonic"))
 
     def tell_work(self, at_work: str) -> None:
-        """Tell what there is, and what is at work."""
+        """Report the state and the present task."""
         if self.tell is not None:
             there = f"{self._harmonics_reached()}; " if self.found is not None else ""
             self.tell(f"{there}now {at_work}")
 
     def covered(self, share: float) -> None:
-        """Show that the response being traced has come to a share of the range of frequencies."""
+        """Show the share of the frequency range that the present response has covered."""
         self.told, self.since = 1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)), time.monotonic()
         self._show(self.told)
 
     def poll(self) -> None:
-        """Move the progress, also where nobody tells what share is done; called now and then."""
+        """Advance the progress where no share is reported; called regularly."""
         now = time.monotonic()
         if now - self.shown >= SWEEP.progress_interval:
             spent, before = now - self.since, self.since - self.begun
@@ -65,11 +65,11 @@ class BestSoFar:
             self.progress(self.share)
 
     def take_stability(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
-        """Take the stability of the response found, which more harmonics may still confirm."""
+        """Store a response with its stability, which more harmonics may still confirm."""
         self.found, self.stable = found, stable
 
     def take_part(self, found: UncheckedResponse) -> None:
-        """Take a response that was interrupted, if there is no other."""
+        """Store an interrupted response, if there is no other."""
         if self.found is None:
             self.found, self.cut = found, True
 
@@ -79,7 +79,7 @@ class BestSoFar:
         return f"{has}, {'error not estimated yet' if math.isnan(self.error) else f'error {self.error:.1e}'}"
 
     def reason(self) -> str:
-        """Reason why the curve is not complete, and what is missing."""
+        """Sentence on why the curve is incomplete, and on what is missing."""
         unknown = " before its stability was confirmed" if self.stable else " before its stability was known"
         missing = f" before it was traced with {self.next}" if self.next else unknown
         missing = " before it came to its end" if self.cut else missing

@@ -1,4 +1,4 @@
-"""The peaks of the tuned ring beside those of a mistuned one, which tell its amplification."""
+"""Peaks of the tuned ring, the reference for the amplification of a mistuned ring."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from fcm.scene.mistuning import factors_of
 
 
 def with_blades(response: Response, scene: Scene, trace: Callable[[Scene], Response]) -> Response:
-    """The response of a mistuned ring with the peaks of the tuned one, which is traced.
+    """Trace the tuned ring, and add its peaks to the response of the mistuned ring.
 
-    What the tuned ring lacks of swept keys, as the numbers of one sector's contact, is there what it was.
+    Swept keys that the tuned ring lacks, such as those of one sector's contact, do not change its curves.
     """
     assert scene.tuned is not None
     tuned = scene.tuned.in_use()

@@ -1,9 +1,9 @@
-"""Stable motions at the frequencies that are visited, to which neither of the sweeps comes.
+"""Stable motions at the visited frequencies that neither sweep reaches.
 
-A sweep is on one motion at a time, so of several stable ones at a frequency two are met at most, and at a
-single frequency one. All solutions of the balance lead to others: those reached from rest by the level of the
-forces, and those of its branches over the range of the scene, if it has one. So do the motions in which
-contacts stick as the scene starts, and the one from rest.
+A sweep follows one motion at a time. So the two sweeps reach at most two of several stable motions at a
+frequency, and one if there is a single frequency. Guesses for others are all solutions of the balance: those
+that continuation in the force level reaches from rest, and those of its branches over the scene's range.
+Further guesses are the motions in which contacts stick as the scene starts, and the state of rest.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from fcm.time_domain.state import State
 
 
 class CoexistingOrbits(Frozen):
-    """Motions that were found at one frequency."""
+    """Motions found at one frequency."""
 
     frequency: float  # [rad/s]
     samples: tuple[OrbitRecord, ...]
-    whole: bool = True  # whether the level of the forces was followed to its end there
+    whole: bool = True  # whether continuation in the force level was complete there
 
 
 def coexisting_orbits(
@@ -49,9 +49,9 @@ def coexisting_orbits(
     uncertain: UncertainFrequencies,
     options: ShootingOptions = SHOOTING,
 ) -> Iterator[OrbitRecord]:
-    """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
+    """Yield the stable motions at frequencies [rad/s] that are not among those visited; each is saved.
 
-    uncertain take the frequencies at which there may be more. The limit of time is asked now and then.
+    Frequencies at which there may be more are added to uncertain. The time limit is polled regularly.
     """
     report, poll = limit.report, limit.poll
     saved = {one.frequency: one for one in report.saved if isinstance(one, CoexistingOrbits)}
@@ -77,10 +77,10 @@ def _coexisting_at(
 ) -> list[OrbitRecord]:
     """Stable motions at one frequency that are not known yet.
 
-    Where no periodic motion is near a guess, or one with a multiplier below -1 or a complex pair outside the
-    unit circle, the motion is simulated from there, and from rest. It is not where a motion of several
-    periods, or an irregular one, is known: the simulation may come to that. Nor is it where a mode has no
-    damping, as its transient may stay.
+    If no periodic motion is near a guess, the motion is simulated from there. It is also simulated if the
+    orbit has a multiplier below -1 or a complex pair outside the unit circle, and from rest. There is no
+    simulation if a motion of several periods, or an irregular one, is known, as it may end there. Nor is
+    there one if a mode is undamped, as its transient may not decay.
     """
     found, damped = list[OrbitRecord](), bool((problem.scene.modal.damping > 0.0).all())
     for guess in (*guesses, None):
@@ -88,7 +88,7 @@ def _coexisting_at(
         simulate = damped and all(one.repeats == 1 for one in there)
         try:
             one = _orbit_from(problem, omega, guess, simulate, there, poll)
-        except SimulationError:  # it cannot be computed, or is not determined
+        except SimulationError:  # the motion cannot be computed, or is not determined
             continue
         if one is not None and not any(_same(one, other) for other in there):
             found.append(one)
@@ -103,7 +103,7 @@ def _orbit_from(
     known: Sequence[OrbitRecord],
     poll: Poll,
 ) -> OrbitRecord | None:
-    """The stable motion that a guess, or rest, leads to, if it does and that is not known."""
+    """The stable motion that a guess (None: rest) leads to; None if there is none, or it is known."""
     if guess is None:
         return _simulated(problem, omega, unloaded(problem.scene), known, poll) if simulate else None
     orbit = shoot(EquationsOfMotion(problem.scene, omega), guess, poll)
@@ -115,7 +115,7 @@ def _orbit_from(
 def _stable(
     problem: OrbitProblem, orbit: Orbit | None, known: Sequence[OrbitRecord], poll: Poll
 ) -> OrbitRecord | None:
-    """The record of a motion that is stable and not known; else None."""
+    """The record of a motion if it is stable and not known, else None."""
     if (
         orbit is None
         or not orbit.stable
@@ -128,7 +128,10 @@ def _stable(
 
 
 def _disturbance_alternates(orbit: Orbit) -> bool:
-    """Whether disturbances grow from side to side, or around; beside others two motions lie, each near."""
+    """Whether the greatest multiplier is negative or complex, so that no stable motion need be near.
+
+    An orbit that is unstable by a positive multiplier lies between two other motions.
+    """
     greatest = complex(orbit.multipliers[0])
     return greatest.real < 0.0 or greatest.imag != 0.0
 
@@ -136,9 +139,9 @@ def _disturbance_alternates(orbit: Orbit) -> bool:
 def _simulated(
     problem: OrbitProblem, omega: float, guess: State, known: Sequence[OrbitRecord], poll: Poll
 ) -> OrbitRecord | None:
-    """The steady motion that a simulation from a guess comes to.
+    """The steady motion in which a simulation from a guess ends; None without one.
 
-    If it repeats after each period, only one that is not known; None without any.
+    A motion that repeats after each period counts only if it is not known.
     """
     system = EquationsOfMotion(problem.scene, omega)
     found = steady(system, guess, poll)
@@ -150,7 +153,7 @@ def _simulated(
 
 
 def _same(one: OrbitRecord, other: OrbitRecord) -> bool:
-    """Whether two motions are one; of those that do not repeat, whether they are as large."""
+    """Whether two motions are the same; irregular ones are the same if they are nearly as large."""
     return _as_large(
         one,
         other,

@@ -1,4 +1,4 @@
-"""The search for other motions beside the points of exact curves; what it has found is kept."""
+"""Search for other motions at the frequencies of points of exact curves; its results are saved."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from fcm.shooting.periodic_orbit import Poll, never_interrupt
 
 
 class CoexistingMotions(Frozen):
-    """Motions at one frequency: the extent of its points over residual friction, and those beside them."""
+    """Motions at one frequency: amplitude ranges of points over residual friction, and isolated motions."""
 
     frequency: float
     amplitude: FloatArray  # (point, dof)
     least: FloatArray  # (point, dof) nan where the amplitude is unique
     greatest: FloatArray  # (point, dof)
-    whole: FloatArray  # (point,) 1 if it is that of all residual friction, 0 if not, nan where there is none
-    isolated: list[Stuck]  # motions that no extent holds
+    whole: FloatArray  # (point,) 1 if the extent covers all residual friction, 0 if not, nan without one
+    isolated: list[Stuck]  # motions outside all extents
 
     @classmethod
     def unknown(cls, frequency: float, amplitude: FloatArray) -> CoexistingMotions:
@@ -30,16 +30,14 @@ class CoexistingMotions(Frozen):
         return cls(frequency, amplitude, least, greatest, np.full(len(amplitude), np.nan), [])
 
 
-FOUND = (CoexistingMotions, Stuck)  # what is saved consists of these
+FOUND = (CoexistingMotions, Stuck)  # classes of saved data
 
 
 class Search:
-    """A search that is ended when it is to look no further; what it has found until then stays known.
+    """A search that can be ended; its results until then stay known, also to a resumed run.
 
-    A run that is resumed knows what was found before it was interrupted.
-
-    poll : raises `TimeOver` where no more is to be found out.
-    options : of the motions that are sought.
+    poll : raises `TimeOver` to end the search.
+    options : options of the motions sought.
     """
 
     def __init__(self, poll: Poll, report: Report, options: ShootingOptions = SHOOTING) -> None:
@@ -55,7 +53,7 @@ class Search:
         return search
 
     def poll(self) -> None:
-        """Raise `TimeOver` if the search is over; to be called now and then."""
+        """Raise `TimeOver` if the search is over; to be called regularly."""
         if not self.over:
             self._report(1.0, "looking for other motions")
             try:
@@ -70,11 +68,11 @@ class Search:
         self.over = True
 
     def known(self, frequency: float, amplitude: FloatArray) -> CoexistingMotions | None:
-        """The motions found before at the points of a frequency, or None."""
+        """The motions found earlier at a frequency for points with these amplitudes, or None."""
         return self._known.get((frequency, amplitude.tobytes()))
 
     def keep(self, found: CoexistingMotions) -> None:
-        """Keep and save the motions found, unless the search was ended meanwhile."""
+        """Store and save the motions found, unless the search has been ended meanwhile."""
         if not self.over:
             self._known[_key(found)] = found
             self._report.save(found)

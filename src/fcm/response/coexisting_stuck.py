@@ -1,4 +1,4 @@
-"""Motions beside those of a curve: contacts stick all through them, and no branch that was found has them."""
+"""Motions with contacts that always stick, at the frequencies of a curve but on none of its branches."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def coexisting_stuck(
     regime: npt.NDArray[np.str_],
     others: FrictionExtent,
 ) -> list[Stuck]:
-    """Motions with stuck contacts at the frequencies of some points that no point and no family there has.
+    """Motions with stuck contacts at the frequencies of points rows that belong to no point or family there.
 
-    frequency, regime : of all points, (point,) and (point, contact).
-    others : of which families are known there.
+    frequency (point,), regime (point, contact) : of all points.
+    others : the families known at these points.
     """
     found = []
     for omega in distinct_values(frequency[list(rows)]).tolist():
@@ -48,7 +48,7 @@ def coexisting_stuck(
 
 
 def _within(amplitude: FloatArray, least: FloatArray, greatest: FloatArray) -> bool:
-    """Whether amplitudes lie within one of some extents."""
+    """Whether amplitudes (dof,) lie within one of the extents least to greatest, each (extent, dof)."""
     room = COEXISTING.extent_tolerance * greatest
     inside = (amplitude >= least - room) & (amplitude <= greatest + room)
     return bool(inside.all(axis=1).any())

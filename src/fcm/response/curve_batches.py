@@ -1,4 +1,4 @@
-"""Groups of curves that are traced together, as batches (`fcm.run`): on cores, kept while not written."""
+"""Groups of curves that are traced together, as batches (`fcm.run`), on several cores, with checkpoints."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ KINDS = (
     Greatest,
     NonlinearMode,
     Resonance,
-)  # what results consist of
+)  # classes of results
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "cycle_error", "stable"),
     *("table_error", "error", "truncation_error"),
@@ -65,7 +65,7 @@ class CurveTask(Frozen):
 
     request: Request
     peaks_only: bool = False
-    samples: int = 0  # points that are kept all the same
+    samples: int = 0  # number of points that are kept even then
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         curves = _known(group, report.saved)
@@ -87,12 +87,12 @@ class CurveTask(Frozen):
         return curves
 
     def _kept(self, curve: Curve) -> Curve:
-        """The part of a curve that is kept: without its points where only peaks are asked for."""
+        """The curve, without its points if only peaks are asked for."""
         return without_points(curve, self.samples) if self.peaks_only else curve
 
 
 class _Shown:
-    """The progress of one curve of a group: its share, and what is said beside it."""
+    """The progress of one curve of a group: its share, and a text."""
 
     def __init__(self, report: Report, number: int, count: int) -> None:
         self.report, self.number, self.count = report, number, count
@@ -111,27 +111,27 @@ class _Shown:
 
 
 def _known(group: Group, saved: Sequence[Any]) -> list[Curve]:
-    """The first curves of a group that are finished already."""
+    """The first curves of a group, as far as they are saved."""
     fitting = [fits(scene, curve) for scene, curve in zip(group, saved, strict=False)]
     return list(saved[: fitting.index(False) if False in fitting else len(fitting)])
 
 
 def _save(curves: Sequence[Curve], saved: int, report: Report) -> int:
-    """Save the curves of a group that are not saved; returns how many are then."""
+    """Save the curves of a group that are not saved yet; return the number of saved ones."""
     for curve in curves[saved:]:
         report.save(curve)
     return len(curves)
 
 
 def anonymous(scenes: Group) -> list[Scene]:
-    """The scenes without what no curve depends on, as their names."""
+    """The scenes without anything that no curve depends on, such as names."""
     return [
         replace(scene, name="", title="", curves=(), draft=None, tuned=None, files=()) for scene in scenes
     ]
 
 
 def are_curves_of(groups: Sequence[Group], number: int, results: Any) -> bool:
-    """Whether results that were read from a file can be the curves of the group with this number."""
+    """Whether results read from a file can be the curves of the group with this number."""
     if not 0 <= number < len(groups) or not isinstance(results, list):
         return False
     group = groups[number]
@@ -139,7 +139,7 @@ def are_curves_of(groups: Sequence[Group], number: int, results: Any) -> bool:
 
 
 def fits(expected: Scene | Curve, curve: Any) -> bool:
-    """Whether what was read from a file can be the curve of a scene, or that of which this one is to be."""
+    """Whether an object read from a file can be the expected curve, or that of the expected scene."""
     if not isinstance(curve, Curve) or vars(curve).keys() != {field.name for field in fields(Curve)}:
         return False
     model = lost_curve(expected, "") if isinstance(expected, Scene) else expected
@@ -151,13 +151,13 @@ def fits(expected: Scene | Curve, curve: Any) -> bool:
 
 
 def _alike(array: Any, model: Any) -> bool:
-    """Whether an array is by points as another is, and of the same kind."""
+    """Whether an array has the kind of a model, and its shape but for the number of points."""
     same = isinstance(array, np.ndarray) and array.ndim == model.ndim
     return same and array.shape[1:] == model.shape[1:] and array.dtype.kind == model.dtype.kind
 
 
 def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Curve:
-    """The curve of a result of a sweep; one without points where the run was interrupted before."""
+    """The curve of a result of a sweep; a curve without points if the result is lost or missing."""
     if isinstance(result, Lost):
         if result.defect:
             return lost_curve(scene, f"{DEFECT}, {result.reason}", Cause.DEFECT)
@@ -194,12 +194,12 @@ def lost_curve(scene: Scene, reason: str, cause: Cause = Cause.CALCULATION) -> C
 
 @dataclass
 class CurveBatches:
-    """The place where curves are computed and kept: the same for everything that one run computes."""
+    """Where the curves of a run are computed, and the checkpoint that keeps them."""
 
     jobs: int  # processes of this machine
     checkpoint: CheckpointFile | None
-    place: Factory | None = None  # instead: an executor or a cluster
-    defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
+    place: Factory | None = None  # an executor or a cluster, instead of the processes
+    defects: list[str] = field(default_factory=list)  # tracebacks of the curves that they have cost
 
     def curves(
         self,
@@ -209,10 +209,10 @@ class CurveBatches:
         progress: Progress | None,
         states: tuple[type, ...] = (),
     ) -> list[Curve]:
-        """The curves of all batches in order; those that could not be had say why.
+        """Compute the curves of all batches, in order; a lost curve has the reason.
 
         mark : digest of everything besides the scenes that decides the results.
-        states : what compute saves consists of these.
+        states : classes of the data that compute saves.
         """
         kept = Results()
         if self.checkpoint is not None:

@@ -1,4 +1,4 @@
-"""Exact periodic solutions of every curve of a scene, as a response: traced, or visited by sweeps."""
+"""Response of exact periodic solutions for every curve of a scene: traced, or visited by sweeps."""
 
 from __future__ import annotations
 
@@ -44,30 +44,31 @@ def trace_exact(
     periods: int = 1,
     options: ResponseOptions = RESPONSE,
 ) -> Response:
-    """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
+    """Compute the curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
 
-    Every point is a periodic solution of the exact motion, found by shooting: no harmonic is left out, no
-    table is used. Its `amplitude` is half the peak-to-peak displacement, `phase` that of the fundamental,
-    `regime` the states over the cycle, `stable` by its Floquet multipliers; `orbits` has the rest.
+    Every point is a periodic orbit of the exact equations of motion, found by shooting: no harmonic is left
+    out, no table is used. `amplitude` is half the peak-to-peak displacement, `phase` that of the fundamental.
+    `regime` has the states over the cycle, and `stable` follows from the Floquet multipliers. `orbits` has
+    the rest.
 
     Parameters
     ----------
     scene : Scene
         From `fcm.load_scene`; one curve for each combination of its swept values.
     at : sequence of float, optional
-        Frequencies in the scene's unit. The steady motion is visited there by an upward and then by a
-        downward sweep, each point continuing the last, and then whatever other stable motion the solutions
-        of the balance lead to; without it the curve is followed through its range.
+        Frequencies in the scene's unit. An upward and then a downward sweep visit the steady motion there,
+        each point continued from the last. Then other stable motions are sought from the solutions of the
+        balance. Without `at` the curve is followed through its range.
     execution : Execution, optional
         As in `fcm.response.trace`.
     only : {"peaks"}, optional
-        Of the curves the peaks, folds and jumps alone, sought near those of the harmonic balance.
+        Compute only peaks, folds and jumps, near those of the harmonic balance.
     periods : {1, 2, 4, 8}
-        Follow also motions that repeat only after up to so many periods of the force, from where the period
-        doubles; with `at` they are found by the sweeps, and this has no meaning.
+        Follow also motions that repeat only after up to this number of periods of the force, from the period
+        doublings on. It has no effect with `at`: there the sweeps find such motions.
     options : ResponseOptions, optional
-        Tolerances and limits: `exact` of the curves, `shooting` of the motions (with `at` the usual ones are
-        taken), and of `reduction` the greatest change of the amplitudes by modes that are left out.
+        Tolerances and limits: `exact` of the curves, `shooting` of the motions (with `at` the default ones),
+        and in `reduction` the greatest change of the amplitudes by modes that are left out.
 
     Raises
     ------
@@ -98,16 +99,16 @@ def trace_exact(
 
 
 class _SweepRun(Frozen):
-    """The sweeps of a run, the second with all modes where they turn out to be needed."""
+    """The sweeps of a run; a second one has all modes, if they turn out to be needed."""
 
     task: ExactCurveTask
     sweep: CurveBatches
 
     def response(self, scene: Scene, tolerance: float | None, progress: Progress | None) -> Response:
-        """The response, computed without the modes that its curves do not need."""
+        """Compute the response without the modes that its curves do not need."""
         scenes = scene.each_curve()
         if tolerance is None:
-            return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
+            return self._swept(scene, scenes, progress)  # for comparisons, which leave out modes themselves
         lighter = leave_out_modes(scenes, tolerance, self.task.options.max_harmonic)
         if lighter.above is not None and 2.0 * expected_effect(lighter) > tolerance:
             lighter = leave_out_modes(scenes, 0.0, self.task.options.max_harmonic)
@@ -133,7 +134,7 @@ class _SweepRun(Frozen):
 
 
 def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | None:
-    """The frequencies to visit, checked and in rising order [rad/s]."""
+    """The frequencies to visit [rad/s], checked and in ascending order; None if a curve is traced."""
     if at is None and not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     if at is None:
@@ -154,7 +155,7 @@ def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | No
 
 
 def _highest(scene: Scene) -> float:
-    """A frequency that no mode exceeds, whatever contacts stick in whatever curve [rad/s]."""
+    """Upper bound [rad/s] of the natural frequencies in all curves, with any contacts stuck."""
     highest = 0.0
     for one in scene.each_curve():
         modal, square = one.modal, float((one.modal.frequency**2).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""Computation of a curve of exact periodic solutions: followed in its range, or visited at frequencies."""
+"""Task that computes a curve of exact periodic solutions: followed in its range, or visited."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were 
 
 
 class ExactCurveTask(Frozen):
-    """The task that makes exact curves: traced, or visited at frequencies."""
+    """The task that computes exact curves: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
     only_peaks: bool = False
-    whole: bool = False  # nothing is to be left out
-    periods: int = 1  # up to which motions are followed, from where the period doubles
+    whole: bool = False  # nothing may be left out
+    periods: int = 1  # greatest number of periods of motions that are followed
     shooting: ShootingOptions = SHOOTING
     options: ExactOptions = EXACT_CURVES
-    expected: Expected = expected_constant  # the contacts that are tried as held
+    expected: Expected = expected_constant  # finds the contacts that are held at first
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         return [self._curve(scene, report) for scene in group]
@@ -56,7 +56,7 @@ class ExactCurveTask(Frozen):
         begin = time.perf_counter()
         try:
             curve = self._made(scene, report)
-        except SimulationError as error:  # there is no rest to begin with
+        except SimulationError as error:  # no state of rest exists
             curve = lost_curve(scene, str(error))
         curve = replace(curve, seconds=time.perf_counter() - begin)
         if not curve.complete and curve.cause is Cause.INTERRUPTED:
@@ -70,7 +70,7 @@ class ExactCurveTask(Frozen):
         clock = CurveTimeLimit(limit, report)
         try:
             return self._in_time(scene, report, clock, stiff)
-        except TimeOver as stop:  # before the first point was looked for
+        except TimeOver as stop:  # before the search for the first point
             return lost_curve(scene, f"{_stop_prefix(stop, limit)}the start{stiff}")
 
     def _in_time(self, scene: Scene, report: Report, clock: CurveTimeLimit, stiff: str) -> Curve:
@@ -89,19 +89,20 @@ class _CurveFollower(Frozen):
 
     report: Report
     clock: CurveTimeLimit
-    stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
+    stiff: str  # sentence on a contact that is too stiff, added where a curve is incomplete
     periods: int
-    before: list[tuple[OrbitProblem, ResumablePaths]] = field(
-        default_factory=list
-    )  # the last that were followed
+    before: list[tuple[OrbitProblem, ResumablePaths]] = field(default_factory=list)  # the paths followed last
     uncertain: UncertainFrequencies = field(
         default_factory=UncertainFrequencies
-    )  # of the balance that these began near
+    )  # of the balance that gave the starting points
     options: ShootingOptions = SHOOTING
     search: float = EXACT_CURVES.search_fraction
 
     def with_held_contacts(self, scene: Scene, held: tuple[HeldContact, ...]) -> Curve:
-        """The curve, followed without the contacts that keep their state all along it."""
+        """Follow the curve with contacts held that keep their state all along it.
+
+        Contacts that turn out to change their state are released, and the curve is followed again.
+        """
         while True:
             lost: tuple[int, ...] = ()
             try:
@@ -113,11 +114,11 @@ class _CurveFollower(Frozen):
             if curve.cause is Cause.INTERRUPTED or self.clock.over:
                 return lost_curve(
                     scene, curve.reason, curve.cause
-                )  # what there is is not the motion of these contacts
+                )  # the points found belong to contacts that are wrongly held
             held = tuple(one for one in held if lost and one.place not in lost)
 
     def _held_or_lost(self, scene: Scene, held: tuple[HeldContact, ...]) -> Curve:
-        """The curve with contacts held; without a point, if it cannot be begun."""
+        """The curve with contacts held; a curve without points if it cannot be begun."""
         if not held:
             return self.curve(scene)
         try:
@@ -126,7 +127,7 @@ class _CurveFollower(Frozen):
             return lost_curve(scene, str(error))
 
     def curve(self, scene: Scene) -> Curve:
-        """The curve with all contacts that the scene computes."""
+        """Follow the curve with all contacts that the scene computes."""
         groups, reason, cause = self.branches(scene)
         search = Search(self.clock.poll, self.report, self.options)
         return _with_uncertain_frequencies(
@@ -134,7 +135,7 @@ class _CurveFollower(Frozen):
         )
 
     def peaks(self, scene: Scene) -> Curve:
-        """The curve of peaks, folds and jumps alone."""
+        """Compute the curve of peaks, folds and jumps alone."""
         known, search = list[OrbitRecord](), Search(self.clock.poll, self.report, self.options)
         try:
             alone = peaks_only(scene, known, self.report, self.clock.poll, self.options)
@@ -153,9 +154,9 @@ class _CurveFollower(Frozen):
         )
 
     def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str, Cause]:
-        """All branches, the reason why they are not complete, else '', and its cause.
+        """Follow all branches; return them, the reason why they are incomplete, else '', and its cause.
 
-        What is stiff is said then, too.
+        The reason includes the sentence on stiff contacts.
 
         Raises
         ------
@@ -190,7 +191,7 @@ class _CurveFollower(Frozen):
             resumable.keep()
             while resumable.paths(
                 further := DoubledPeriodProblem(problems[-1])
-            ):  # an earlier run had come to them
+            ):  # an earlier run has reached them
                 problems.append(further)
             groups = [OrbitBranches(one, resumable.paths(one), cut_off=True) for one in problems]
             paths = [path for group in groups for path in group.paths]
@@ -201,10 +202,7 @@ class _CurveFollower(Frozen):
 def _finished(
     made: Callable[[str, Search], Curve], reason: str, search: Search, cause: Cause = Cause.CALCULATION
 ) -> Curve:
-    """The curve of the branches found.
-
-    Once it is interrupted, no other motions are looked for beside it.
-    """
+    """Make the curve of the branches found; after an interruption, without a search for other motions."""
     if cause is Cause.INTERRUPTED:
         search.end()
     try:
@@ -216,13 +214,13 @@ def _finished(
 
 
 def _with_uncertain_frequencies(curve: Curve, uncertain: UncertainFrequencies) -> Curve:
-    """The curve with the frequencies where the balance that it began near may lack branches."""
+    """Add the frequencies at which the balance that gave its starting points may lack branches."""
     curve.uncertain_at, curve.folds_uncertain_at = list(uncertain.levels), list(uncertain.folds)
     return curve
 
 
 def _missing_periods(problem: OrbitProblem, lost: int) -> str:
-    """Reason why the curves of motions that repeat after so many periods are not complete."""
+    """Sentence on period doublings at which the motions of doubled period were not found."""
     return (
         f"from {counted(lost, 'period doubling')} no motion was found that repeats after {problem.repeats} "
         "periods"
@@ -230,27 +228,27 @@ def _missing_periods(problem: OrbitProblem, lost: int) -> str:
 
 
 def _check_held_contacts(problem: OrbitProblem, z: FloatArray) -> None:
-    """Raise `NotKeptError` if a held contact would not have kept its state in the motion at z."""
+    """Raise `NotKeptError` if a held contact would change its state in the motion at z."""
     shot = problem.shot(z)
     if shot is not None:
         check_kept(shot)
 
 
 def _stop_prefix(stop: BaseException, limit: float | None) -> str:
-    """Beginning of the sentence on why a curve was stopped."""
+    """First part of the sentence on why a curve was stopped."""
     over = isinstance(stop, TimeOver)
     return f"not finished in {limit:g} s of processor time, at " if over else f"{INTERRUPTED} at "
 
 
 def _cause(stop: BaseException) -> Cause:
-    """Cause for which a curve that was stopped is not complete."""
+    """Cause of the incompleteness of a curve that was stopped."""
     return Cause.CALCULATION if isinstance(stop, TimeOver) else Cause.INTERRUPTED
 
 
 def _too_stiff(scene: Scene, options: ExactOptions) -> tuple[str, float | None]:
-    """Sentence on a contact too stiff for its motion to be followed, and what to take instead; else ''.
+    """Sentence on a contact too stiff for integration in time, else ''; and the time limit [s].
 
-    And the limit of time: where that never ends it is said after so long, if there is none of one's own.
+    Without a limit by the user, `stiff_seconds` limits a curve with such a contact, which may never end.
     """
     whole, limit = scene.whole(), options.max_seconds
     resists = whole.contacts and whole.modal.frequency.all()

@@ -1,4 +1,4 @@
-"""The numbers of a scene fitted to measured data, and its response or nonlinear mode with them."""
+"""Fit of the numbers of a scene to measured data, and the response or nonlinear mode with these numbers."""
 
 from __future__ import annotations
 
@@ -45,24 +45,24 @@ def fit(
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """The numbers of a scene with a [fit], and its response with them, a curve for each level of the data.
+    """Fit the numbers of a scene with a [fit]; return its response, with a curve for each measured level.
 
-    If all data are backbones of one mode, it is this nonlinear mode instead.
+    If all data are backbones of one mode, the response is this nonlinear mode.
 
-    With an accuracy the fit begins with one harmonic. It is repeated with as many as the response at the
-    numbers found takes, for the accuracy, and for a tenth of what the data are off.
+    With an accuracy the fit begins with one harmonic. It is repeated with the harmonics that the response at
+    the numbers found needs, for the accuracy and for a tenth of the misfit of the data.
 
     Parameters
     ----------
     method, execution, harmonics, accuracy, options
-        As of `trace`: what is kept are the searches from each start, and how far one is that was interrupted.
+        As of `trace`. The checkpoint keeps the searches from each start, also an interrupted one.
 
     Raises
     ------
     ResponseError
-        If the model has no response near the data, or a fit of such a scene is not made.
+        If the model has no response near the data, or such a scene cannot be fitted.
     KeyboardInterrupt
-        If nothing is found then; else the best numbers so far are returned, without a response.
+        If nothing has been found; else the best numbers so far are returned, without a response.
     """
     assert scene.fit is not None
     check_no_ring(scene, "fits")
@@ -79,10 +79,10 @@ def fit(
 
 
 def _fit(scene: Scene, method: str | Table, request: Request, execution: Execution) -> Response:
-    """Fit the numbers with the harmonics asked for, or with as many as the data take; the response with them.
+    """Fit the numbers with given harmonics, or with as many as the data need; return the response.
 
-    These are the harmonics with which the response errs by less than the data are off: with fewer the numbers
-    would make up for those that are left out.
+    With enough harmonics the error of the response is less than the misfit of the data. With fewer, the
+    numbers would compensate for the harmonics left out.
     """
     assert scene.fit is not None
     plain, data = replace(scene, fit=None), scene.fit.data
@@ -123,7 +123,7 @@ def _fit(scene: Scene, method: str | Table, request: Request, execution: Executi
 
 
 class _Round(Frozen):
-    """The numbers found with some harmonics, in one round of a fit."""
+    """The numbers found in one round of a fit, with the same harmonics."""
 
     parameters: Parameters
     solved: Solved
@@ -133,9 +133,8 @@ class _Round(Frozen):
 def _shares(rounds: int, last: bool) -> tuple[float, float, float]:
     """Shares of the progress at which a round begins, has its numbers, and ends.
 
-    rounds: how many there were before.
-
-    Each takes half of what is left, as nobody knows whether another follows; the last takes all.
+    rounds: number of earlier rounds. Each round takes half of the remaining progress, since another may
+    follow; the last takes all.
     """
     begin = 1.0 - 0.5**rounds
     end = 1.0 if last else 1.0 - 0.5 ** (rounds + 1)
@@ -143,7 +142,7 @@ def _shares(rounds: int, last: bool) -> tuple[float, float, float]:
 
 
 def _ends(one: _Round) -> list[FloatArray]:
-    """Numbers at which the searches of a round ended, the best first, each once."""
+    """Distinct numbers at which the searches of a round ended, the best first."""
     found = [one.solved.values]
     for start in one.solved.starts:
         same = (np.allclose(start.end, known, rtol=FIT.number_tolerance, atol=0.0) for known in found)
@@ -153,7 +152,7 @@ def _ends(one: _Round) -> list[FloatArray]:
 
 
 def _accuracy(found: Solved, request: Request) -> float:
-    """Accuracy of the response at which the harmonics left out do not account for the misfit of the data."""
+    """Accuracy of the response at which the harmonics left out do not affect the misfit of the data."""
     off = min(
         misfit(one, rows.residual, _errors(one)) for one, rows in zip(found.data, found.parts, strict=True)
     )
@@ -168,9 +167,9 @@ def _model_response(
     request: Request,
     execution: Execution,
 ) -> Response:
-    """The response with the numbers found: at the levels of the data, or the mode of which all are backbones.
+    """The response with the numbers found: at the levels of the data, or the mode if all are its backbones.
 
-    With the harmonics of the numbers, or those that an accuracy takes.
+    It has the harmonics of the fit, or those that an accuracy needs.
     """
     given = found.harmonics if accuracy is None else None
     parameters, numbers = found.parameters, found.solved
@@ -187,7 +186,7 @@ def _model_response(
 
 
 def _on_mode(data: FittedData, response: Response) -> FittedData:
-    """The data with the modal amplitudes at which a mode that was followed has the amplitudes measured."""
+    """The data with the modal amplitudes at which the computed mode has the measured amplitudes."""
     curve = response.curves[0] if response.curves else None
     if curve is None or curve.mode is None or not curve.points:
         return data
@@ -207,7 +206,7 @@ def _fitted_parameters(
     *,
     execution: Execution,
 ) -> tuple[Parameters, Solved]:
-    """The numbers fitted with some harmonics; near: the ends of searches with fewer."""
+    """Fit the numbers with some harmonics; near: results of searches with fewer, as starts."""
     assert scene.fit is not None
     try:
         parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
@@ -230,7 +229,7 @@ def _fitted_parameters(
 def _kept(
     scene: Scene, harmonics: tuple[int, ...], near: Sequence[FloatArray], checkpoint: CheckpointFile
 ) -> Results:
-    """The results of this fit that are kept; it is known by all that decides its numbers."""
+    """The saved results of this fit, which is identified by everything that decides its numbers."""
     count = len(scene.fit.vary) if scene.fit is not None else 0
     mark = fingerprint("fit", FIT, harmonics, list(near), replace(scene, name="", title=""))
     found = checkpoint.results(mark, (SearchResult,), lambda _, results: is_search_result(count, results))
@@ -240,7 +239,7 @@ def _kept(
 
 
 def is_search_result(count: int, results: Any) -> bool:
-    """Whether what was read from a file can be what a search of so many numbers came to."""
+    """Whether an object read from a file can be the result of a search with this number of parameters."""
     if not (isinstance(results, list) and len(results) == 1 and isinstance(results[0], SearchResult)):
         return False
     x, cost, settled = results[0].x, results[0].cost, results[0].settled
@@ -253,7 +252,7 @@ def is_search_result(count: int, results: Any) -> bool:
 
 
 def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) -> Scene:
-    """The scene with the numbers found, a curve for each level that was measured."""
+    """The scene with the numbers found, a curve for each measured level, at most `FIT.max_levels`."""
     scene = parameters.at(found.values)
     every = np.unique(np.concatenate([one.level for one in data]))
     if every.size > FIT.max_levels:
@@ -267,7 +266,7 @@ def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) 
 
 
 def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -> Fitted:
-    """Report of the numbers of the last round; untraced: their response was interrupted."""
+    """Report on the numbers of the last round; untraced: the response with them was interrupted."""
     parameters, found, harmonics = rounds[-1].parameters, rounds[-1].solved, rounds[-1].harmonics
     told = estimated(parameters, found.values, found.rows)
     return Fitted(
@@ -309,7 +308,7 @@ def _errors(data: Measured) -> FloatArray:
 
 
 def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tuple[int, ...]) -> list[str]:
-    """Sentences that advise what to measure."""
+    """Sentences that advise further measurements."""
     doubtful = set(np.flatnonzero(told.without_effect + told.undetermined).tolist())
     doubtful |= {k for i, j, _ in told.alike for k in (i, j)}
     every = advice(parameters, found, sorted(doubtful), harmonics)

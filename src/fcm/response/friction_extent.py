@@ -1,4 +1,4 @@
-"""Other motions that residual friction allows at points of a curve where a contact never slips."""
+"""Range of motions over residual friction at points of a curve where a contact never slips."""
 
 from __future__ import annotations
 
@@ -23,15 +23,12 @@ REST = RestOptions()
 
 @dataclass
 class FrictionExtent:
-    """Extent of the amplitudes over residual friction at points, and motions beside it.
-
-    It is nan where the amplitude is unique.
-    """
+    """Extent of the amplitudes over residual friction at points, nan where unique; and isolated motions."""
 
     least: FloatArray  # (point, dof)
     greatest: FloatArray  # (point, dof)
-    whole: FloatArray  # (point,) 1 if it is that of all residual friction, 0 if not, nan where there is one
-    isolated: list[Stuck] = field(default_factory=list)  # motions that no extent holds
+    whole: FloatArray  # (point,) 1 if the extent covers all residual friction, 0 if not, nan without one
+    isolated: list[Stuck] = field(default_factory=list)  # motions outside all extents
 
 
 def friction_extent(
@@ -41,7 +38,7 @@ def friction_extent(
     rows: Sequence[int],
     search: Search,
 ) -> FrictionExtent:
-    """The extent over residual friction at some of the points; amplitude : of all, (point, dof)."""
+    """The extent over residual friction at the points rows; amplitude (point, dof) is that of all points."""
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
     out = FrictionExtent(least, greatest, np.full(len(points), np.nan))
     told = [(k, point) for k in rows if (point := points[k]) is not None]
@@ -60,7 +57,7 @@ def friction_extent(
 def _told(
     scene: Scene, points: list[OrbitRecord], out: CoexistingMotions, search: Search
 ) -> CoexistingMotions:
-    """The extent over residual friction at the points of one frequency."""
+    """Fill out with the extent over residual friction at the points of one frequency."""
     families, amplitude = dict[int, Family](), out.amplitude
     for k, point in enumerate(points):
         same = [
@@ -96,15 +93,15 @@ def _told(
 
 
 def _family(scene: Scene, point: OrbitRecord, whole: FloatArray, k: int, search: Search) -> Family | None:
-    """The family of a point; None if it has none, or if it is unknown, with 0 for the whole then."""
+    """The family of point k; None without one, or if it is unknown, and whole[k] is then 0."""
     alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
-    if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip
+    if "E" not in point.states or (alone and set(point.states) == {"E"}):  # with several, another may slip
         return None
     try:
         if point.repeats:
             return family(scene, point.frequency, point.state, point.repeats, search.poll, search.options)
         if point.steady is not None and (point.steady.shares[:, 0] == 1.0).any():
             whole[k] = 0.0
-    except (SimulationError, TimeOver):  # its neighbourhood cannot be computed, or not any more
+    except (SimulationError, TimeOver):  # its neighbourhood cannot be computed, or the time is over
         whole[k] = 0.0
     return None

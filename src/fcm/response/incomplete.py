@@ -23,8 +23,7 @@ UNDAMPED = (
 
 
 def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.NDArray[np.bool_]]:
-    """Reason why a curve is not complete, else empty; and which of its points are no steady states
-    (point,)."""
+    """Sentence on why a curve is incomplete, else empty; and the points (point,) without steady state."""
     system, branches = found.system, found.traced.branches
     unit = system.scene.frequency_unit
     reasons = undetermined(system, points.z, points.force)
@@ -47,22 +46,22 @@ def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.ND
 
 
 def reason_for(system: System, why: str) -> str:
-    """One of REASONS in the keys of the scene; for static loads that push a rigid-body mode it says so."""
+    """One of REASONS, worded with the scene's keys; "loaded" replaces "pushed" if static loads push."""
     linear = system.linear
     why = "loaded" if why == "pushed" and linear.load[linear.adrift].any() else why
     return REASONS[why].format(_soft(system.scene.of_matrices))
 
 
 def _soft(of_matrices: bool) -> str:
-    """Name of what holds a rigid-body mode and hardly changes another, by the key that a scene has."""
+    """Name, by its key in the scene, of a spring that holds a rigid-body mode and hardly changes others."""
     return "soft springs in structure.stiffness" if of_matrices else "a small modal.frequency"
 
 
 def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[str, npt.NDArray[np.bool_]]:
     """Masks (point,) of the points z (point, unknown + 1) to which each of REASONS applies.
 
-    level : (point,) that the forces are multiplied by. Nothing where no mode is a rigid-body one. What is at
-    rest, at the level 0, stays where it is.
+    level (point,) : level of the forces; at level 0 the structure is at rest and no reason applies. Empty
+    without rigid-body modes.
     """
     if system.linear.natural.all():
         return {}
@@ -71,7 +70,7 @@ def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[s
 
 
 def holds_unknown(system: System, z: FloatArray, level: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether it is unknown that contacts which stick hold points at levels, see `hold_unknown`."""
+    """Points (point,) at levels where it is unknown whether sticking contacts hold, see `hold_unknown`."""
     if system.linear.natural.all():
         return np.zeros(len(z), dtype=np.bool_)
     return hold_unknown(system, z, _forces(system, z, level))
@@ -85,11 +84,10 @@ def _forces(system: System, z: FloatArray, level: FloatArray) -> FloatArray:
 
 
 def _resonant(system: System, omega: float) -> str:
-    """Sentence on a harmonic that meets an undamped resonance of a body on its closed contacts, and a remedy.
+    """Sentence on a harmonic in undamped resonance at a frequency [rad/s], with a remedy; else empty.
 
-    Of a frequency [rad/s]; empty if none does, or modes are damped.
-
-    There the harmonic has no limit, and the curve may turn back on the spot.
+    The resonance is that of a body on its closed contacts. There the harmonic is unbounded, and the curve may
+    turn back on the spot. Empty also if a mode is damped.
     """
     linear, unit = system.linear, system.scene.frequency_unit
     if linear.natural.all() or (linear.natural * linear.damping).any():
@@ -111,7 +109,7 @@ def _resonant(system: System, omega: float) -> str:
 
 
 def remedy(system: System, status: Status) -> str:
-    """Sentence on what would help where a curve has stalled, if known; other ends say it themselves."""
+    """Sentence on a remedy where a curve has stalled, if one is known; empty for other statuses."""
     if status is not Status.STALLED:
         return ""
     linear = system.linear

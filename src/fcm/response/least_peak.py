@@ -1,4 +1,4 @@
-"""The least peak of a scene in the numbers that are free, and the harmonics that its accuracy takes there."""
+"""Search for the numbers with the least peak of a scene, and for the harmonics that its accuracy needs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from fcm.tracking.stability import stability_along
 from fcm.tracking.trials import by_trials, error_of_higher
 from fcm.tracking.user_points import values_at_height, with_user_points
 
-Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peaks on which it is
+Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peaks that contain it
 
 
 def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scene:
@@ -56,9 +56,9 @@ class PeakTask:
         self.bounds = np.array(scene.optimum.bounds)
         dofs = scene.modal.dofs
         self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
-        self.seeking: LowestPeakSearch | PeakEnvelope | None = None  # what is at work,
-        self.fewer: Optimal | None = None  # and what was found before, with fewer harmonics
-        self.steps = KeptSteps()  # of it
+        self.seeking: LowestPeakSearch | PeakEnvelope | None = None  # the present search
+        self.fewer: Optimal | None = None  # the optimum found with fewer harmonics
+        self.steps = KeptSteps()  # saved steps of the search
 
     def system(self, scene: Scene, harmonics: tuple[int, ...]) -> System:
         """The balance of a scene."""
@@ -69,16 +69,16 @@ class PeakTask:
         return with_values(self.scene, self.numbers, values)
 
     def optimum(self, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
-        """The optimum with given harmonics, or with those that the accuracy takes at the optimum itself."""
+        """The optimum with given harmonics, or with those that the accuracy needs at the optimum."""
         return _optimum(self, harmonics, progress)
 
     def needed(self, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
-        """The harmonics that the accuracy takes at an optimum, from some on."""
+        """The harmonics that the accuracy needs at an optimum; they include the given ones."""
         most = self.options.balance.work.max_seconds_repeated
         return _harmonics_for_peaks(self, found.values, harmonics, most)[0]
 
     def least_traced(self) -> Optimal | None:
-        """The least peak that an interrupted search has traced; None where nothing was."""
+        """The least peak that an interrupted search has traced; None if it has traced none."""
         found = None if self.seeking is None else self.seeking.least_traced()
         if self.seeking is None or found is None:
             return None if self.fewer is None else replace(self.fewer, kind=INCOMPLETE)
@@ -86,7 +86,7 @@ class PeakTask:
 
 
 def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
-    """The optimum with given harmonics, or with those that the accuracy takes at the optimum itself."""
+    """The optimum with given harmonics, or with those that the accuracy needs at the optimum."""
     rounds = task.options.optimum.max_rounds
     chosen, seconds = harmonics or (1,), task.options.balance.work.max_seconds_repeated
     known: LowestPeak | None = None
@@ -128,8 +128,8 @@ def _least_on_line(
 ) -> tuple[LowestPeakSearch, LowestPeak]:
     """The least peak over the bounds of one number, and its search.
 
-    Where that is flat over most of them, what is left is searched on its own. If it is lower there, the
-    bounds of the task are those.
+    Where the peak is flat over most of the range, the rest is searched separately. If the peak is lower
+    there, the bounds of the task are narrowed to this part.
     """
     task.seeking = search = _search(task, harmonics)
     found, bounds = search.run(known, _sharing(task, harmonics, progress)), task.bounds
@@ -144,9 +144,9 @@ def _least_on_line(
 
 
 class _Moving:
-    """Progress of a search: the share that it reports, and from there its work, of which no end is known.
+    """Progress of a search: the share that it reports, advanced by its work since then.
 
-    As much as a curve takes moves it by a quarter of what is left.
+    The amount of work is unknown. The work of one curve advances the progress by a quarter of the rest.
     """
 
     def __init__(self, task: PeakTask, harmonics: tuple[int, ...], progress: Progress) -> None:
@@ -159,7 +159,7 @@ class _Moving:
         self.poll()
 
     def poll(self) -> None:
-        """Show the progress; called now and then by the work."""
+        """Show the progress; called regularly during the work."""
         work = self._seconds() - self.begin
         ahead = (1.0 - self.share) * work / (work + self.usual) / 2.0
         count = 0 if self.task.seeking is None else self.task.seeking.responses
@@ -173,7 +173,7 @@ class _Moving:
 def _sharing(
     task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None
 ) -> Callable[[float], None] | None:
-    """The progress of the search of a task, which its work moves on."""
+    """The progress of the search of a task, advanced by its work; None without one."""
     if progress is None or task.seeking is None:
         return None
     moving = _Moving(task, harmonics, progress)
@@ -184,7 +184,7 @@ def _sharing(
 def _with_error_of_higher(
     task: PeakTask, search: LowestPeakSearch, best: EnvelopeMinimum, found: Found
 ) -> Found:
-    """With the error of the higher peaks beside an optimum by trials, and where that is the greatest."""
+    """Add the greatest error of the higher peaks beside an optimum by trials, and the number with it."""
     error, s = task.steps(
         f"{search.system.harmonics} higher beside {best.s!r}", tuple, partial(error_of_higher, search, best)
     )
@@ -199,10 +199,10 @@ def _harmonics_for_peaks(
     seconds: float,
     error: float = 0.0,
 ) -> tuple[tuple[int, ...], float]:
-    """The harmonics that the accuracy of the peaks to be least takes at values of the numbers, from some on.
+    """The harmonics that the accuracy of the minimised peaks needs at values, and the seconds that they take.
 
-    No more than a response can be followed with in some seconds; and how many that takes. error: of a peak
-    there to which the response alone may not lead.
+    They include the given harmonics, and no more than a response can be followed with in `seconds`. error:
+    error of a peak there that the response alone may not reach.
     """
     scene, taken = task.with_values(np.array(list(values.values()))), 0.0
     dofs = [target.dof for target in task.targets]
@@ -229,7 +229,7 @@ def _search(task: PeakTask, harmonics: tuple[int, ...]) -> LowestPeakSearch:
 
 
 def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> Found:
-    """The optimum of one number, with the curves of the peaks."""
+    """Convert the least peak over one number to an optimum, with the curves of the peaks."""
     if found.best is None:
         raise ResponseError(_no_peak(task))
     setup = _search(task, harmonics).setup
@@ -253,7 +253,7 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
 
 
 def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None) -> Found:
-    """The optimum of several numbers, from that found with fewer harmonics."""
+    """The optimum of several numbers, starting from the one found with fewer harmonics."""
     task.seeking = valley = PeakEnvelope(
         task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets, steps=task.steps
     )
@@ -277,7 +277,7 @@ def _no_peak(task: PeakTask) -> str:
 
 
 def still(dofs: str, count: int) -> str:
-    """Sentence on degrees of freedom that only rounding moves.
+    """Sentence on degrees of freedom that do not move but for rounding.
 
     >>> still("8y", 1)
     '8y does not move, but for rounding: no force reaches it. Minimise another degree of freedom'

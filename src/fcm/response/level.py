@@ -1,7 +1,6 @@
-"""Response against the level of the forces, all amplitudes times lambda, at fixed frequencies.
+"""Response against the level of the harmonic forces at fixed frequencies.
 
-Static loads keep their full size: the level is that of the harmonic forces, and rest is the equilibrium with
-the static loads.
+Static loads keep their full size; level 0 is the equilibrium under the static loads.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ from fcm.units import EXCITATION, UNIT, in_unit
 
 
 class LevelRequest(Frozen):
-    """Curves that are asked for over a span of levels of the forces, at frequencies in the scene's unit."""
+    """Request for curves over a span of levels of the forces, at frequencies in the scene's unit."""
 
     frequencies: Sequence[float]
     span: tuple[float, float]
@@ -66,20 +65,20 @@ def trace_levels(
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """Trace a curve for each curve of the scene and each frequency.
+    """Trace a curve against the level for each curve of the scene and each frequency.
 
-    The curve begins at rest and is followed through its folds until the level has left the span for good;
-    with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
-    motions at the level 1 takes; without either as the scene says. The errors are what the harmonics left out
-    would change at the same level, NaN where that is unknown, as beside folds. What is finished goes to
-    the checkpoint, and what that holds of it is not followed again.
+    A curve begins at rest and is followed through its folds until the level has left the span for good. It
+    has the given harmonics, or as many as a relative accuracy needs, of the greatest amplitudes and of the
+    motions at level 1. Without either, the scene decides. Errors are the changes by the harmonics left out at
+    the same level, NaN where unknown, as beside folds. The checkpoint keeps finished curves, which are not
+    followed again.
 
     Raises
     ------
     ResponseError
         If the span or a frequency is out of range.
     KeyboardInterrupt
-        If nothing is finished then; else what is finished is returned.
+        If no curve is finished; else the finished curves are returned.
     """
     (low, high), at = asked.span, asked.frequencies
     if fault := level_fault(low, high):
@@ -109,12 +108,12 @@ def trace_levels(
 
 
 def span_fault(low: float, high: float) -> str:
-    """What is wrong with a span of levels, of the forces or of a mode, as text; empty if nothing is."""
+    """Text on the fault of a span of levels, of the forces or of a mode; empty if it is valid."""
     return "" if 0.0 <= low < high else "the levels must rise, from 0 or more"
 
 
 def level_fault(low: float, high: float) -> str:
-    """What is wrong with a span of levels of the forces, as text; empty if nothing is."""
+    """Text on the fault of a span of levels of the forces; empty if it is valid."""
     if fault := span_fault(low, high):
         return fault
     if high > INPUT_LIMITS.max_level:
@@ -135,8 +134,7 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
 def _level_curve(
     scene: Scene, request: Request, omega: float, span: tuple[float, float], tell: Tell
 ) -> Curve:
-    """The curve with the harmonics of the request, or with ever more until they are enough for the
-    accuracy."""
+    """The curve with the harmonics of the request, or with more and more until the accuracy is reached."""
     begin, stopped = time.perf_counter(), ""
     system = request.system(scene)
     curve = _followed(system, omega, span, tell)
@@ -173,9 +171,9 @@ def _level_curve(
 
 
 def _worst(curve: Curve, scene: Scene) -> float:
-    """Greatest error of the peaks, and of those motions at the level 1 of which it is known.
+    """Greatest error of the peaks and of the motions at level 1 whose error is known.
 
-    NaN where that of a peak is not known. What hardly moves is not asked for.
+    NaN if the error of a peak is unknown. Degrees of freedom that hardly move do not count.
     """
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)
@@ -189,10 +187,10 @@ def _followed(system: System, omega: float, span: tuple[float, float], tell: Tel
     """The curve with the harmonics of a system."""
     try:
         check_contacts_can_close(system)
-        system.rest  # noqa: B018  # computed, and kept
+        system.rest  # noqa: B018  # computed and cached
     except RestError as error:
         return _without(system.scene, omega, str(error))
-    # what folds back into the span from beyond it is part of the curve
+    # parts that fold back into the span from above belong to the curve
     followed = (span[0], max(span[1], highest_linear_limit(system, omega)))
     beyond = (followed[1] - followed[0]) / (span[1] - span[0])
     levels = LevelRange(
@@ -212,7 +210,7 @@ def _followed(system: System, omega: float, span: tuple[float, float], tell: Tel
 
 
 def _points(system: System, path: Path, inside: IntArray, omega: float) -> dict[str, Any]:
-    """Contents of a `Curve` at the points of a path inside the span, NaN where the path leaves it."""
+    """Contents of a `Curve` at the points of a path inside the span, with NaN where the path leaves it."""
     left = np.flatnonzero(np.diff(inside) > 1) + 1
     rows = np.insert(np.arange(inside.size), left, -1)  # -1: outside the span
     level, z = path.parameter[inside], path.z[inside].copy()
@@ -227,13 +225,13 @@ def _points(system: System, path: Path, inside: IntArray, omega: float) -> dict[
     error, contact_load_errors = errors_at_levels(system, points)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, parity)
-    # with more harmonics there may be no solution where it is not
+    # where the truncation error is large, the solution may not exist with more harmonics
     known = truncation <= system.option(VALIDITY).max_error
     lost = no_steady_states(system, z, level)
     known &= ~holds_unknown(system, z, level)
     stable[~known & (stable == 1.0)] = np.nan
     for which in lost.values():
-        stable[which] = 0.0  # what creeps away, or floats, is no steady state
+        stable[which] = 0.0  # a structure that creeps or floats has no steady state
     of_points = {
         "frequency": np.full(level.size, omega),
         "level": level,

@@ -1,8 +1,8 @@
-"""Master degrees of freedom that a curve is followed by, where many are reported; all of them afterwards.
+"""Master degrees of freedom, by which a curve is followed where many are reported.
 
-All displacements are sums over the same modes, and whatever moves a mode acts at a contact or a force. So a
-curve that is resolved there, and where each mode moves most, is resolved for all other degrees of freedom.
-They are calculated from its points afterwards, and their peaks are found between these.
+All displacements are sums over the same modes, and all excitation acts at contacts or forces. So a curve that
+is resolved at these, and where each mode moves most, is resolved for all degrees of freedom. The others are
+computed afterwards at the points of the curve, and their peaks are located between these points.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fcm.structure.ring import RingLinear
 
 
 def with_master_dofs(scene: Scene) -> Scene:
-    """The scene at the degrees of freedom that lead in its first curve; itself if there are few."""
+    """The scene with the master degrees of freedom of its first curve only; itself if there are few."""
     dofs = scene.modal.dofs
     if len(dofs) <= OPTIMUM.max_dofs:
         return scene
@@ -36,7 +36,7 @@ def with_master_dofs(scene: Scene) -> Scene:
 
 
 def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
-    """Natural frequencies (mode,) and sizes of shapes (mode, dof) as the excitation meets them."""
+    """Natural frequencies (mode,) and sizes of shapes (mode, dof) of the modes that are excited."""
     if isinstance(linear, RingLinear):
         wave = linear.wave(1)
         return wave.natural, np.abs(wave.dofs)
@@ -44,21 +44,20 @@ def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
 
 
 def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> RefinedResponse:
-    """A response followed by master degrees of freedom, with errors, at all degrees of freedom of a scene."""
+    """The response at all degrees of freedom of a scene, with errors; found has the master ones."""
     every = with_errors(of_all_dofs(found, scene), accuracy)
     return replace(every, further=found.further, begun=found.begun)
 
 
 def of_all_dofs(found: UncheckedResponse, scene: Scene) -> UncheckedResponse:
-    """A response followed by master degrees of freedom at all degrees of freedom of a scene, without
-    errors."""
+    """The response at all degrees of freedom of a scene, without errors; found has the master ones."""
     system = found.system.with_scene(scene)
     quantities = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
     return UncheckedResponse(system, found.traced, quantities, found.seconds)
 
 
 def with_tops(peaks: Mapping[str, Peak], found: RefinedResponse) -> dict[str, Peak]:
-    """Peaks (by dof) raised to what is higher between the points."""
+    """Replace peaks (by dof) by higher ones located between the points."""
     from fcm.sensitivity.between_points import tops_between
 
     raised = dict(peaks)

@@ -43,19 +43,19 @@ from fcm.units import in_unit
 
 
 class ModeRequest(Frozen):
-    """A nonlinear mode that is asked for, over a span of modal amplitudes.
+    """Request for a nonlinear mode over a span of modal amplitudes.
 
     The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
-    mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
-    are at rest, without rigid-body modes.
+    mass 1: the root of X^H M X. Modes count from the lowest one of the structure with its contacts as at
+    rest, without rigid-body modes.
 
     Attributes
     ----------
     levels
-        Of the scene's forces, at which the response near the resonance is predicted.
+        Levels of the scene's forces at which the response near the resonance is predicted.
     motion_at
-        Modal amplitudes at which motions are kept for export; of none at the resonances, or, of a mode
-        without one, at its greatest amplitude. Without this no motion is kept.
+        Modal amplitudes at which motions are kept for export. If it is empty, motions at the resonances are
+        kept or, without a resonance, the one at the greatest amplitude. If it is None, none is kept.
     """
 
     number: int
@@ -73,17 +73,17 @@ def trace_modes(
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """The mode that is asked for, of each curve of the scene.
+    """Follow the requested mode for each curve of the scene.
 
-    Without harmonics or an accuracy, those of the scene. What is finished goes to the checkpoint, and what
-    that holds of it is not followed again.
+    harmonics and accuracy default to those of the scene. The checkpoint keeps finished curves, which are not
+    followed again.
 
     Raises
     ------
     ResponseError
         If the span is out of range, or there is no such mode.
     KeyboardInterrupt
-        If nothing is finished then; else what is finished is returned.
+        If no curve is finished; else the finished curves are returned.
     """
     low, high = asked.span
     if not 0.0 < low < high <= INPUT_LIMITS.max_amplitude_ratio * low:
@@ -116,7 +116,7 @@ def trace_modes(
 
 
 def check_free(scene: Scene) -> None:
-    """Raise ResponseError for scenes of which no nonlinear mode is computed."""
+    """Raise ResponseError for scenes whose nonlinear modes cannot be computed."""
     check_no_ring(scene, "nonlinear modes")
     refuse_own_laws(scene, "nonlinear modes")
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
@@ -211,7 +211,7 @@ def _recorded(mode: Mode, asked: ModeRequest, error: FloatArray, theirs: FloatAr
 
 
 def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> NonlinearMode:
-    """The quantities of a mode itself, and the response that it predicts at levels of the forces."""
+    """The quantities along a mode, and the response that it predicts at levels of the forces."""
     return NonlinearMode(
         number=asked.number,
         amplitude=mode.amplitude,
@@ -228,7 +228,7 @@ def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> Non
 
 
 def _internal_resonance(mode: Mode) -> InternalResonance | None:
-    """Where further harmonics than the first have much of a mode's power; None if nowhere."""
+    """The range in which harmonics above the first have much of a mode's power; None if there is none."""
     harmonics, power = np.array(mode.system.harmonics), mode.power
     further = np.where(harmonics > 1, power, 0.0)
     share = further.sum(axis=1)
@@ -241,9 +241,9 @@ def _internal_resonance(mode: Mode) -> InternalResonance | None:
 
 
 def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> Iterator[MotionOfMode]:
-    """Motions of a mode at modal amplitudes.
+    """Yield motions of a mode at modal amplitudes.
 
-    Without any amplitudes at the resonances, or else at the greatest amplitude.
+    If `at` is empty, they are those at the resonances or, without one, at the greatest amplitude.
     """
     if at:
         found = [at_amplitude(mode, one) for one in at]
@@ -263,7 +263,7 @@ def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> It
 
 
 def _reason(mode: Mode) -> str:
-    """Reason why a mode does not reach the greatest amplitude."""
+    """Sentence on why a mode does not reach the greatest amplitude."""
     path = mode.path
     if path.status is not Status.RETURNED:
         return f"stopped at modal amplitude {mode.amplitude[-1]:.6g}: {path.status.value}"
@@ -284,7 +284,7 @@ def _resonances(mode: Mode, level: float) -> list[Resonance]:
         return []
     system = found.system
     amplitude = half_peak_to_peak(found.displacements()[0], system.harmonics, system.options.extremes)
-    square = 1.0 - 2.0 * found.damping**2  # damped more, it has no greatest amplitude
+    square = 1.0 - 2.0 * found.damping**2  # negative: too much damping for a resonance peak
     frequency = found.omega * np.sqrt(np.where(square > 0.0, square, np.nan))
     dofs = system.scene.modal.dofs
     return [

@@ -1,4 +1,4 @@
-"""Numbers with which the greatest peak is hardly more than the least one, and with which it is unstable."""
+"""Ranges of a number in which the greatest peak is only slightly above its minimum, or unstable."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from fcm.model.scene import FloatArray
 from fcm.response.options import OPTIMUM, OptimumOptions
 from fcm.results.tracked import NearlyLeast, Optimal, TrackedCurve
 
-Piece = tuple[FloatArray, FloatArray]  # numbers along a curve, and heights relative to the least
-SEARCHED = ("smooth", "kink", "corner", "bound")  # kinds of optima beside which peaks are known as curves
+Piece = tuple[FloatArray, FloatArray]  # numbers along a curve, and heights relative to the least peak
+SEARCHED = ("smooth", "kink", "corner", "bound")  # kinds of optima with known curves of peaks beside them
 
 
 def nearly_least(
     found: Optimal, curves: Iterable[TrackedCurve], dofs: Sequence[str], share: float
 ) -> NearlyLeast | None:
-    """The range of a number in which no tracked peak is more than this share above the least.
+    """The range of a number in which no tracked peak exceeds the least one by more than this share.
 
-    Peaks between two points of a curve are those of a straight line. An end of the curves is one of the range
-    where the peaks are not greater up to there. None of several numbers, and where peaks end or are unknown.
+    Heights are interpolated linearly between points. The range ends at an end of the curves if the peaks stay
+    below the limit up to there. None with several numbers, or where peaks end or are unknown.
     """
     if len(found.values) != 1 or found.kind not in SEARCHED or found.between is not None:
         return None
@@ -87,9 +87,9 @@ def unstable_peaks(
 
 
 def _ends_of_higher(pieces: Sequence[Piece], share: float, best: float) -> tuple[tuple[float, float], ...]:
-    """The next number on either side of the best at which a peak ends that is higher than all others there.
+    """The next number on either side of the best one at which the highest peak ends, with its height.
 
-    With its height there. Peaks that end at bounds of all, or where another takes over, are none of these.
+    Ends at the bounds of all curves do not count, nor ends where another peak is nearly as high.
     """
     least, most = (of([of(number) for number, _ in pieces]) for of in (np.min, np.max))
     below, above = list[tuple[float, float]](), list[tuple[float, float]]()
@@ -103,14 +103,14 @@ def _ends_of_higher(pieces: Sequence[Piece], share: float, best: float) -> tuple
 
 
 def _greatest_at(piece: Piece, at: float) -> float:
-    """The greatest height of a curve at a number; 0 where it is not there."""
+    """The greatest height of a curve at a number; 0 if the curve does not reach it."""
     number, height = piece
     there = np.flatnonzero((number[:-1] - at) * (number[1:] - at) <= 0.0)
     return float(np.maximum(height[there], height[there + 1]).max(initial=0.0))
 
 
 def _above(number: FloatArray, height: FloatArray, limit: float) -> FloatArray:
-    """Ranges of numbers at which a curve is at or above a limit, and where it crosses that."""
+    """Numbers of the points at or above a limit, and of the crossings of the limit."""
     off = height - limit
     crossed = np.flatnonzero((off[:-1] * off[1:] < 0.0) & np.isfinite(off[:-1] * off[1:]))
     part = off[crossed] / (off[crossed] - off[crossed + 1])

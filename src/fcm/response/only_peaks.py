@@ -1,7 +1,7 @@
-"""``--only peaks``: of exact curves the peaks, folds and jumps alone, sought near those of the balance.
+"""``--only peaks``: peaks, folds and jumps of exact curves, located near those of the balance.
 
-Where these are not the same one by one, or one harmonic is far from the motion, the whole curve is followed,
-and the rest of it left out.
+If the two do not correspond one to one, or one harmonic is far from the motion, the whole curve is followed
+and its other points are left out.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ from fcm.time_domain.errors import SimulationError
 
 
 class PeaksOnly(Frozen):
-    """The peaks, folds and jumps of a scene, by frequency, and how many periods it took to find them."""
+    """The peaks, folds and jumps of a scene, by frequency, and the number of periods computed for them."""
 
     points: list[OrbitRecord]
     jumps: list[Jump] = field(default_factory=list)
-    periods: int = 0  # that were computed
+    periods: int = 0  # number of periods computed
     uncertain: UncertainFrequencies = field(
         default_factory=UncertainFrequencies
-    )  # of the balance that they are near
+    )  # of the balance that gave the guesses
 
 
 def peaks_only(
     scene: Scene, known: list[OrbitRecord], report: Report, poll: Poll, shooting: ShootingOptions = SHOOTING
 ) -> PeaksOnly | None:
-    """The peaks, folds and jumps of a scene; None where the balance has others.
+    """The peaks, folds and jumps of a scene; None if they do not correspond to those of the balance.
 
-    known : to which points are added as they are found.
+    known : points are added to it as they are found.
     """
     if not _one_harmonic_suffices(traced_curve(scene, ONE_HARMONIC, poll)):
         return None
@@ -86,12 +86,12 @@ def peaks_only(
 
 
 def peaks_curve(scene: Scene, alone: PeaksOnly, reason: str, search: Search) -> Curve:
-    """The curve of peaks, folds and jumps; complete without a reason."""
+    """The curve of peaks, folds and jumps; complete if reason is empty."""
     return _curve(scene, alone.points, FrequencySweep(alone.jumps, []), alone.periods, reason, search)
 
 
 def peaks_of(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
-    """The peaks, folds and jumps of a curve that was followed."""
+    """The curve of the peaks, folds and jumps of branches that were followed."""
     whole, problem = orbit_curve(groups, reason, Search.none()), groups[0].problem
     tops = {peak.frequency for peak in whole.peaks.values()}
     points = [one for group in groups for path in group.own for one in path]
@@ -111,31 +111,30 @@ def _curve(
 
 
 def _one_harmonic_suffices(single: Curve) -> bool:
-    """Whether the peaks by one harmonic are nearly those of the motion, and it jumps at folds alone.
+    """Whether one harmonic gives nearly the exact peaks, and all jumps are at folds.
 
-    Else a balance that is near enough takes longer than to follow the exact curve, and often that is
-    followed after all.
+    Otherwise a sufficient balance takes longer than the exact curve, which often has to be followed anyway.
     """
     near = all(peak.error <= EXACT_CURVES.max_peak_error for peak in single.peaks.values())
     swept = single.swept()
-    told = bool(single.folds) or not swept.unknown  # beside folds more harmonics tell
+    told = bool(single.folds) or not swept.unknown  # with folds, more harmonics decide
     return single.complete and near and told and _at_folds(swept, single)
 
 
 def _at_folds(swept: FrequencySweep, curve: Curve) -> bool:
-    """Whether each jump is at a fold: where stability is lost otherwise is not looked for."""
+    """Whether each jump is at a fold: other losses of stability are not located here."""
     return all(jump.frequency in curve.folds for jump in swept.jumps)
 
 
 def _paired(folds: dict[float, OrbitRecord], points: list[OrbitRecord]) -> bool:
-    """Whether each fold of the balance is one of the motion, and the motion has no other."""
+    """Whether the folds of the balance are exactly those found in the motion."""
     theirs = sorted(one.frequency for one in folds.values())
     own = sorted(one.frequency for one in points if one.mark & Mark.FOLD)
     return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SHOOTING.peaks.peak_tolerance, atol=0.0)
 
 
 def _guesses(scene: Scene, curve: Curve) -> Iterator[OrbitGuess]:
-    """Guesses at points of the balance: its peaks, of which one may be the highest, and its folds."""
+    """Yield guesses from the balance: at its nearly highest peaks, and at its folds."""
     if not curve.points:
         return
     for dof in range(curve.amplitude.shape[1]):
@@ -163,7 +162,7 @@ def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> OrbitGuess:
 
 
 def _jump(scene: Scene, jump: Jump, fold: OrbitRecord | None) -> Jump | None:
-    """The jump of the balance at the exact fold that belongs to it; None where there is no such jump."""
+    """The jump of the balance moved to its exact fold; None if there is no such jump."""
     if fold is None or not fold.stable:
         return None
     after = _landed(scene, fold, jump.after)
@@ -171,7 +170,7 @@ def _jump(scene: Scene, jump: Jump, fold: OrbitRecord | None) -> Jump | None:
 
 
 def _landed(scene: Scene, fold: OrbitRecord, wanted: FloatArray) -> FloatArray | None:
-    """The amplitude of the other stable motion at a fold, the nearest to the balance's, if any is."""
+    """The amplitude of another stable motion at a fold, the one closest to wanted; None without any."""
     try:
         found = [one.measure.amplitude for one in near_balance(scene, fold.frequency) if one.stable]
     except SimulationError:

@@ -1,4 +1,4 @@
-"""The numbers of a scene with which a peak is least, and the response with them."""
+"""Optimum of the numbers of a scene: those with the least peak, and the response with them."""
 
 from __future__ import annotations
 
@@ -44,24 +44,25 @@ def optimise(
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """The optima of a scene with an [optimum], one for each curve of its sweep, and the responses there.
+    """Find the optima of a scene with an [optimum], one for each curve of its sweep, and trace the responses.
 
     Parameters
     ----------
     harmonics, accuracy
-        As of `trace`: with an accuracy, as many harmonics as the response at the optimum takes.
+        As of `trace`: with an accuracy, as many harmonics as the response at the optimum needs.
     method, execution
-        As of `trace`: what is kept are the optima that are found, and then the curves of the response.
+        As of `trace`: the checkpoint keeps the optima found, and then the curves of the response.
     options : ResponseOptions, optional
-        Tolerances and limits; with `peaks_only` of the sweep, points go once they have told the optima.
+        Tolerances and limits; with `peaks_only` of the sweep, points are dropped after the optima are
+        checked.
 
     Raises
     ------
     ResponseError
-        If nothing has a peak in the range, what is to be least does not move, or a number changes the
+        If there is no peak in the range, a minimised quantity does not move, or a number changes the
         rigid-body motions.
     KeyboardInterrupt
-        If nothing is found then; else what was least so far is returned, without a response.
+        If nothing has been found; else the least peak so far is returned, without a response.
     """
     assert scene.optimum is not None
     check_no_ring(scene, "optima")
@@ -112,7 +113,7 @@ def optimise(
 
 
 def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
-    """The numbers of some keys, and the scene with these numbers free."""
+    """The numbers with some keys, and the scene with these numbers free."""
     numbers = [number_of(scene, key) for key in keys]
     for number in numbers:
         scene = number.freed(scene)
@@ -120,7 +121,7 @@ def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
 
 
 def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Response:
-    """The response that an interruption leaves of the search for optima: those so far, and no curves."""
+    """The response after an interrupted search: the optima so far, without curves."""
     unknown = [(np.nan,) * len(one.active) for one in tracking.optima]
     tracking.optima = [
         replace(one, stable=none, residual=none) for one, none in zip(tracking.optima, unknown, strict=True)
@@ -137,7 +138,7 @@ def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Re
 
 
 def _tracking(aim: Optimum, found: list[Found]) -> Tracking:
-    """The optima and the curves that led there, for a file."""
+    """The optima and the curves of peaks that led to them, for a file."""
     key = aim.vary[0] if len(aim.vary) == 1 else ""
     curves = [curve for _, tracked in found for curve in tracked]
     tracking = Tracking(key, "optimum", aim.bounds[0], found[0][0].harmonics, curves)
@@ -146,7 +147,7 @@ def _tracking(aim: Optimum, found: list[Found]) -> Tracking:
 
 
 def scenes_at(scene: Scene, optima: list[Optimal]) -> tuple[Scene, ...]:
-    """The scenes of the curves of `optimise`, with the numbers chosen as if they had been given."""
+    """The scenes of the curves of `optimise`, as if their optimal numbers had been given."""
     numbers, free = _freed(scene, optima[0].values)
     found = []
     for curve, one in zip(free.each_curve(), optima, strict=True):
@@ -170,14 +171,14 @@ def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
 
 
 def _check_moves(found: Optimal, curve: Curve) -> None:
-    """Raise ResponseError where what was minimised is rounding."""
+    """Raise ResponseError where a minimised peak is mere rounding."""
     unmoved = [dof for dof, _ in found.active if curve.peaks[dof].amplitude == 0.0]
     if unmoved and found.value > 0.0:
         raise ResponseError(f"optimum: {still(' and '.join(unmoved), len(unmoved))}")
 
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:
-    """An optimum with the estimated error of its greatest peaks, and what else is known of the motion."""
+    """Add to an optimum the estimated error, stability and residual change of its greatest peaks."""
     there = [_known_of_peak(curve, dof, omega) for dof, omega in found.active]
     error = float(np.max([one.error for one in there])) if there else np.nan
     stable, residual = (tuple(getattr(one, name) for one in there) for name in ("stable", "residual"))
@@ -185,9 +186,9 @@ def _with_error(found: Optimal, curve: Curve) -> Optimal:
 
 
 def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
-    """The peak of a degree of freedom at a frequency, with its error and stability.
+    """The peak of a degree of freedom at a frequency, with its error and stability, NaN where unknown.
 
-    That need not be its greatest amplitude, which may be at an end of the range. NaN where it is not known.
+    It need not be the greatest amplitude, which may be at an end of the range.
     """
     greatest, d = curve.peaks[dof], list(curve.peaks).index(dof)
     if abs(greatest.frequency - omega) <= OPTIMUM.frequency_tolerance * omega:
@@ -202,7 +203,7 @@ def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
 
 
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:
-    """Say where the accuracy falls short, as more harmonics would take too long or change nothing."""
+    """Set `short_of` of curves that miss the accuracy, as more harmonics take too long or change nothing."""
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         exact = one.error <= accuracy
         if curve.complete and not (exact and one.end_error <= accuracy):
@@ -224,7 +225,7 @@ def _with(harmonics: tuple[int, ...]) -> str:
 
 
 def _missed_peak(found: Optimal, curve: Curve) -> tuple[str, float] | None:
-    """The highest peak of a minimised quantity in the response that was not followed."""
+    """The highest peak in the response, of a minimised quantity, that the search has missed; else None."""
     ends, higher = (curve.extract or extract_of(curve)).ends, list[tuple[float, str]]()
     for name in found.minimised:
         what, _, dof = name.partition(".")
@@ -238,7 +239,7 @@ def _missed_peak(found: Optimal, curve: Curve) -> tuple[str, float] | None:
     return name, float(value)
 
 
-KINDS = (Optimal, TrackedCurve)  # what is kept consists of these
+KINDS = (Optimal, TrackedCurve)  # classes of results that are kept
 
 
 def optima(
@@ -247,12 +248,14 @@ def optima(
     checkpoint: CheckpointFile | None,
     progress: Progress | None,
 ) -> tuple[list[Found], bool]:
-    """The optimum of each task, all with the same harmonics; or those so far, and that it was interrupted.
+    """The optimum of each task, all with the same harmonics, and whether the search was interrupted.
+
+    After an interruption it returns the optima so far.
 
     Raises
     ------
     KeyboardInterrupt
-        If nothing is found then.
+        If nothing has been found.
     """
     found: list[Found] = []
     try:
@@ -273,9 +276,9 @@ def _optima(
     checkpoint: CheckpointFile | None,
     progress: Progress | None,
 ) -> Iterator[Found]:
-    """The optimum of each task, kept as soon as it is found, with each response and curve that leads to it.
+    """Yield the optimum of each task; it is saved when found, as are the steps that lead to it.
 
-    What is kept already is as it was.
+    Optima saved by an earlier run are yielded as they are.
     """
     kept = Results() if checkpoint is None else _kept(tasks, harmonics, checkpoint)
     for i, task in enumerate(tasks):
@@ -287,7 +290,7 @@ def _optima(
 
 
 def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: CheckpointFile) -> Results:
-    """The results of these tasks that are kept; they are known by all that decides their optima."""
+    """The saved results of these tasks, identified by everything that decides their optima."""
     scenes = [replace(task.scene, name="", title="", curves=()) for task in tasks]
     mark = fingerprint(
         "optima", harmonics, [(task.numbers, task.accuracy, task.options) for task in tasks], scenes
@@ -296,7 +299,7 @@ def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: 
 
 
 def _fits(tasks: list[PeakTask], number: int, results: Any) -> bool:
-    """Whether results that were read from a file can be the optimum of the task with this number."""
+    """Whether results read from a file can be the optimum of the task with this number."""
     if not (0 <= number < len(tasks) and isinstance(results, list) and len(results) == 1):
         return False
     found = results[0]
@@ -309,7 +312,7 @@ def _fits(tasks: list[PeakTask], number: int, results: Any) -> bool:
 def _with_the_same(
     tasks: list[PeakTask], found: list[Found], checkpoint: CheckpointFile | None
 ) -> list[Found]:
-    """The optima with the same harmonics, those that any of them takes, as the curves of a response have."""
+    """The optima with the same harmonics, those that any of them needs, as curves of a response have."""
     every = {h for one, _ in found for h in one.harmonics}
     if all(len(one.harmonics) == len(every) for one, _ in found):
         return found

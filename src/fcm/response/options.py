@@ -1,4 +1,4 @@
-"""The tolerances and limits with which responses are calculated and reported."""
+"""Tolerances and limits with which responses are calculated and reported."""
 
 from __future__ import annotations
 
@@ -13,23 +13,22 @@ from fcm.tracking.options import SEARCH, SearchOptions
 
 
 class InputLimits(Frozen):
-    """Limits of what may be asked for: beyond them it is more likely a mistake than meant.
+    """Limits of input: values beyond them are more likely a mistake than intended.
 
     Attributes
     ----------
     accuracy : float
-        Relative accuracy of peaks and folds, where nothing else is asked for.
+        Default relative accuracy of peaks and folds.
     max_frequency_ratio : float
         Frequency relative to the highest natural frequency, beyond which it is refused as a mistake of units.
     max_level : float
         Level of the forces beyond which it is refused as a mistake of units.
     min_level : float
-        Level of the forces below which the structure does not move: a lower one is refused.
+        Level of the forces below which the structure hardly moves: a span that ends below it is refused.
     max_amplitude_ratio : float
-        Greatest ratio of the ends of a span of amplitudes; more is refused.
+        Greatest ratio of the ends of a span of amplitudes; a greater one is refused.
     min_relative_width : float
-        Relative width of a span below which it is refused: not even the first steps would be more than
-        rounding.
+        Relative width of a span below which it is refused: even the first steps would be mere rounding.
     """
 
     accuracy: float = 1e-2
@@ -44,28 +43,27 @@ INPUT_LIMITS = InputLimits()
 
 
 class SentenceOptions(Frozen):
-    """Options on how many things one sentence names.
+    """Options on what sentences to the user name and advise.
 
     Attributes
     ----------
     max_dofs, max_harmonics, max_frequencies : int
-        Most degrees of freedom, harmonics and frequencies that are named.
+        Most degrees of freedom, harmonics and frequencies that one sentence names.
     few_harmonics : int
-        Harmonics that are proposed beside those of the accuracy, where these take long and there are fewer.
+        Number of harmonics that is proposed as a faster alternative to those of the accuracy.
     low_peak : float
-        Height of the peak with the greatest error, relative to the greatest peak, below which it is said how
-        low it is.
+        Height of the peak with the greatest error, relative to the greatest peak, below which the sentence
+        states this height.
     max_states : int
-        Most letters of a sequence of contact states: that of a contact which chatters has more, and is cut
-        off.
+        Most letters of a sequence of contact states; a longer one, of a contact that chatters, is cut off.
     resonance_tolerance : float
-        Relative distance of a harmonic's frequency from a resonance, up to which a curve is said to stop at
-        it.
+        Relative distance of a harmonic's frequency from a resonance, up to which a curve is said to stop
+        there.
     spring_ratio : float
-        Ratio of that resonance to the frequency of the spring to the ground that is advised: the spring
-        shifts the resonance by 1/1800.
+        Ratio of that resonance to the frequency of the advised spring to the ground: the spring shifts the
+        resonance by 1/1800.
     contacts_in_time : int
-        Number of contacts above which nobody is sent to the exact motion: a frequency takes minutes.
+        Number of contacts above which the exact motion is not advised: a frequency takes minutes.
     """
 
     max_dofs: int = 3
@@ -96,13 +94,13 @@ class SweepOptions(Frozen):
     traced_share : float
         Share of the progress bar for tracing the curves; the rest is for checking them.
     max_rounds : int
-        Most rounds of more harmonics, after which what is lacking is said.
+        Most rounds of more harmonics; after them the shortfall is reported.
     save_interval : float
-        [s] Time after which finished curves are saved before their batch is, so that no kill loses them.
+        [s] Interval at which finished curves of an unfinished batch are saved, so that a kill loses none.
     progress_interval : float
-        [s] Time after which the progress moves where nobody tells what share is done.
+        [s] Interval at which the progress advances where no share is reported.
     peaks_only : bool
-        Whether to keep peaks, folds and errors of each curve, and not its points.
+        Whether to keep only peaks, folds and errors of each curve, without its points.
     """
 
     batch: int = 10
@@ -119,17 +117,17 @@ SWEEP = SweepOptions()
 
 
 class InterruptedOptions(Frozen):
-    """Options on what is still computed of a curve after an interruption, in a second or so.
+    """Options on what is still computed for a curve after an interruption, within about a second.
 
     Attributes
     ----------
     max_states : int
-        Most points times directions of contacts of a curve with errors: a curve with more is written with
-        fewer points, and no further errors.
+        Most points times contact directions of a curve with errors: a larger curve is written with fewer
+        points, and without further errors.
     min_points : int
-        Least number of points that are written, however many contacts there are.
+        Least number of points that are written, for any number of contacts.
     max_seconds_of_errors : float
-        [s] Time that errors not known yet may take; with more they are left out.
+        [s] Time that the missing errors may take; if they need more, they are left out.
     """
 
     max_states: int = 20_000
@@ -137,7 +135,7 @@ class InterruptedOptions(Frozen):
     max_seconds_of_errors: float = 0.2
 
     def max_points(self, directions: int) -> int:
-        """Most points that are written of a curve whose contacts have so many directions in all.
+        """Most points that are written of a curve whose contacts have this total number of directions.
 
         >>> InterruptedOptions().max_points(50), InterruptedOptions().max_points(900)
         (400, 30)
@@ -161,13 +159,13 @@ class SteppedOptions(Frozen):
         Distance of a solution from its prediction, in units of the motion, up to which it is never on another
         branch.
     min_step : float
-        Step relative to the way between two frequencies, below which it is not divided: jumps are known to
-        it.
+        Step, relative to the interval between two frequencies, below which it is not divided: the resolution
+        of jumps.
     overshoot : float
-        Distance past the end of a branch, relative to the way that is left, at which the motion is simulated:
-        nearer it would linger.
+        Distance past the end of a branch, relative to the rest of the interval, at which the motion is
+        simulated: closer to the end the transient would be very long.
     irregular_step : float
-        Longest step, relative to the frequency, of a motion that repeats after no number of periods.
+        Longest step, relative to the frequency, of a motion that is not periodic.
     irregular_cycles : int
         Number of periods for which such a motion is simulated after each step.
     min_jump : float
@@ -176,8 +174,8 @@ class SteppedOptions(Frozen):
         Relative change of an amplitude in a step of a motion of several periods, above which the step is
         divided.
     min_step_of_periods : float
-        Step of such a motion, relative to the frequency, below which it is not divided: its jumps are known
-        to it.
+        Step of such a motion, relative to the frequency, below which it is not divided: the resolution of its
+        jumps.
     """
 
     max_distance: float = 0.5
@@ -201,21 +199,21 @@ class ExactOptions(Frozen):
     Attributes
     ----------
     max_harmonic : int
-        Highest harmonic of the response that modes have to lie far above to be replaced by static ones; the
-        effect of that is measured.
+        Highest harmonic of the response; only modes far above it are replaced by static ones. The effect of
+        this is measured.
     min_contacts : int
-        Least number of contacts of a scene of which some may be foreseen to keep their state.
+        Least number of contacts of a scene for which some are predicted to keep their state.
     max_seconds : float, optional
-        [s] Processor time of a curve, after which what there is of it is the result. None for no limit.
+        [s] Processor time of a curve, after which the part found so far is the result. None for no limit.
     stiff_seconds : float
-        [s] The same limit for a curve that a stiff contact may keep from ever being finished.
+        [s] This limit, if there is none, for a curve that a stiff contact may keep from ever ending.
     search_fraction : float
-        Time of the search for further branches, relative to the time of a curve, at most.
+        Greatest time of the search for further branches, relative to the time limit of a curve.
     peak_threshold : float
         Height of a peak of the balance, relative to the greatest amplitude of its degree of freedom, below
-        which it is not one of the highest.
+        which it does not count as one of the highest.
     max_peak_error : float
-        Relative error of the peaks with one harmonic, up to which they are near enough as guesses.
+        Relative error of the peaks with one harmonic, up to which they serve as guesses.
     """
 
     max_harmonic: int = 3
@@ -238,9 +236,9 @@ class ResumableOptions(Frozen):
     save_interval : float
         [s] Least time between two savings.
     time_fraction : float
-        Time that savings may take, relative to all.
+        Greatest share of the time that savings may take.
     poll_interval : float
-        [s] Time between two readings of the processor time, which takes long to read on some machines.
+        [s] Time between two readings of the processor time, which are slow on some machines.
     """
 
     save_interval: float = 0.5
@@ -252,7 +250,7 @@ RESUMABLE = ResumableOptions()
 
 
 class CoexistingOptions(Frozen):
-    """Options on which motions at one frequency are the same.
+    """Options on which motions at one frequency count as the same.
 
     Attributes
     ----------
@@ -261,7 +259,7 @@ class CoexistingOptions(Frozen):
     extent_tolerance : float
         Relative difference of amplitudes up to which a motion is within an extent.
     amplitude_tolerance : float
-        Relative range of amplitudes up to which they are the same.
+        Relative range of amplitudes up to which they count as equal.
     """
 
     orbit_tolerance: float = 1e-5
@@ -273,12 +271,12 @@ COEXISTING = CoexistingOptions()
 
 
 class ContactChangeOptions(Frozen):
-    """Options on which changes at a contact are rounding.
+    """Options on which changes at a contact count as rounding.
 
     Attributes
     ----------
     point_tolerance : float
-        Distance in the problem's scale that rounding may put between the same point of two problems.
+        Distance, in the problem's scale, up to which points of two problems count as the same.
     """
 
     point_tolerance: float = 1e-8
@@ -293,11 +291,11 @@ class FittedResponseOptions(Frozen):
     Attributes
     ----------
     max_rounds : int
-        Most rounds of more harmonics, until the response takes no more than the fit had.
+        Most rounds of more harmonics, until the response needs no more than the fit had.
     misfit_share : float
         Error that the response may have, relative to the misfit of the data.
     min_accuracy : float
-        Relative accuracy beyond which no more harmonics are taken for it.
+        Least value of the relative accuracy that this error asks for.
     fit_share : float
         Share of the progress bar for finding the numbers.
     """
@@ -312,27 +310,27 @@ FITTED_RESPONSE = FittedResponseOptions()
 
 
 class OptimumOptions(Frozen):
-    """Options on how the least peak is found, and the curves of peaks on which it is.
+    """Options on the search for the least peak, and on the curves of peaks that contain it.
 
     Attributes
     ----------
     max_rounds : int
         Most rounds of choosing harmonics by the accuracy at the optimum.
     min_height : float
-        Height relative to the greatest peak, up to which a peak is ignored.
+        Height, relative to the greatest peak, up to which a peak is ignored.
     search_share : float
         Share of the progress bar for finding the optimum.
     frequency_tolerance : float
         Relative difference of the frequencies of a tracked and a traced peak, up to which they are the same.
     max_dofs : int
-        Number of degrees of freedom up to which all of them steer the steps of a curve, so that their peaks
-        are points of it.
+        Number of degrees of freedom up to which a curve is followed by all of them, so that their peaks are
+        points of it.
     nearly : float
-        Relative height above the least peak, up to which it is reported for which numbers peaks are as low.
+        Relative height above the least peak, for which the range of the number is reported.
     min_unstable : float
         Part of the range of a number in which the greatest peak is unstable, above which that is reported.
     unstable_samples : int
-        How many numbers that is looked at.
+        Number of values of it at which stability is looked up.
     search : SearchOptions
         Options of the search for the least peak over a range of one number.
     """
@@ -352,12 +350,12 @@ OPTIMUM = OptimumOptions()
 
 
 class ResponseOptions(Frozen):
-    """Tolerances and limits of a response, for `fcm.respond` and for what traces, follows and optimises.
+    """Tolerances and limits of a response, for `fcm.respond` and all other calculations of responses.
 
     Attributes
     ----------
     balance : HarmonicBalanceOptions
-        Options of the harmonic balance, and what more harmonics may take.
+        Options of the harmonic balance, and limits of the work with more harmonics.
     refinement : RefinementOptions
         How harmonics are added for an accuracy.
     optimum : OptimumOptions
@@ -365,15 +363,15 @@ class ResponseOptions(Frozen):
     sweep : SweepOptions
         How the curves of a sweep are traced.
     interrupted : InterruptedOptions
-        What is calculated of a curve once it is interrupted.
+        What is calculated of a curve after an interruption.
     reduction : ReductionOptions
-        What curves do not need: modes that are replaced by static ones.
+        Which modes are replaced by static ones.
     exact : ExactOptions
         How exact curves are calculated.
     shooting : ShootingOptions
-        How the periodic motions are calculated of which exact curves consist.
+        How the periodic motions of exact curves are calculated.
     others : tuple
-        Options of what is computed from a balance, each of the class of its package: `FoldOptions`,
+        Options of computations with a balance, each of the class of its package: `FoldOptions`,
         `BranchingOptions`, `LevelOptions`, `LevelCurveOptions` and `LevelReachOptions` of the branches,
         `ValidityOptions` and `StabilityOptions`.
     """
@@ -393,8 +391,8 @@ RESPONSE = ResponseOptions()
 
 
 def leaving_out(tolerance: float | None, options: ResponseOptions = RESPONSE) -> ResponseOptions:
-    """Options that leave out whatever changes the response by no more than a tolerance.
+    """Options that leave out modes that change the response by no more than a tolerance.
 
-    0: what has no effect at all, None: nothing.
+    0 leaves out only what has no effect at all, None nothing.
     """
     return replace(options, reduction=replace(options.reduction, tolerance=tolerance))

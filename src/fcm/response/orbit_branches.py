@@ -16,24 +16,24 @@ from fcm.shooting.problem import OrbitProblem
 class OrbitBranches(Frozen):
     """The paths of a problem of exact motions.
 
-    Of doubled periods, once: those of half of them, at whose flips they end. mirrored: number of paths whose
-    mirror images are left out.
+    For a doubled period, once has the branches of half the period, at whose flips these paths end. mirrored:
+    number of paths whose mirror images are left out.
     """
 
     problem: OrbitProblem
     paths: Sequence[Path]
     once: OrbitBranches | None = None
     mirrored: int = 0
-    cut_off: bool = False  # there is no time left to find what lies between the points
+    cut_off: bool = False  # interrupted: nothing is located between the points any more
 
     @cached_property
     def own(self) -> list[list[OrbitRecord]]:
-        """The points of each path, and those at which it loses its stability."""
+        """The points of each path, with those at which its stability changes."""
         return [samples(self.problem, path, located=not self.cut_off) for path in self.paths]
 
     @cached_property
     def points(self) -> list[list[OrbitRecord]]:
-        """The points of each path, with those at the frequencies at which others end."""
+        """The points of each path, with those at the frequencies at which other paths end."""
         found = self.own
         if self.cut_off:
             return found

@@ -36,14 +36,14 @@ from fcm.shooting.period_doubling import bifurcations, flip, flips
 
 
 def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
-    """The points of branches, with a point of NaN between one and the next; complete without a reason.
+    """The curve of all points of branches, separated by points of NaN; complete if reason is empty.
 
-    search : for other motions beside them.
+    search : search for other motions at their frequencies.
 
     Raises
     ------
     NotKeptError
-        If a contact that is held would not have kept its state.
+        If a held contact would change its state.
     """
     points, folds, scene = list[OrbitRecord | None](), list[float](), groups[0].problem.scene
     changes = list[tuple[str, float]]()
@@ -58,7 +58,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
                 whole = [_of_whole(scene, one) for one in found]
             points += [None, *whole] if points else whole
     least = np.min(kept, axis=0) if kept else _kept(scene, [])
-    if lost := lost_by(least).tolist():  # other motions beside such points are of no use
+    if lost := lost_by(least).tolist():  # before the search for other motions
         raise NotKeptError(tuple(lost), reason)
     curve = replace(_curve(scene.whole(), points, reason, search), folds=folds, bifurcations=changes)
     curve.mirrored = sum(group.mirrored for group in groups)
@@ -72,7 +72,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
 
 
 def _of_whole(scene: Scene, point: OrbitRecord) -> OrbitRecord:
-    """A record with the contacts that are held, too."""
+    """The record with the held contacts included."""
     states, contact_loads = (
         whole_states(scene, point.states),
         whole_contact_loads(scene, point.contact_loads, point.held[:, 1:]),
@@ -81,7 +81,7 @@ def _of_whole(scene: Scene, point: OrbitRecord) -> OrbitRecord:
 
 
 def _kept(scene: Scene, points: Sequence[OrbitRecord]) -> FloatArray:
-    """Least distance of each held contact from its limit or gap: (contact, 2), else nan."""
+    """Least distance (contact, 2) of each held contact from its slip limit or gap; nan for others."""
     kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
     if not points:
         return kept
@@ -92,7 +92,7 @@ def _kept(scene: Scene, points: Sequence[OrbitRecord]) -> FloatArray:
 
 
 def curve_of_points(scene: Scene, points: Sequence[OrbitRecord], reason: str, search: Search) -> Curve:
-    """A curve of separate points: one of NaN between each and the next."""
+    """A curve of separate points, with a point of NaN between each two."""
     apart = [one for point in points for one in (None, point)]
     return _curve(scene, apart[1:], reason, search)
 
@@ -100,7 +100,7 @@ def curve_of_points(scene: Scene, points: Sequence[OrbitRecord], reason: str, se
 def visited_curve(
     scene: Scene, visitor: SteppedSweep, others: Sequence[OrbitRecord], reason: str, search: Search
 ) -> Curve:
-    """The points at which sweeps were steady, in order, then others; complete without a reason."""
+    """The curve of the steady points of the sweeps in order, then others; complete if reason is empty."""
     curve = _curve(scene, [*visitor.points, *others], reason, search, everywhere=True)
     if curve.orbits is not None:
         curve.orbits.sweep = np.array(visitor.sweep + [""] * len(others), dtype="<U4")
@@ -119,7 +119,7 @@ def _curve(
     regime = _regimes(points, len(scene.contacts))
     stuck = coexisting_stuck(scene, [] if search.over else rows, frequency, regime, others)
     told = everywhere | np.isfinite(others.whole)
-    # of a motion that does not repeat neither its multipliers nor how far it ranges in the long run are known
+    # for an irregular motion neither multipliers nor the long-term range of amplitudes are known
     error = np.array([np.nan if p is None or p.repeats == 0 else 0.0 for p in points])
     stable = error + [p is not None and p.stable for p in points]
     of_top = np.full_like(error, np.nan) if everywhere else error  # the greatest visited point is no peak
@@ -158,7 +158,7 @@ def _curve(
 def _orbits(
     points: Sequence[OrbitRecord | None], empty: Curve, others: FrictionExtent, stuck: Sequence[Stuck]
 ) -> Orbits:
-    """Quantities that only exact curves have; stuck : motions beside the points, not of families."""
+    """Quantities that only exact curves have; stuck : further motions, on no branch and in no family."""
     return Orbits(
         closure_error=_numbers(points, "residual"),
         sweep=np.full(len(points), "", dtype="<U4"),
@@ -193,7 +193,7 @@ def _contact_loads(points: Sequence[OrbitRecord | None], empty: Curve) -> FloatA
 
 
 def _cycles(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> FloatArray:
-    """The least or greatest amplitude of a cycle of each point, (point, dof)."""
+    """The least or greatest amplitude of the cycles at each point, (point, dof)."""
     rows = _rows(points, "amplitude", empty)
     for k, point in enumerate(points):
         if point is not None and point.steady is not None:
@@ -202,7 +202,7 @@ def _cycles(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> Fl
 
 
 def _told_points(amplitude: FloatArray, everywhere: bool) -> list[int]:
-    """Points for which other motions that residual friction allows are looked for: the peaks, or all."""
+    """Points at which other motions by residual friction are sought: the peaks, or all points."""
     known = np.isfinite(amplitude).any(axis=1)
     if everywhere:
         return np.flatnonzero(known).tolist()

@@ -1,7 +1,7 @@
-"""A response with every branch and its stability, and the harmonics that an accuracy takes for all of it.
+"""A response with all branches and their stability, and the harmonics that an accuracy needs for all of it.
 
-What was traced is looked at in stages: its branches, the events on them, the degrees of freedom that it was
-not followed by. Each tells which harmonics it lacks; with these all is traced again.
+The traced response passes three stages: its branches, the events on them, and the degrees of freedom by which
+it was not followed. Each stage returns the harmonics that it needs. If these are more, all is traced again.
 """
 
 from __future__ import annotations
@@ -38,15 +38,15 @@ class Refined(Frozen):
     Attributes
     ----------
     found : RefinedResponse
-        The response, of the degrees of freedom that it was followed by.
+        The response at the degrees of freedom by which it was followed.
     stable : list of array (point,)
-        For each path; 1 stable, 0 not, NaN not known.
+        For each path; 1 stable, 0 unstable, NaN unknown.
     lost : list of StabilityLimit
-        How far the frequencies are off at which stability changes without a fold, where harmonics are chosen.
+        Frequencies at which stability changes without a fold, with their errors, where harmonics are chosen.
     exceeded : bool
-        Whether more harmonics have a higher branch, where they are given.
+        Whether more harmonics have a higher branch, where the harmonics are given.
     bifurcations : list of (str, float)
-        How stability changes without a fold, and where [rad/s].
+        Kinds and frequencies [rad/s] of changes of stability without a fold.
     every : RefinedResponse
         The response of all degrees of freedom.
     """
@@ -59,9 +59,9 @@ class Refined(Frozen):
     every: RefinedResponse | None = None
 
 
-OnClassified = Callable[[RefinedResponse, list[FloatArray]], None]  # what there is, with its stability
-# the response, the one before with fewer harmonics, the accuracy (None: the harmonics are given), the scene
-# with all degrees of freedom; to the response with more of it known, and the harmonics that this takes
+OnClassified = Callable[[RefinedResponse, list[FloatArray]], None]  # receives a response with its stability
+# Arguments: the response, the previous one with fewer harmonics, the accuracy (None: harmonics are given),
+# and the scene with all degrees of freedom. Results: the completed response, and the harmonics that it needs.
 Stage = Callable[[Refined, Refined | None, float | None, Scene], tuple[Refined, Harmonics]]
 
 
@@ -72,10 +72,10 @@ def refined(
     on_traced: OnTraced,
     on_classified: OnClassified,
 ) -> Refined:
-    """A response that was traced with every branch, its events, and all degrees of freedom of a scene.
+    """Complete a traced response with all branches, their events, and all degrees of freedom of a scene.
 
-    With an accuracy also with the harmonics that these take, unless that takes longer than is worth it.
-    What there is goes to on_traced, before more is traced, and to on_classified, once its stability is known.
+    With an accuracy it has the harmonics that these need, unless tracing with them takes too long. on_traced
+    receives each response before more is traced, on_classified each one with its stability.
     """
     now, before = Refined(found), None
     stages: Sequence[Stage] = (_with_branches, _with_events, _with_all_dofs)
@@ -100,7 +100,7 @@ def refined(
 def _with_branches(
     now: Refined, _: Refined | None, accuracy: float | None, __: Scene
 ) -> tuple[Refined, Harmonics]:
-    """The response with what levels below its peaks, its folds and its branch points lead to."""
+    """Add branches found from levels below the peaks, from folds and from branch points."""
     known, most = now.found.traced, _most(accuracy)
     found = with_levels_below_peaks(now.found, most)
     traced = with_further_branches(found.system, found.traced, isolated=not _is_of_these_alone(found))
@@ -115,8 +115,11 @@ def _with_branches(
 
 
 def _is_of_these_alone(found: RefinedResponse) -> bool:
-    """Whether a response falls short of its accuracy, more harmonics take too long, and beside some of its
-    motions these have none: nor need they have the folds of its level."""
+    """Whether the response misses its accuracy for want of time, and some points have no near neighbour.
+
+    The neighbour is the solution with more harmonics. Folds of the level of such a response need not exist
+    with more harmonics either.
+    """
     options, short = found.system.option(VALIDITY), bool(found.further) and not found.reached
     each = (without_neighbour(one.truncation, one.is_same_curve, options).any() for one in found.errors)
     return short and any(each)
@@ -125,8 +128,7 @@ def _is_of_these_alone(found: RefinedResponse) -> bool:
 def _with_events(
     now: Refined, before: Refined | None, accuracy: float | None, _: Scene
 ) -> tuple[Refined, Harmonics]:
-    """The response with its stability, where that changes, and what levels lead to where nothing is
-    stable."""
+    """Add stability and its changes, and branches found from levels where nothing is stable."""
     now = _with_stability(now, accuracy)
     found, exceeded = with_levels_where_unstable(now.found, now.stable, _most(accuracy))
     now = _with_stability(replace(now, found=found, exceeded=exceeded), accuracy)
@@ -140,7 +142,7 @@ def _with_events(
 def _with_all_dofs(
     now: Refined, _: Refined | None, accuracy: float | None, scene: Scene
 ) -> tuple[Refined, Harmonics]:
-    """The response at all degrees of freedom of a scene, if it was followed by master ones."""
+    """Add all degrees of freedom of a scene, if the response was followed by master ones."""
     found, most = now.found, _most(accuracy)
     if found.system.scene is scene:
         return replace(now, every=found), found.system.harmonics
@@ -154,12 +156,11 @@ def _most(accuracy: float | None) -> float:
 
 
 def _with_stability(now: Refined, accuracy: float | None) -> Refined:
-    """The response with the stability of its points, and points where it changes between folds.
+    """Add the stability of branches where it is unknown, and points where it changes between folds.
 
-    For the branches of which that is not known yet.
-
-    With an accuracy, and how far it is from where more harmonics have these; not of a curve that has not come
-    to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
+    With an accuracy the changes get their distance from those with more harmonics. A curve that misses the
+    accuracy does not: it is reported as such, and its points far from the solution with more harmonics are
+    not examined.
     """
     found, stable, lost = now.found, list(now.stable), list(now.lost)
     bifurcations, options = list(now.bifurcations), now.found.system.option(VALIDITY)
@@ -212,6 +213,6 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
 
 
 def _between(values: FloatArray, after: IntArray) -> FloatArray:
-    """Values with the means of neighbours inserted after some rows."""
+    """Insert, after some rows, the mean of the row and the next."""
     means = 0.5 * (values[after] + values[np.minimum(after + 1, len(values) - 1)])
     return np.insert(values, after + 1, means, axis=0)

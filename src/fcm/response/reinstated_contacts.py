@@ -1,8 +1,7 @@
-"""Curves with contacts held, carried over to a problem in which some of these are computed after all.
+"""Transfer of curves with held contacts to a problem in which some of these are computed.
 
-As long as a contact keeps its state, a motion in which it is held is one in which it is computed. So what
-there is of a curve need not be followed again, up to the last point before a contact that was held loses its
-state.
+As long as a held contact keeps its state, the motion is also a solution with that contact computed. So a
+curve need not be followed again up to the last point before a held contact changes its state.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from fcm.shooting.problem import OrbitProblem
 
 
 class ReinstatedContacts:
-    """The map from points of a problem with contacts held to those of one with fewer; it is linear.
+    """The affine map from points of a problem with held contacts to those of a problem with fewer held.
 
     The friction force of a contact that sticks is k_u (u - rest), with u the displacement along it.
     """
@@ -44,7 +43,7 @@ class ReinstatedContacts:
                 self._rest[row] = -one.contact.k_u * one.rest
 
     def saved_paths(self, saved_paths: Iterable[SavedPath]) -> Iterator[SavedPath]:
-        """Saved paths that are also paths of the other problem, in its unknowns."""
+        """Yield the saved paths that are also paths of the other problem, in its unknowns."""
         for saved in saved_paths:
             path = None if saved.path is None else self._path(saved.path)
             checkpoint = (
@@ -56,7 +55,7 @@ class ReinstatedContacts:
                 yield SavedPath(saved.number, *problem_kind(self.now), path, checkpoint)
 
     def states_kept(self, points: Iterable[FloatArray]) -> bool:
-        """Whether the contacts that are released have kept their state in motions z."""
+        """Whether the released contacts have kept their state in motions z."""
         shots = [self.before.shot(z) for z in points]
         return all(shot is not None and (shot.held_distances[self._released] > 0.0).all() for shot in shots)
 
@@ -81,7 +80,7 @@ class ReinstatedContacts:
         return replace(path, z=z, direction=direction, orientation=sense * path.orientation)
 
     def _checkpoint(self, checkpoint: Checkpoint) -> Checkpoint | None:
-        """A checkpoint of the other problem, whose stepper is where that of this is."""
+        """The checkpoint in the other problem, with the stepper at the same point; None if not possible."""
         before, last = checkpoint.kept
         if not self.states_kept([*before.z, last[0], checkpoint.z]):
             return None
@@ -104,7 +103,7 @@ class ReinstatedContacts:
         )
 
     def _stepper(self, z: FloatArray, direction: FloatArray) -> Stepper | None:
-        """A stepper of the other problem at a point; None where its curve is not found in that direction."""
+        """A stepper of the other problem at a point; None if its curve is not there in that direction."""
         there, stepper = self.point(z), Stepper(self.now)
         row = _unit(self.now, there, self.way(direction))
         if not stepper.begin(there, row):
@@ -117,19 +116,19 @@ class ReinstatedContacts:
         return stepper if same else None
 
     def _initial_direction(self, checkpoint: Checkpoint) -> FloatArray:
-        """The direction at the start, in units of the scale there."""
+        """The direction at the start of the path, in units of the scale there."""
         self.before.evaluate_scale(checkpoint.first)
         direction = checkpoint.initial_direction * np.asarray(self.before.scale)
         return _unit(self.now, self.point(checkpoint.first), self.way(direction))
 
 
 def _each(change: Callable[[FloatArray], FloatArray], rows: FloatArray) -> FloatArray:
-    """Rows changed one by one, so that equal rows stay equal to the last digit."""
+    """Apply a change row by row, so that equal rows stay equal to the last digit."""
     return np.array([change(row) for row in rows]).reshape(len(rows), -1)
 
 
 def _places(problem: OrbitProblem) -> FloatArray:
-    """Positions of the unknowns of a point among those of the whole scene; the frequency is -1."""
+    """Indices of the unknowns of a point among those of the whole scene; -1 for the frequency."""
     scene = problem.scene
     modes = 2 * scene.modal.mass.size
     every: Sequence[int] = [*range(modes), *(modes + i for i in scene.computed())]
@@ -137,7 +136,7 @@ def _places(problem: OrbitProblem) -> FloatArray:
 
 
 def _unit(problem: OrbitProblem, z: FloatArray, direction: FloatArray) -> FloatArray:
-    """A direction at z in units of the scale there, of length 1."""
+    """The unit vector of a direction at z, in units of the scale there."""
     problem.evaluate_scale(z)
     scaled = direction / np.asarray(problem.scale)
     unit: FloatArray = scaled / np.linalg.norm(scaled)

@@ -1,4 +1,4 @@
-"""Requests of a curve: some harmonics, or an accuracy that chooses them; and the error of a bad one."""
+"""Requests for a curve, with given harmonics or an accuracy that chooses them, and their error class."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from fcm.table import Table
 
 
 class ResponseError(ValueError):
-    """The calculation cannot be begun; the message says why."""
+    """The calculation cannot begin; the message says why."""
 
 
 class Request(Frozen):
     """Request for a curve: with given harmonics, or with as many as an accuracy needs.
 
-    With one harmonic and a table it is reported how far the table's own solutions are from the points, which
-    are solutions with the closed form; unless they are not to be corrected: then they are the table's.
+    With one harmonic and a table, points are solutions with the closed form, and the errors of the table are
+    reported. If corrected is false, points are the solutions with the table.
     """
 
     harmonics: tuple[int, ...] | None = (1,)
@@ -34,7 +34,7 @@ class Request(Frozen):
     options: ResponseOptions = RESPONSE
 
     def system(self, scene: Scene, harmonics: tuple[int, ...] | None = None) -> System:
-        """The balance of a scene (of one curve), with other harmonics if they are given; without a table."""
+        """The system of a scene (of one curve) without a table, optionally with other harmonics."""
         chosen, options = harmonics or self.harmonics or (1,), self.options
         return System(scene, chosen, options=options.balance, other_options=options.others)
 
@@ -72,7 +72,7 @@ def request_of(
 
 
 def _numbers(harmonics: object) -> tuple[Any, ...]:
-    """Harmonics up to a number, or some given ones; integers of numpy are as good as those of Python."""
+    """Harmonics up to a number, or the given ones; numpy integers are accepted."""
     if isinstance(harmonics, Integral) and not isinstance(harmonics, bool):
         return harmonics_up_to(int(harmonics))
     some = harmonics if isinstance(harmonics, Iterable) else (harmonics,)

@@ -1,4 +1,4 @@
-"""The curves of a scene as they are followed: what is finished of them is kept, and need not be again."""
+"""Continuation of the exact curves of a scene that saves its progress and resumes after an interruption."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from fcm.shooting.problem import OrbitProblem
 
 
 class SavedPath(Frozen):
-    """A curve from one start in one direction: whole, or as far as it has come."""
+    """A curve from one start in one direction: complete, or as far as it was followed."""
 
     number: int  # in the order in which they are followed
     held: tuple[int, ...]  # the contacts that were held
@@ -32,14 +32,14 @@ class SavedPath(Frozen):
     checkpoint: Checkpoint | None
 
     def partial_path(self) -> Path:
-        """The points of a saved path as those of a curve that is cut off."""
+        """The saved points as a path with the status of an interruption."""
         if self.path is not None:
             return replace(self.path, status=Status.INTERRUPTED)
         assert self.checkpoint is not None
         return self.checkpoint.path(Status.INTERRUPTED)
 
 
-SAVED_KINDS = (SavedPath, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
+SAVED_KINDS = (SavedPath, Path, Checkpoint, Status, Stored, Points)  # classes of saved data
 
 
 class _Ended(Exception):  # noqa: N818
@@ -47,13 +47,13 @@ class _Ended(Exception):  # noqa: N818
 
 
 class TimeOver(Exception):  # noqa: N818
-    """A curve has taken as long as it may."""
+    """A curve has used up its time limit."""
 
 
 class CurveTimeLimit:
-    """The processor time [s] that a curve may take, from now on; no limit if it is None.
+    """Limit of the processor time [s] of a curve, from now on; None for no limit.
 
-    Each look is reported as a step.
+    Each poll is reported as a step.
     """
 
     def __init__(self, limit: float | None, report: Report) -> None:
@@ -61,7 +61,7 @@ class CurveTimeLimit:
         self._end = None if limit is None else time.process_time() + limit
 
     def share(self, part: float) -> float:
-        """A part of the limit [s]."""
+        """A part of the limit [s]; infinite without a limit."""
         return np.inf if self.limit is None else part * self.limit
 
     @property
@@ -70,7 +70,7 @@ class CurveTimeLimit:
         return self._end is not None and time.process_time() > self._end
 
     def poll(self) -> None:
-        """Raise `TimeOver` when the time is over."""
+        """Raise `TimeOver` if the time is over."""
         self.report.again()
         if self._end is not None and time.monotonic() > self._ask:
             if self.over:
@@ -79,12 +79,12 @@ class CurveTimeLimit:
 
 
 class ResumablePaths:
-    """Follows curves as `fcm.continuation.follow` does, one after the other.
+    """Follows curves one after the other, as `fcm.continuation.follow` does.
 
-    The same curves in the same order after an interruption: those that were finished are not followed again,
-    and the one that was begun goes on from its last point.
+    After an interruption the same curves must be followed in the same order. Finished ones are then not
+    followed again, and the unfinished one continues from its last point.
 
-    poll : called before every step, as a `CurveTimeLimit` looks.
+    poll : called before every step, for instance `CurveTimeLimit.poll`.
     passing : called with the problem and every point from which a step is made.
     """
 
@@ -97,11 +97,11 @@ class ResumablePaths:
     ) -> None:
         self.report, self.low, self.high = report, *span
         self.poll, self.passing = poll, passing
-        self.number = 0  # of the next one
-        self._recorded = 0  # points of the one that is followed
+        self.number = 0  # number of the next path
+        self._recorded = 0  # recorded points of the present path
         self._begun: tuple[OrbitProblem, Checkpoint] | None = None
-        self._passed: SavedPath | None = None  # the last one of which nothing was wrong
-        self._given = dict[int, SavedPath]()  # of another scene, with the same motions
+        self._passed: SavedPath | None = None  # the last one that `passing` has accepted
+        self._given = dict[int, SavedPath]()  # from another scene with the same motions
         self._seen, self._took = time.monotonic(), 0.0
         every = (saved for saved in report.saved if isinstance(saved, SavedPath))
         self._known = {_key(saved): saved for saved in every}  # the latest of each
@@ -116,7 +116,7 @@ class ResumablePaths:
         *,
         forward: bool,
     ) -> Path:
-        """Follow a curve, see `follow`; one of doubled periods up to where it comes to those of half."""
+        """Follow a curve, see `follow`; a curve of doubled period ends at that of half the period."""
         saved = self._known.get(_key(self._saved_path(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
             checkpoint = None if saved is None else saved.checkpoint
@@ -130,7 +130,7 @@ class ResumablePaths:
         return saved.path
 
     def _followed(self, problem: OrbitProblem, start: FloatArray, whole: Callable[..., Path]) -> Path:
-        """The curve by `follow` with a watch; one of doubled periods up to those of half."""
+        """Follow a curve with `_watch`; a curve of doubled period ends at that of half the period."""
         self._recorded = 0
         watch = partial(self._watch, problem, float(start[-1]))
         if isinstance(problem, DoubledPeriodProblem):
@@ -156,10 +156,10 @@ class ResumablePaths:
         self.poll()
 
     def _record(self, problem: OrbitProblem, checkpoint: Checkpoint) -> None:
-        """Record the new points before their periods are forgotten.
+        """Record the new points before the problem forgets their periods.
 
-        Then a curve that is stopped is there at once. Many together: after each step it would make the
-        following a tenth slower.
+        So a curve that is stopped is available at once. Many points are recorded together: to do so after
+        each step would slow the continuation by a tenth.
         """
         if problem.full:
             for z in (*checkpoint.kept.before.z[self._recorded :], checkpoint.kept.last[0]):
@@ -168,7 +168,7 @@ class ResumablePaths:
             problem.forget()
 
     def found(self, problem: OrbitProblem) -> list[SavedPath]:
-        """The paths of a problem as far as all their points were passed."""
+        """The paths of a problem as far as `passing` has accepted their points."""
         saved_paths = {_key(saved): saved for saved in self._known.values() if saved.path is not None}
         if self._passed is not None and _key(self._passed) not in saved_paths:
             saved_paths[_key(self._passed)] = self._passed
@@ -176,17 +176,17 @@ class ResumablePaths:
         return [saved for saved in saved_paths.values() if (saved.held, saved.repeats) == (held, repeats)]
 
     def take(self, saved_paths: Iterable[SavedPath]) -> None:
-        """Go on with paths that begin where one is to be followed."""
+        """Use saved paths of another scene for curves that begin at the same points."""
         self._given = {saved.number: saved for saved in saved_paths}
 
     def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> SavedPath | None:
-        """The saved path with the next number, if it begins at the start."""
+        """The path given by `take` with the present number, if it begins at the start."""
         saved = self._given.get(self.number)
         known = saved is not None and _key(saved) == _key(self._saved_path(problem))
         return saved if saved is not None and known and _begins_at(saved, problem, start, forward) else None
 
     def keep(self) -> None:
-        """Save the curve that is being followed as far as it is there."""
+        """Save the part of the present curve that has been followed."""
         if self._begun is None:
             return
         begin = time.monotonic()
@@ -195,7 +195,7 @@ class ResumablePaths:
         self._took = self._seen - begin
 
     def paths(self, problem: OrbitProblem) -> list[Path]:
-        """Saved parts of the curves of a problem, including those of an earlier run."""
+        """The saved parts of the curves of a problem, including those of an earlier run."""
         held, repeats = problem_kind(problem)
         saved_paths = [
             saved for saved in self._known.values() if (saved.held, saved.repeats) == (held, repeats)
@@ -206,7 +206,7 @@ class ResumablePaths:
     def _saved_path(
         self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
     ) -> SavedPath:
-        """The path that is followed now, as it is saved."""
+        """The present path in the form in which it is saved."""
         return SavedPath(self.number, *problem_kind(problem), path, checkpoint)
 
     def _save(self, saved: SavedPath) -> None:
@@ -215,7 +215,7 @@ class ResumablePaths:
 
 
 def _begins_at(saved: SavedPath, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
-    """Whether a path is that from a start in a direction."""
+    """Whether a saved path begins at a start in a direction."""
     if saved.path is not None:
         first, rise = saved.path.z[0], float(saved.path.direction[0, -1])
     else:
@@ -231,5 +231,5 @@ def _key(saved: SavedPath) -> tuple[int, tuple[int, ...], int]:
 
 
 def problem_kind(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
-    """The held contacts and the number of periods: curves with others are different."""
+    """The held contacts and the number of periods, which distinguish the curves of different problems."""
     return tuple(one.place for one in problem.scene.held), problem.repeats

@@ -1,4 +1,4 @@
-"""Numbers by which nothing can be followed, as they change the rigid-body motions of a structure."""
+"""Check for numbers that cannot be followed, as they change the rigid-body motions of a structure."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fcm.structure.linear import linear_of
 
 
 def rigid_fault(scene: Scene, number: Number, span: tuple[float, float]) -> str:
-    """What is wrong with a number of a scene within a span, as text; empty if nothing is."""
+    """Text on why a number of a scene cannot be followed over a span; empty if it can."""
     first = scene.each_curve()[0]
     ends = [linear_of(number.put(first, value)) for value in span]
     if len({int((end.natural == 0.0).sum()) for end in ends}) > 1:

@@ -1,4 +1,4 @@
-"""Limits of a response of a ring's sector: what it cannot know, and requests that need the whole ring."""
+"""Limits of the response of a ring's sector: unknown quantities, and requests that need the whole ring."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PLANE = (
 
 
 def refuse_in_time(scene: Scene, what: str) -> None:
-    """Raise ResponseError where the motion in time is asked for of a scene of which it is not computed."""
+    """Raise ResponseError if the motion in time of a scene is requested but cannot be computed."""
     match in_time(scene):
         case InTime.RING:
             raise ResponseError(f"{scene.name}: {what} {WHOLE_RING}")
@@ -32,7 +32,7 @@ def refuse_in_time(scene: Scene, what: str) -> None:
 
 
 def refuse_other_harmonics(scene: Scene, what: str) -> None:
-    """Raise ResponseError where something knows forces of harmonic 1 alone, and there are others."""
+    """Raise ResponseError if the scene has forces of other harmonics than 1, which `what` does not allow."""
     others = driven_harmonics(scene)[1:]
     if others:
         named = " and ".join(map(str, others))
@@ -43,7 +43,7 @@ def refuse_other_harmonics(scene: Scene, what: str) -> None:
 
 
 def check_no_ring(scene: Scene, what: str) -> None:
-    """Raise ResponseError for a sector of a ring, of which this is not computed."""
+    """Raise ResponseError for a sector of a ring, for which `what` is not computed."""
     if scene.ring is not None:
         raise ResponseError(
             f"{scene.name}: cyclic: {what} of a ring of sectors are not computed. Write all its sectors out "
@@ -52,7 +52,7 @@ def check_no_ring(scene: Scene, what: str) -> None:
 
 
 def refuse_own_laws(scene: Scene, what: str) -> None:
-    """Raise ResponseError where more is asked of a contact's own law than its forces over a cycle."""
+    """Raise ResponseError if a contact has a law of one's own, which gives only forces over a cycle."""
     if scene.with_own_laws:
         names = [quoted(one.name) for one in scene.contacts if one.law is not None]
         raise ResponseError(
@@ -62,7 +62,7 @@ def refuse_own_laws(scene: Scene, what: str) -> None:
 
 
 def check_modes(scene: Scene, request: Request) -> None:
-    """Raise ResponseError where harmonics are asked for that meet a nodal diameter without modes."""
+    """Raise ResponseError if a requested harmonic excites a nodal diameter without modes."""
     for curve in scene.each_curve():
         if curve.ring is None:
             return
@@ -77,14 +77,14 @@ def check_modes(scene: Scene, request: Request) -> None:
 
 
 class UnknownOfRing(NamedTuple):
-    """Sentences on what is unknown of the curves of a ring, and whether stability is, on some of them."""
+    """Sentences on what is unknown of the curves of a ring, and whether stability of any is unknown."""
 
     sentences: list[str]
     stability: bool = False
 
 
 def unknown(scene: Scene, request: Request) -> UnknownOfRing:
-    """What is unknown of the curves of a scene, for want of modes or of time."""
+    """What is unknown of the curves of a ring, for lack of modes or because it would take too long."""
     found: dict[str, None] = {}
     without_stability = False
     orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}

@@ -10,23 +10,23 @@ from fcm.run import CheckpointFile, Progress, fingerprint
 from fcm.time_domain import Energy, Histories, State, histories
 from fcm.time_domain.schedule_record import CompletedPhase, PhaseResult, ScheduleRecord
 
-_KINDS = (ScheduleRecord, PhaseResult, CompletedPhase, State, Energy)  # what is kept consists of these
+_KINDS = (ScheduleRecord, PhaseResult, CompletedPhase, State, Energy)  # classes of saved data
 
 
 def simulated(
     scene: Scene, progress: Progress | None = None, keep: CheckpointFile | None = None
 ) -> Histories:
-    """The motion through the schedule for each curve of a scene.
+    """Simulate the motion through the schedule for each curve of a scene.
 
-    Whole curves, and of the one at work whole phases, go to the checkpoint; what that holds of them is not
-    simulated again.
+    The checkpoint keeps finished curves, and the finished phases of the present one; these are not simulated
+    again.
 
     Raises
     ------
     SimulationError
         If the scene has no schedule.
     KeyboardInterrupt
-        If it is interrupted before its first cycle is finished; later, what is finished is returned.
+        If it is interrupted before its first cycle is finished; later, the finished part is returned.
     """
     if keep is None:
         return histories(scene, progress)
@@ -38,12 +38,12 @@ def simulated(
 
 
 def _fit(curves: tuple[Scene, ...], number: int, found: Any) -> bool:
-    """Whether what was read from a file can be the record of the curve with this number."""
+    """Whether an object read from a file can be the record of the curve with this number."""
     if not 0 <= number < len(curves) or not isinstance(found, list) or len(found) != 1:
         return False
     return isinstance(found[0], ScheduleRecord) and found[0].parameters == curves[number].parameters
 
 
 def _begun(found: list[Any], phases: int) -> bool:
-    """Whether what was read from a file can be the first phases of a curve."""
+    """Whether an object read from a file can be the first phases of a curve."""
     return len(found) < phases and all(isinstance(one, CompletedPhase) for one in found)

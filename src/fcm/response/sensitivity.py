@@ -23,13 +23,13 @@ REMARKS = {
     PeakKind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
     PeakKind.EDGE: "at an end of the range: the derivative of the amplitude there",
 }
-MAY_BE_FOUND = (Unknown.NOT_SOLVED, Unknown.ONE_SIDED, Unknown.NO_MAXIMUM)  # from another point of the curve
+MAY_BE_FOUND = (Unknown.NOT_SOLVED, Unknown.ONE_SIDED, Unknown.NO_MAXIMUM)  # with other points of the curve
 
 
 def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
-    """Give every curve that has peaks their sensitivities; the scene is that of the response.
+    """Add the sensitivities of the peaks to every curve of a response to the scene.
 
-    Interrupted, the curves that have none say so.
+    After an interruption the curves without sensitivities are marked as incomplete.
     """
     check_no_ring(scene, "sensitivities")
     refuse_own_laws(scene, "a sensitivity")
@@ -48,7 +48,7 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
 
 
 def without_sensitivities(curves: Iterable[Curve]) -> None:
-    """Say of curves that they have no sensitivities, as the run was interrupted."""
+    """Mark curves as incomplete without sensitivities, as the run was interrupted."""
     for curve in curves:
         curve.complete, curve.reason = False, curve.reason or WITHOUT
         curve.cause = Cause.INTERRUPTED
@@ -61,7 +61,7 @@ def _of_curve(curve: Curve, scene: Scene) -> Sensitivities:
 
 
 def _peak(curve: Curve, scene: Scene, dof: int) -> tuple[int, FloatArray, bool] | None:
-    """The point of a peak, and whether it is where the range ends."""
+    """The degree of freedom, the point of its peak, and whether it is at an end of the range; or None."""
     amplitude: npt.NDArray[np.float64] = curve.amplitude[:, dof]
     if not np.isfinite(amplitude).any():
         return None
@@ -72,7 +72,7 @@ def _peak(curve: Curve, scene: Scene, dof: int) -> tuple[int, FloatArray, bool] 
 
 
 def remarks(response: Response, scene: Scene) -> list[str]:
-    """Remarks on peaks whose derivatives are not those of a smooth curve, and why they are unknown."""
+    """Sentences on peaks that are no smooth maximum, and on derivatives that are unknown."""
     groups: dict[str, list[tuple[int, str]]] = {}
     by_number: dict[Unknown, list[tuple[int, str, str]]] = {}
     for number, curve in enumerate(response.curves):
@@ -106,6 +106,6 @@ def _first(of: Sequence[tuple[int, str]]) -> str:
 
 
 def _reason(why: Unknown) -> str:
-    """Why a derivative is unknown, and what helps."""
+    """Text on why a derivative is unknown, with a remedy."""
     finds = "Another max_step may find it; a" if why in MAY_BE_FOUND else "A"
     return f"{why.value}. {finds} [sweep] of two near values shows what a number does"

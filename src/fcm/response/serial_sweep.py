@@ -1,4 +1,4 @@
-"""Curves followed one after the other in this process, and the results that an interruption leaves."""
+"""Curves followed one after the other in this process, with the results left by an interruption."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from fcm.run import IN_THIS_PROCESS, Execution, Progress, Results
 
 
 class Tell:
-    """Reports how far one of the curves is; an interruption may come of it.
+    """Reports the progress of one of the curves; the report may raise an interruption.
 
-    How often it is followed again nobody knows. So each time takes half of what is left of its progress.
+    The number of repetitions of a curve is unknown. So each one takes half of its remaining progress.
     """
 
     def __init__(self, progress: Progress | None, number: int, count: int) -> None:
@@ -22,35 +22,35 @@ class Tell:
         self.text, self.left, self.done = "", 1.0, 0.0
 
     def __call__(self, text: str) -> None:
-        """Tell what is followed now."""
+        """Report what is followed now; empty at the start."""
         self.left *= 0.5 if text else 1.0
         self.text = text
         self.covered(0.0)
 
     def covered(self, share: float) -> None:
-        """Tell the share of its span up to which it is followed."""
+        """Report the share of its span that the curve has covered."""
         self.done = max(self.done, 1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)))
         if self.progress is not None:
             of = f"{self.number} of {self.count} curves{', ' if self.text else ''}{self.text}"
             self.progress((self.number + self.done) / self.count, of)
 
 
-Task = tuple[Curve, Callable[[Tell], Curve]]  # the curve without points, and what follows it
+Task = tuple[Curve, Callable[[Tell], Curve]]  # the curve without points, and the function that follows it
 
 
 def one_by_one(
     tasks: Sequence[Task], execution: Execution = IN_THIS_PROCESS, mark: bytes = b""
 ) -> list[Curve]:
-    """The curves of all tasks; of those that an interruption leaves out, the curve without points beside it.
+    """The curves of all tasks; those that an interruption leaves out are the tasks' curves without points.
 
-    Whole curves are kept, and those that are kept already are not followed again.
+    The checkpoint keeps finished curves, which are not followed again.
 
     mark : digest of all that decides the results.
 
     Raises
     ------
     KeyboardInterrupt
-        If no curve is finished then.
+        If no curve is finished.
     """
     with execution.checkpoint() as checkpoint:
         kept = Results()
@@ -91,7 +91,7 @@ def _cut_off(curve: Curve) -> bool:
 
 
 def _fit(tasks: Sequence[Task], number: int, results: object) -> bool:
-    """Whether results that were read from a file can be the curve of the task with this number."""
+    """Whether results read from a file can be the curve of the task with this number."""
     if not 0 <= number < len(tasks) or not isinstance(results, list) or len(results) != 1:
         return False
     return fits(tasks[number][0], results[0])

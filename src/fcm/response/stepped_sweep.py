@@ -1,8 +1,8 @@
 """The steady motion at given frequencies, visited by a slow upward and then a slow downward sweep.
 
-Between two frequencies the periodic solution is continued in steps as short as it takes to stay on its
-branch, while it is stable. Where it is lost the motion is simulated from there, just beyond, until it is
-steady again. So it jumps where a slow sweep of the structure itself does, and to the same motion.
+Between two frequencies the stable periodic orbit is continued, in steps short enough to stay on its branch.
+Where it ends or becomes unstable, the motion is simulated from there, slightly beyond, until it is steady
+again. So it jumps at the same frequency and to the same motion as a slow sweep of the structure.
 """
 
 from __future__ import annotations
@@ -35,24 +35,24 @@ from fcm.time_domain.state import State
 
 
 class StepRecord(Frozen):
-    """The motion at one frequency of a sweep, and what the next one continues from."""
+    """The motion at one frequency of a sweep, and the data from which the next step continues."""
 
     number: int  # in the order of the sweeps, from 0
     sample: OrbitRecord | None  # the motion, if it was steady
     state: State
     went_on: bool  # whether the sample is a periodic solution that is continued
-    jumps: tuple[Jump, ...]  # on the way to it
-    irregular: tuple[str, ...]  # all until then
-    refused: tuple[tuple[str, str], ...]
+    jumps: tuple[Jump, ...]  # jumps in this step
+    irregular: tuple[str, ...]  # frequencies without steady motion so far
+    refused: tuple[tuple[str, str], ...]  # frequencies without a computed cycle so far, with the reasons
 
 
-STATES = (StepRecord, OrbitRecord, State, Measure, SteadyMotion)  # what is saved consists of these
+STATES = (StepRecord, OrbitRecord, State, Measure, SteadyMotion)  # classes of saved data
 
 
 class SteppedSweep:
     """Sweeps of one scene by steps of the frequency.
 
-    What they have found is there whenever they are interrupted, as by `poll`.
+    Their results so far stay available after an interruption, as by `poll`.
     """
 
     def __init__(self, scene: Scene, poll: Poll = never_interrupt) -> None:
@@ -64,8 +64,8 @@ class SteppedSweep:
         self.irregular: dict[str, None] = {}  # frequencies without steady motion, in order
         self.refused: dict[str, str] = {}  # frequencies at which no cycle can be computed, and why
         self._here: OrbitRecord | None = None  # the periodic solution that is continued
-        self._state = State.rest(scene)  # the motion, where there is none
-        self._sample: OrbitRecord | None = None  # what is steady now
+        self._state = State.rest(scene)  # the state of the present motion
+        self._sample: OrbitRecord | None = None  # the present motion, if it is steady
 
     def run(self, frequencies: Sequence[float], report: Report | None = None) -> None:
         """Visit increasing frequencies [rad/s] upwards, then downwards; every visit is saved."""
@@ -85,13 +85,13 @@ class SteppedSweep:
             report((number + 1) / len(visits), f"{sweep}, {frequency_text(self.scene, omega)}")
 
     def _note(self, sweep: str) -> None:
-        """Note the motion at a frequency that was visited, if it is steady."""
+        """Append the motion at the visited frequency, if it is steady."""
         if self._sample is not None:
             self.points.append(self._sample)
             self.sweep.append(sweep)
 
     def _go_on(self, saved: Sequence[Any], visits: Sequence[tuple[str, float]]) -> int:
-        """Go on where an interrupted run was; returns the number of visits that it has made."""
+        """Restore the results of an interrupted run; return the number of visits that it has made."""
         by_number = {visit.number: visit for visit in saved if isinstance(visit, StepRecord)}
         made = [by_number[number] for number in takewhile(by_number.__contains__, range(len(visits)))]
         for visit, (sweep, _) in zip(made, visits, strict=False):
@@ -105,7 +105,7 @@ class SteppedSweep:
 
     @property
     def reason(self) -> str:
-        """Sentence on frequencies that have no steady motion, or none that can be computed, else ''."""
+        """Sentence on frequencies without a steady motion, or without a computed cycle; else ''."""
         refused = next(iter(self.refused.values()), "")
         if not self.irregular:
             return refused
@@ -142,13 +142,13 @@ class SteppedSweep:
             self.irregular[frequency_text(self.scene, omega)] = None
 
     def _begin(self, omega: float) -> None:
-        """Begin where there is nothing to continue: a stable periodic solution, or the motion from rest."""
+        """Begin without a motion to continue: find a stable periodic solution, or simulate from rest."""
         try:
             orbit = solution_at(self.scene, omega, self.poll)
         except CycleError as error:
             self.refused[frequency_text(self.scene, omega)] = str(error)
             return
-        except SimulationError:  # none near harmonic balance, nor near the motion from rest
+        except SimulationError:  # no solution near harmonic balance, nor near the motion from rest
             return
         try:
             z = first_point(self.problem, orbit, self.poll)
@@ -184,9 +184,10 @@ class SteppedSweep:
                 )
 
     def _brought_back(self, after: OrbitRecord, at: float) -> OrbitRecord:
-        """The motion beyond the end of a branch at the frequency of the end itself, or as near as it goes.
+        """Bring the motion found beyond the end of a branch back to the frequency of the end, if possible.
 
-        It is the one before where there was no jump: where the period doubles, or a corner was in the way.
+        Without a jump it is then the motion before: so at a period doubling, or if a corner stopped the
+        steps.
         """
         kept = self._here, self._sample, self._state
         if after.steady is None:
@@ -199,7 +200,7 @@ class SteppedSweep:
         return there
 
     def _continue(self, omega: float) -> bool:
-        """Follow the periodic solution to a frequency, or as near as it is stable."""
+        """Follow the stable periodic solution towards a frequency; return whether it reaches it."""
         assert self._here is not None
         step = omega - float(self._here.z[-1])
         smallest = STEPPED.min_step * abs(step)
@@ -214,7 +215,7 @@ class SteppedSweep:
         return True
 
     def _step_along_branch(self, omega: float) -> bool:
-        """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
+        """Step to the stable periodic solution of the same branch at a near frequency; return success."""
         here = self._here
         assert here is not None
         self.problem.evaluate_scale(here.z)
@@ -234,10 +235,10 @@ class SteppedSweep:
         )
 
     def _follow(self, here: OrbitRecord, omega: float, sweep: str) -> OrbitRecord:
-        """Bring a motion of several periods towards a frequency, by steps in which it changes little.
+        """Follow a motion of several periods towards a frequency, in steps in which it changes little.
 
-        Returned is the last steady motion: the one there, or where such a motion ends. It ends at a jump,
-        which is noted, where the period is one, or where no motion is steady a step further.
+        Return the last steady motion, at the frequency or at the end of such motions. The end is where the
+        motion has period one, or where no motion is steady one step further. Jumps are recorded.
         """
         step, least = math.inf, STEPPED.min_step_of_periods * omega
         while here.repeats > 1 and here.frequency != omega:
@@ -267,7 +268,7 @@ class SteppedSweep:
         return float((np.abs(new - old) / np.maximum(np.maximum(new, old), np.finfo(float).tiny)).max())
 
     def _simulate_sweep(self, begin: float, omega: float) -> None:
-        """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""
+        """Simulate a slow sweep between two frequencies; a sudden change might lead to a different motion."""
         count = int(np.ceil(abs(omega - begin) / (STEPPED.irregular_step * min(omega, begin))))
         for between in np.linspace(begin, omega, count + 1)[1:-1].tolist():
             for _, end in cycles_from(
@@ -289,5 +290,5 @@ class SteppedSweep:
             return
         orbit = shoot(system, found.state, self.poll)
         if orbit is not None:
-            with suppress(SimulationError):  # resonant but for rounding: no motion is determined
+            with suppress(SimulationError):  # resonant but for rounding: the motion is not determined
                 self._continue_with(first_point(self.problem, orbit, self.poll))

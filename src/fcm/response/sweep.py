@@ -1,4 +1,4 @@
-"""All curves of a scene: what it does not need left out, groups traced on cores, interruptions survived."""
+"""Sweep over all curves of a scene: leaves out negligible parts, traces groups on cores, can be resumed."""
 
 from __future__ import annotations
 
@@ -52,29 +52,29 @@ def trace(
     scene : Scene
         From `fcm.load_scene`; one curve for each combination of its swept values.
     method : {"table", "closed-form"} or an open table
-        Coefficients of one harmonic, "table" is the shipped one. Either way the points are solutions with the
-        closed form; with a table it is looked up at each of them, and how far its own solution is from there
-        is its `table_error`.
+        Coefficients of one harmonic; "table" is the shipped table. The points are solutions with the closed
+        form in any case. With a table, `table_error` is the distance of the table's own solution from each.
     execution : Execution, optional
-        Where groups of curves are computed, and what is kept of them; here, and nothing, by default.
+        Where groups of curves are computed, and the checkpoint; by default in this process, without one.
     harmonics : int or sequence of int, optional
         Harmonics of the balance: up to a number, or some that begin with 1; the scene's by default.
     accuracy : float, optional
-        Instead, of the peaks and folds, relative: as many harmonics as that takes; the scene's, or 1e-2,
-        where there are no harmonics given.
+        Relative accuracy of peaks and folds that chooses the harmonics instead. The default is the scene's,
+        or 1e-2 if no harmonics are given.
     options : ResponseOptions, optional
-        Tolerances and limits; of `reduction` the tolerance says what is left out, `sweep` whether points are.
+        Tolerances and limits; the tolerance in `reduction` decides what is left out, `sweep` if points are.
 
     Raises
     ------
     ResponseError
         If the method is unknown, or the scene has no range of frequencies.
     ContactLawError
-        If a contact's own law gives no forces.
+        If a contact law of one's own gives no forces.
     CheckpointError
-        If another run is at work on that file.
+        If another run uses the checkpoint file.
     PlaceClosed
-        If that place takes nothing any more, and nothing is finished; else what is finished is returned.
+        If the place of execution accepts nothing more, and no curve is finished; else the finished curves are
+        returned.
     """
     table = None if isinstance(method, str) else method
     name = method if isinstance(method, str) else "table"
@@ -103,7 +103,7 @@ def trace(
 
 
 def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
-    """The curves without what they do not need; once more with it where it turns out to be needed."""
+    """Trace the curves without negligible parts, and again with all modes if these turn out to matter."""
     curves = sweep.scene.each_curve()
     options, tolerance = sweep.request.options.sweep, sweep.request.options.reduction.tolerance
     asked = sweep.request.harmonics or (options.expected_harmonic,)
@@ -117,14 +117,14 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
-        else:  # the estimate was too good: with all modes after all
+        else:  # the estimate was too low: trace with all modes
             lighter = without_negligible_parts(curves, 0.0, highest, sweep.request.options.reduction)
             response = sweep.run(lighter, part(progress, options.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table is not None and sweep.scene.planar:
         said.append(NO_TABLE_IN_PLANE)
-    elif sweep.table_idle and any(one.harmonics == (1,) for one in response.curves):  # others never use it
+    elif sweep.table_idle and any(one.harmonics == (1,) for one in response.curves):  # only these use it
         said.append(NO_TABLE_IN_PLANE if sweep.scene.planar else "the table: no contact needs it (no effect)")
     if sweep.scene.with_own_laws:
         said.append(HILL)
@@ -135,7 +135,7 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
 
 
 class _Sweep:
-    """The sweeps of a run, each with less left out; they share one progress bar."""
+    """The sweeps of a run, each with fewer parts left out; they share one progress bar."""
 
     def __init__(
         self, scene: Scene, method: str, table: Table | None, request: Request, curves: CurveBatches
@@ -143,12 +143,12 @@ class _Sweep:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
         self.request, self.peaks_only = request, request.options.sweep.peaks_only
         self.table_idle = method == "table" and table is None  # until it is opened
-        # of the table before it is used, for it counts its look-ups
+        # before the table is used, as it counts its look-ups
         options = (method, table, request.harmonics, request.accuracy, request.options)
         self.mark = b"" if curves.checkpoint is None else fingerprint(*options)
 
     def run(self, lighter: ReducedScenes, progress: Progress | None) -> Response:
-        """Trace all groups that are not finished already."""
+        """Trace all groups that are not finished yet; return the response."""
         every = tuple(replace(scene, draft=None) for scene in lighter.curves)
         batches = in_batches(every, batch_size(every[0], self.request))
         samples = REDUCTION.max_checked_of_curve if lighter.above is not None else 0
@@ -159,7 +159,7 @@ class _Sweep:
         return response
 
     def _table(self, lighter: ReducedScenes) -> Table | None:
-        """The table that is looked up at the points of the curves; None unless a contact needs it."""
+        """The table that is evaluated at the points of the curves; None unless a contact needs it."""
         if self.method != "table" or self.table is not None:
             return self.table
         if lighter.idle_table:
@@ -176,12 +176,12 @@ def _opened() -> Table:
 
 
 def _shipped_table() -> Table:
-    """The shipped table, opened once in a process; it counts for itself what it does not answer for."""
+    """A copy of the shipped table, which is opened once per process; each copy has its own counts."""
     return copy(_opened())
 
 
 def batch_size(scene: Scene, request: Request) -> int:
-    """Number of curves of a batch: fewer where each takes long, so that a few of them are shared by cores."""
+    """Number of curves in a batch: fewer where each takes long, so that cores share even a few curves."""
     options = request.options.sweep
     each = seconds_of_curve(scene, len(request.harmonics or range(options.expected_harmonic)))
     if each * options.batch <= options.batch_seconds:
@@ -190,5 +190,5 @@ def batch_size(scene: Scene, request: Request) -> int:
 
 
 def in_batches(curves: tuple[Scene, ...], size: int) -> list[tuple[Scene, ...]]:
-    """The curves in batches; each curve is computed alone, so that no result depends on them."""
+    """The curves in batches of a size; results do not depend on it, as each curve is computed alone."""
     return [curves[first : first + size] for first in range(0, len(curves), size)]

@@ -1,4 +1,4 @@
-"""One curve of a scene: every branch of it traced, and its points recorded."""
+"""Tracing of one curve of a scene, with all its branches, and the record of its points."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ from fcm.stability.options import STABILITY
 METHODS = ("table", "closed-form")
 NO_CHECKS = replace(
     PAIR, max_seconds=0.0, max_point_seconds=0.05, max_second_unknowns=0, max_seconds_elsewhere=0.0
-)  # where nobody waits any more
+)  # after an interruption
 IntArray = npt.NDArray[np.intp]
 
 
@@ -68,20 +68,21 @@ def traced_curve(
     tell: Tell | None = None,
     progress: Progress | None = None,
 ) -> Curve:
-    """The response curve of a scene without a sweep; poll is called now and then, tell with what there is,
-    and progress with the share that is done.
+    """Trace the response curve of a scene without a sweep.
+
+    poll is called regularly, tell with the state of the calculation, progress with the finished share.
 
     Raises
     ------
     fcm.run.Interrupted
-        With the best curve that there is, or as much as there is of the first.
+        With the best curve so far, or the part found of the first one.
     """
     from fcm.response.curve_batches import lost_curve
 
     begin, so_far = time.perf_counter(), BestSoFar(tell, progress)
     try:
         curve = _traced_curve(scene, wanted, poll, so_far)
-    except ContactLawError as useless:  # of a motion that was not tried before
+    except ContactLawError as useless:  # the check has not covered this motion
         curve = lost_curve(scene, str(useless))
     except KeyboardInterrupt as stopped:
         if isinstance(stopped, ResponseInterrupted):
@@ -96,10 +97,10 @@ def traced_curve(
 
 
 def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) -> Curve:
-    """The best curve until now, with its errors as far as they are told quickly."""
+    """The best curve so far, with those errors that can be estimated quickly."""
     assert so_far.found is not None
     whole = so_far.found
-    whole.system.work.poll, whole.system.work.tell = int, str  # which interrupt no more
+    whole.system.work.poll, whole.system.work.tell = int, str  # these do not interrupt
     most = options.max_points(len(scene.contacts) * scene.directions_of_contact)
     few = whole.thinned(most)
     if isinstance(few, RefinedResponse):
@@ -119,7 +120,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
 
 
 def _seconds_of_errors(found: UncheckedResponse) -> float:
-    """Seconds, about, of comparing each branch with its reference, where nothing is followed."""
+    """Estimated seconds for comparing each branch with its reference, without continuation."""
     system, probes = found.system, PAIR.probes * len(found.traced.branches.paths)
     count = len(system.harmonics)
     reference = min(max(PAIR.harmonics_factor * count, PAIR.min_harmonic), count + PAIR.max_added)
@@ -171,9 +172,9 @@ def _reported(response: Refined) -> RefinedResponse:
 
 
 def _curve(response: Refined, quick: bool = False) -> Curve:
-    """The traced response as a curve: branches one after the other, with a row of NaN between them.
+    """Convert a traced response to a curve: its branches in turn, with a row of NaN between them.
 
-    quick: without what takes further motions to tell.
+    quick: without results that need further motions.
     """
     found, parts = _reported(response), response.stable
     system, paths = found.system, found.traced.branches.paths
@@ -188,7 +189,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     words, contact_loads, plane = contacts.words, contacts.contact_loads, contact_motions(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
-    stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
+    stable = np.where(nowhere, 0.0, np.concatenate(parts))  # a structure that creeps or floats is not steady
     truncations = [one.truncation for one in found.errors]
     believed = [one.on_same_branch for one in found.errors]
     folds = (points.mark & Mark.FOLD) > 0
@@ -204,7 +205,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         doubted[of] &= ~sure.stable
         not_confirmed += int(doubted[of].sum()) if sure.limited else 0
     stable[doubted] = np.nan
-    if not quick:  # with more harmonics the branch turns back before
+    if not quick:  # with more harmonics the branch turns back earlier
         ended = np.concatenate([one.ends_before for one in found.errors])
         stable[np.isnan(stable) & ended] = 0.0
     stable[hold_unknown(system, points.z, points.force) & (stable == 1.0)] = np.nan
@@ -268,12 +269,12 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
 
 
 def _is_isolated(path: Path) -> bool:
-    """Whether a path is closed, and no other one crosses it at a branch point."""
+    """Whether a path is an isola: closed, and without a branch point."""
     return path.status is Status.CLOSED and not path.where(Mark.BRANCH).any()
 
 
 def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatArray:
-    """The contact loads (point, contact, 4), with NaN for the slip path where the law is the user's own."""
+    """The contact loads (point, contact, 4), with NaN for the slip distance of laws of one's own."""
     own = [i for i, one in enumerate(scene.contacts) if one.law is not None]
     if own:
         contact_loads = contact_loads.copy()
@@ -282,9 +283,9 @@ def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatA
 
 
 def _of_greatest(found: RefinedResponse, path: IntArray, contact_loads: FloatArray) -> FloatArray:
-    """Errors (contact, 4) of the greatest contact loads of all paths, from `contact_loads`.
+    """Errors (contact, 4) of the greatest contact loads over all paths; contact_loads (point, contact, 4).
 
-    Those are (point, contact, 4); an error is unknown where that of one nearly as great is.
+    NaN where the error of a load of another path that is nearly as great is unknown.
     """
     heights = np.array([contact_loads[path == k].max(axis=0) for k in range(len(found.errors))])
     errors = np.array([one.greatest for one in found.errors])
@@ -300,9 +301,9 @@ def _peaks(
     stable: FloatArray,
     residual: FloatArray,
 ) -> dict[str, Peak]:
-    """The peak of each degree of freedom where it is greatest, with its errors.
+    """The greatest peak of each degree of freedom, with its errors.
 
-    It is at a point, for every peak is one; the errors (2, dof) are in amplitude and frequency.
+    All peaks are points of the curve. error (2, dof) has the errors in amplitude and frequency.
     """
     highest, amplitude = points.amplitude.argmax(axis=0), points.amplitude
     at_top = stability_at_top(amplitude, stable).tolist()
@@ -316,10 +317,10 @@ def _peaks(
 
 
 def _rounding_of_peaks(points: PointRecord, rounding: FloatArray, computed: bool) -> FloatArray:
-    """Relative rounding (dof,) of the greatest amplitudes; -1 where no contact is stiff, and none was told.
+    """Relative rounding (dof,) of the greatest amplitudes; -1 where no contact is stiff: not estimated.
 
-    computed: the shapes are an eigensolver's, with rounding of their own. Then a displacement that is as far
-    below the greatest as that has no digits.
+    computed: the mode shapes come from an eigensolver and have rounding errors. A displacement as small as
+    these, relative to the greatest, has no correct digits.
     """
     highest, dofs = points.amplitude.argmax(axis=0), np.arange(points.amplitude.shape[1])
     if not rounding.any():
@@ -333,7 +334,7 @@ def _rounding_of_peaks(points: PointRecord, rounding: FloatArray, computed: bool
 
 
 def pick(values: npt.NDArray[Any], rows: IntArray) -> npt.NDArray[Any]:
-    """Rows of a curve at indices; gaps of NaN or '' where an index is -1."""
+    """Rows of an array at indices; NaN or '' where an index is -1."""
     if len(rows) == len(values):  # no gap
         return np.ascontiguousarray(values)
     out = values[rows]

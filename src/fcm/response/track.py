@@ -1,4 +1,4 @@
-"""Folds, peaks and onsets of a scene's response followed in a number of it."""
+"""Continuation of folds, peaks and onsets of a scene's response in one of its numbers."""
 
 from __future__ import annotations
 
@@ -45,28 +45,29 @@ WHAT = ("folds", "peaks", *ONSETS)
 
 
 class SpanError(ResponseError):
-    """The ends of a span, 0 or 1 and their values, are wrong: nothing can be followed in it."""
+    """Ends of a span (0 or 1, with their values) are invalid: nothing can be followed in it."""
 
     def __init__(self, ends: Mapping[int, float], fault: str, digits: int = 6) -> None:
         self.ends, self.fault, self.digits = ends, fault, digits
         super().__init__(f"span {self.named('from', 'to')}")
 
     def named(self, *names: str) -> ResponseError:
-        """The error with a caller's names of the two ends."""
+        """The error with the caller's names of the two ends."""
         ends = " ".join(f"{names[which]} {value:.{self.digits}g}" for which, value in self.ends.items())
         return ResponseError(f"{ends}: {self.fault}")
 
 
 class TrackRequest(Frozen):
-    """Special points of the response that are followed in a number of the scene.
+    """Request to follow special points of the response in a number of the scene.
 
     Attributes
     ----------
     what : {"folds", "peaks", "slip", "separation", "closing"}
-        The frequencies at which the response turns back (jumps), its peaks, or the onsets of slip and of
-        separation, and of contact at all.
+        Folds, at which the response turns back (jumps), peaks, or the onsets of slip, of separation and of
+        first contact.
     over : str
-        The number as in [sweep], "contact.shroud.n_0", or "level" of the forces. A sweep of it is left out.
+        The number, as in [sweep], such as "contact.shroud.n_0", or "level" of the forces. A sweep of it is
+        left out.
     span : (from, to)
     """
 
@@ -84,28 +85,28 @@ def track(
     accuracy: float | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
-    """Curves of special points of the response against a number of the scene.
+    """Follow special points of the response in a number of the scene.
 
     Parameters
     ----------
     execution : Execution, optional
-        As in `fcm.response.trace`: where the curves of a sweep are followed, and what is kept of them.
+        As in `fcm.response.trace`: where the curves of a sweep are followed, and the checkpoint.
     options : ResponseOptions, optional
         Tolerances and limits.
 
     Returns
     -------
     Response
-        Without curves of its own; `tracking` holds the others. Interrupted, it has those that are finished.
+        It has no response curves; `tracking` has the tracked curves, after an interruption the finished ones.
 
     Raises
     ------
     ResponseError
-        If what is asked for, or the span, is wrong.
+        If the kind of points or the span is invalid.
     SceneError
         If there is no such number.
     KeyboardInterrupt
-        If no curve is finished then.
+        If no curve is finished.
     """
     what, span = asked.what, asked.span
     if what not in WHAT:
@@ -139,7 +140,7 @@ def track(
 
 
 def _untracked(every: int, tracked: int) -> list[str]:
-    """Sentence on outputs whose peaks are not tracked, as they are too many."""
+    """Sentence on outputs whose peaks are not tracked, as there are too many."""
     if tracked == every:
         return []
     which = f"those of {tracked}, at contacts and forces and where modes move most, are tracked"
@@ -153,7 +154,7 @@ def _swept(
     place: Factory,
     progress: Progress | None,
 ) -> Outcome:
-    """The results of each scene, as far as the run came."""
+    """The results of each scene, as far as they are finished."""
     batches, kept = [(replace(one, curves=()),) for one in scenes], Results()
     if checkpoint is not None:
         mark = fingerprint("tracked", task, [replace(one, name="", title="") for (one,) in batches])
@@ -165,7 +166,7 @@ def _swept(
 
 
 def _fits(count: int, number: int, results: Any) -> bool:
-    """Whether results that were read from a file can be those of a scene."""
+    """Whether results read from a file can be those of a scene."""
     return (
         0 <= number < count and isinstance(results, list) and [type(one) for one in results] == [TrackedScene]
     )
@@ -190,7 +191,7 @@ def _add(response: Response, scene: Scene, found: TrackedScene | Lost | None) ->
 
 
 def _short_of(tracking: Tracking, accuracy: float) -> str:
-    """Sentence on what keeps tracked curves from an accuracy; empty if nothing is known to."""
+    """Sentence on the greatest error of tracked curves if it misses an accuracy, else empty."""
     told = [(one.relative, curve.number[one.point]) for curve in tracking.curves for one in curve.errors]
     off = [(error, number) for error, number in told if not error <= accuracy]
     if not off:
@@ -228,7 +229,10 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
 def needed(
     curves: Sequence[Scene], number: Number, span: tuple[float, float], request: Request
 ) -> tuple[int, ...]:
-    """The harmonics that an accuracy takes, at both ends of a span and in its middle."""
+    """The harmonics that an accuracy needs, at both ends of a span and in its middle.
+
+    Of several curves, only the first and the last are traced.
+    """
     found = {1}
     for curve in (curves[0], curves[-1]) if len(curves) > 1 else curves:
         for value in np.linspace(*span, 3).tolist():

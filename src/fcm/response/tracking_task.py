@@ -1,8 +1,8 @@
-"""The tracked curves of one scene, as an item of a sweep (`fcm.run`): each step of it is kept when finished.
+"""Task that tracks the curves of one scene of a sweep (`fcm.run`) and saves each finished step.
 
-A step is an ordinary curve at a value of the number, a curve followed, or its errors. Their order depends on
-the scene and the request alone. A run that goes on from saved steps takes them in that order, and computes
-the others, to the same last bit.
+A step is a response curve at a value of the number, a tracked curve, or its errors. The order of steps
+depends only on the scene and the request. A resumed run takes saved steps in that order and computes the
+others, with results that are equal to the last bit.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class TrackedScene(Frozen):
     interrupted: bool = False
 
 
-KINDS = (TrackedScene, TrackedCurve, TrackedError)  # what results consist of
+KINDS = (TrackedScene, TrackedCurve, TrackedError)  # classes of results
 STATES = (
     EndingPeak,
     SpecialPoints,
@@ -63,7 +63,7 @@ STATES = (
     Ending,
     Condition,
     Kind,
-)  # and what is saved of steps
+)  # classes of saved steps
 
 
 class TrackingTask(Frozen):
@@ -87,7 +87,7 @@ class TrackingTask(Frozen):
         followed = TrackedScene([], list(found.problems), list(found.uncertain))
         followed.problems.extend(_lost(scene, condition, z) for condition, z in found.lost)
         stopped = found.interrupted
-        for one in found.curves:  # after an interruption nothing is estimated any more
+        for one in found.curves:  # after an interruption neither stability nor errors are computed
             estimates: tuple[TrackedError, ...] = ()
             stable: FloatArray | None = None
             try:
@@ -104,7 +104,7 @@ class TrackingTask(Frozen):
 
 
 def _lost(scene: Scene, condition: Condition, z: FloatArray) -> str:
-    """Sentence on a point at which no curve could be begun."""
+    """Sentence on a special point at which no curve could be begun."""
     frequency = float(in_unit(z[-2], scene.frequency_unit))
     return (
         f"at {z[-1]:.6g}: no curve could be begun at the {named(scene, condition)} at "
@@ -113,7 +113,7 @@ def _lost(scene: Scene, condition: Condition, z: FloatArray) -> str:
 
 
 class _SavedSteps:
-    """Steps of a scene whose results are saved: finished ones are not taken again."""
+    """Runs the steps of a scene and saves their results; saved steps are not computed again."""
 
     def __init__(self, report: Report) -> None:
         self.report, self.saved = report, deque(report.saved)
@@ -127,7 +127,7 @@ class _SavedSteps:
 
 
 def conditions_of(scene: Scene, what: str) -> list[Condition]:
-    """Conditions that are tracked: of peaks at what is asked for, of onsets at every contact."""
+    """Conditions to track: the fold, peaks of the requested degrees of freedom, or onsets of all contacts."""
     if what == "folds":
         return [Condition(Kind.FOLD)]
     if what == "peaks":
@@ -139,7 +139,7 @@ def conditions_of(scene: Scene, what: str) -> list[Condition]:
 
 
 def errors(setup: TrackingSetup, one: SpecialPointCurve) -> tuple[TrackedError, ...]:
-    """Truncation errors of a track at its ends, turns, least and greatest peak."""
+    """Truncation errors of a tracked curve at its ends, turns, least and greatest peak."""
     estimates = []
     for point, place in error_points(one).items():
         by = truncation_error(setup, one, point)
@@ -156,7 +156,7 @@ def as_curve(
     stable: FloatArray | None,
     estimates: tuple[TrackedError, ...] = (),
 ) -> TrackedCurve:
-    """A track in the words of its scene, with its stability and its errors as far as they were looked at."""
+    """Convert a tracked curve to a result named as in its scene, with stability and errors if known."""
     corners = ["" if point.corner is None else named(scene, point.corner) for point in one.points]
     stopped = [ending for ending in one.endings if not ending.whole]
     nowhere, count = _along_points(setup, one)
@@ -164,7 +164,7 @@ def as_curve(
     stable[_is_unreliable(estimates, one.s.size, setup.system.option(VALIDITY)) & (stable == 1.0)] = np.nan
     reason = _unsteady_ranges(setup.system, one.s, nowhere)
     for which in nowhere.values():
-        stable[which] = 0.0  # what creeps away, or floats, is no steady state
+        stable[which] = 0.0  # a structure that creeps or floats has no steady state
     end = one.s[0] if not one.endings[0].whole else one.s[-1]
     return TrackedCurve(
         parameters=dict(scene.parameters),
@@ -187,8 +187,10 @@ def as_curve(
 def _is_unreliable(
     estimates: Sequence[TrackedError], count: int, options: ValidityOptions
 ) -> npt.NDArray[np.bool_]:
-    """The points (point,) next to a place, or between two, whose error is too great for the motion there to
-    be called stable, as of a response curve."""
+    """Points (point,) whose nearest estimated errors are too great to call the motion there stable.
+
+    Each too great error covers the points up to the estimates before and after it.
+    """
     far = np.zeros(count, dtype=np.bool_)
     places = sorted((one.point, one.relative) for one in estimates)
     for k, (_, error) in enumerate(places):
@@ -202,9 +204,9 @@ def _is_unreliable(
 def _along_points(
     setup: TrackingSetup, one: SpecialPointCurve
 ) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
-    """Reasons why points of a track are no steady states, each with a mask (point,); and a count of points.
+    """Reasons why points of a tracked curve are no steady states, each with a mask (point,); and a count.
 
-    The count is of contacts that never slip beside one that may feel them.
+    The count is the number of `undetermined` points.
     """
     count, lost = 0, dict[str, npt.NDArray[np.bool_]]()
     for k, point in enumerate(one.points):
@@ -217,7 +219,7 @@ def _along_points(
 
 
 def _unsteady_ranges(system: System, number: FloatArray, nowhere: Mapping[str, npt.NDArray[np.bool_]]) -> str:
-    """Sentence on ranges of a track without steady states, and why; empty if there are none."""
+    """Sentence on the range of a tracked curve without steady states, and why; empty if there is none."""
     for why, which in nowhere.items():
         if which.any():
             ends = number[which]

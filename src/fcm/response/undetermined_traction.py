@@ -1,4 +1,4 @@
-"""Points whose motion may be one of many: a contact that never slips may have any residual friction."""
+"""Points whose motion may be one of many, as a contact that never slips may have any residual friction."""
 
 from __future__ import annotations
 
@@ -16,12 +16,11 @@ from fcm.structure.linear import Linear
 
 
 def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
-    """Mask of the points at which a contact never slips beside one that may feel it.
+    """Mask of the points at which a contact never slips and its residual friction may affect another.
 
-    states (point, contact).
-
-    That is one that changes its state, or whose load the residual friction changes: with another residual it
-    may slip, open or close. A contact alone sticks in the same motion with every residual that lets it.
+    states (point, contact). The other contact changes its state within the cycle, or its load depends on the
+    residual friction, so that it may slip, open or close with a different one. A single contact sticks in the
+    same motion for every residual friction with which it sticks at all.
 
     >>> import fcm
     >>> from dataclasses import replace
@@ -55,8 +54,8 @@ def residual_changes(
 ) -> FloatArray:
     """Relative changes of each peak by residual friction, see `harmonic_balance.residual_traction`.
 
-    z (point, unknown + 1), amplitude (point, dof), states (point, contact) and what `undetermined` says are
-    those of a curve; quick: NaN instead of what takes further motions to tell.
+    z (point, unknown + 1), amplitude (point, dof), states (point, contact) and the mask of `undetermined`
+    points belong to one curve. quick: NaN for changes that need further motions.
     """
     top, contacts = amplitude.argmax(axis=0), system.scene.contacts
     if not undetermined[top].any():
@@ -71,9 +70,9 @@ def residual_changes(
 def residual_changes_at_levels(
     system: System, z: FloatArray, level: FloatArray, amplitude: FloatArray, states: npt.NDArray[np.str_]
 ) -> FloatArray:
-    """Changes as `residual_changes`, of points at one frequency, with forces times level (point,).
+    """`residual_changes` for points at one frequency, with forces times level (point,).
 
-    The frequency is held, and the level that each peak is at.
+    The frequency and the level of each peak are fixed.
     """
     scene, top, at = system.scene, amplitude.argmax(axis=0), float(z[0, -1])
     maybe, found = undetermined(scene, states), np.zeros(amplitude.shape[1])

@@ -1,4 +1,4 @@
-"""Results without the displacements that carry loads over many rows and are of no interest themselves."""
+"""Results at the reported degrees of freedom only, and a check of static loads."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CYCLES = ("displacement", "amplitude", "mean", "greatest", "least")  # of histor
 
 
 def check_solvable(scene: Scene) -> None:
-    """Raise ResponseError for what no method can compute: static loads that nothing holds."""
+    """Raise ResponseError for a scene that no method can solve: static loads that nothing holds."""
     if any(curve.loads and _loads_move_rigid_body(curve) for curve in scene.each_curve()):
         raise ResponseError(f"{scene.name}: load: {RIGID_BODY_FAULT}")
 
@@ -30,7 +30,7 @@ def _loads_move_rigid_body(curve: Scene) -> bool:
 
 
 def visible(response: Response, scene: Scene) -> Response:
-    """The response at the degrees of freedom that the scene reports."""
+    """The response at only those degrees of freedom that the scene reports."""
     shown = np.array([scene.reports(dof) for dof in response.dofs])
     if shown.all():
         return response
