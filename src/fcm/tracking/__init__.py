@@ -1,1 +1,1 @@
-"""Peaks, folds and onsets of a response as curves in a number of its scene, and the least peak."""
+"""Continuation of peaks, folds and onsets of a response in a number of its scene, and the least peak."""

@@ -1,7 +1,7 @@
-"""Corners of a response as special points: at the onset of something a contact does.
+"""Corners of a response as special points, at the onset of a contact's change of state.
 
-The response then turns, or is greatest, at the corner itself as long as what is special of it has opposite
-signs on both sides. Another equation holds there: that the onset's function is zero.
+The response turns back, or has its peak, at the corner itself while the special-point condition has opposite
+signs on its two sides. The equation of the special point is then that the onset function is zero.
 """
 
 from __future__ import annotations
@@ -18,21 +18,24 @@ from fcm.tracking.parameter_line import VariedBalance
 
 
 class Corner:
-    """A corner of a tracked point: the problem with the onset's equation, and the conditions on its sides."""
+    """A corner at a tracked point: the problem with the onset equation, and the condition on both sides."""
 
     def __init__(self, tracked: ExtendedSystem, at: Condition) -> None:
         self.of, self.at, self.options = tracked, at, tracked.options.corner
         self.problem = ExtendedSystem(tracked.varied, at, tracked.span, tracked.options)
 
     def nearest(self, z: FloatArray, offset: float = 0.0) -> tuple[FloatArray, FloatArray] | None:
-        """The nearest point where the function is the offset, and the curve's direction there, scaled."""
+        """The nearest point where the onset function equals offset, and the scaled tangent of its curve.
+
+        None if Newton's method does not converge.
+        """
         self.problem.offset = offset
         scale = np.asarray(self.problem.scale)
         z = np.array(z)
         for _ in range(self.options.max_iterations):
             self.problem.evaluate(z)
             matrix = np.asarray(self.problem.jacobian) * scale / scale[:-1, None]
-            Q, R = np.linalg.qr(matrix.T, mode="complete")  # the last column of Q is across all equations
+            Q, R = np.linalg.qr(matrix.T, mode="complete")  # the last column of Q is the null vector
             along, singular = dtrtrs(R[:-1], -np.asarray(self.problem.residual) / scale[:-1], trans=1)
             if singular:
                 return None
@@ -43,9 +46,11 @@ class Corner:
         return None
 
     def special_root(self, z: FloatArray, side: int | None, offset: float = 0.0) -> FloatArray | None:
-        """The root of the condition along the corner or beside it: on a side of it, or on it.
+        """The root of the special-point condition along the corner (offset 0) or beside it, or None.
 
-        By the secant along the direction of the corner's curve, from the point of it that is nearest to z.
+        side 0 or 1 takes the condition of that side of the corner, None the condition at the point itself.
+        The secant method starts at the point of the corner nearest to z and goes along the tangent of its
+        curve.
         """
         found = self.nearest(z, offset)
         if found is None:
@@ -67,9 +72,9 @@ class Corner:
         return at
 
     def special(self, z: FloatArray, aside: float = 0.0) -> float:
-        """The special-point condition beside the corner, along the response as the onset's function rises.
+        """The special-point condition beside the corner, along the response as the onset function rises.
 
-        The rise of the frequency, or the growth of the amplitude; aside in the extent of the unknowns.
+        It is the rate of the frequency, or the growth of the amplitude. aside is a distance in the scale.
         """
         normal, there = self.normal(z), np.array(z)
         there[:-1] += aside * np.asarray(self.problem.scale)[:-1] * normal
@@ -79,7 +84,7 @@ class Corner:
         return float(np.sign(normal @ t) * found)
 
     def sides(self, z: FloatArray) -> FloatArray:
-        """Values of the special-point condition before and after the corner, (2,)."""
+        """Values (2,) of the special-point condition before and after the corner."""
         side = self.options.side_distance
         return np.array([self.special(z, -side), self.special(z, side)])
 
@@ -89,13 +94,13 @@ class Corner:
         return bool(before * after < 0.0)
 
     def normal(self, z: FloatArray) -> FloatArray:
-        """Unit vector in the problem's scale along which the onset's function rises, (unknown + 1,)."""
+        """Unit vector (unknown + 1,) in the problem's scale along which the onset function rises."""
         slope = self.rise(z)[:-1]
         unit: FloatArray = slope / np.linalg.norm(slope)
         return unit
 
     def rise(self, z: FloatArray) -> FloatArray:
-        """Rates of the onset's function in the problem's scale, (unknown + 2,)."""
+        """Gradient (unknown + 2,) of the onset function in the problem's scale."""
         self.problem.evaluate(z)
         rates: FloatArray = np.array(self.problem.jacobian)[-1] * np.asarray(self.problem.scale)
         return rates
@@ -104,9 +109,9 @@ class Corner:
 def nearest_onsets(
     varied: VariedBalance, z: FloatArray, scale: FloatArray, options: TrackingOptions = TRACKING
 ) -> list[tuple[float, Condition]]:
-    """The onsets by their distance from z in a scale of its numbers, the nearest first.
+    """The onsets by their scaled distance from z, the nearest first.
 
-    Where a contact is at both its limits at once, so that it comes to slip, slip is before them.
+    A contact that is at both its limits at once begins to slip; then slip precedes the limits.
     """
     varied.set_parameter(float(z[-1]))
     width = varied.balance.width

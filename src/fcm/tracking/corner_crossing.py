@@ -1,4 +1,4 @@
-"""Joins of the smooth pieces of a curve of special points: along corners, across them, past kinks."""
+"""Connection of the smooth pieces of a curve of special points: along corners, across them, past kinks."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup, kink
 
 
 class CornerCrossing:
-    """The way of a curve of special points along corners of the response, across them, and past kinks.
+    """Continues a curve of special points along corners of the response, across them, and past kinks.
 
-    z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit vector;
-    points: all points until now; first: the first step of the next piece.
+    z: the present point; t: the unit tangent there in the problem's scale; points: all points so far; first:
+    the first step length of the next piece.
     """
 
     z: FloatArray
@@ -38,12 +38,12 @@ class CornerCrossing:
         self.switch_equations(None)
 
     def switch_equations(self, at: Condition | None) -> None:
-        """Go on with the equation of a corner, or with that of the smooth curve."""
+        """Switch to the equation of a corner, or (None) to that of the smooth curve."""
         self.corner = None if at is None else Corner(self.smooth, at)
         self.newton = Newton(self.smooth if self.corner is None else self.corner.problem)
 
     def _holds(self) -> bool:
-        """Whether the point found is one of the tracked curve: at a corner, if that is the special point."""
+        """Whether the point found is on the tracked curve; at a corner, if that is the special point."""
         return self.corner is None or self.corner.holds(np.array(self.newton.z))
 
     def solve(self, guess: FloatArray, row: FloatArray) -> bool:
@@ -51,7 +51,7 @@ class CornerCrossing:
         return bool(self.newton.correct(self.options.reach)) and bool(np.isfinite(self.newton.z).all())
 
     def measure_at(self, z: FloatArray) -> None:
-        """Set the units, and the row of the tangent, at a point."""
+        """Set the scale, and the row that closes the tangent equations, at a point."""
         self.smooth.evaluate_scale(z)
         if self.corner is not None:
             self.corner.problem.offset = 0.0
@@ -60,11 +60,11 @@ class CornerCrossing:
         self.newton.scale[:] = self.smooth.scale
 
     def accept(self) -> None:
-        """Go on from the point that Newton's method has found."""
+        """Continue from the point that Newton's method has found."""
         self._go_to(np.array(self.newton.z), np.asarray(self.newton.tangent) * np.asarray(self.newton.scale))
 
     def _go_to(self, z: FloatArray, direction: FloatArray) -> None:
-        """Go on from a point with a direction in the units of z."""
+        """Continue from a point with a direction in the units of z."""
         self.z = np.array(z)
         self.measure_at(self.z)
         t = direction / np.asarray(self.newton.scale)
@@ -75,13 +75,13 @@ class CornerCrossing:
         return TrackedPoint(z, t * np.asarray(self.newton.scale), at)
 
     def _signs(self, z: FloatArray) -> FloatArray:
-        """Signs of the functions of all onsets."""
+        """Signs of the onset functions of all contacts."""
         varied = self.smooth.varied
         varied.set_parameter(float(z[-1]))
         return np.sign(values(varied.balance.laws, z, varied.harmonics, self.setup.options))
 
     def _leaves(self) -> bool:
-        """Whether the way leads out of the span from an end of it, however little the number changes."""
+        """Whether the tangent leads out of the span at one of its ends."""
         low, high = self.setup.span
         near = self.options.kink_length * self.smooth.span
         return bool(
@@ -90,7 +90,7 @@ class CornerCrossing:
         )
 
     def _corners_near(self, z: FloatArray) -> Iterator[Condition]:
-        """The corners of the response that a point is near to, the nearest first."""
+        """Yield the corners of the response near a point, the nearest first."""
         if self.turns:
             for off, at in nearest_onsets(
                 self.smooth.varied, z, np.array(self.newton.scale), self.setup.options
@@ -105,7 +105,7 @@ class CornerCrossing:
         return beyond
 
     def _pass_kink(self) -> bool | Ending:
-        """Go on just beyond a kink that the curve has come to."""
+        """Continue just beyond a kink that the curve has reached."""
         row = np.sign(self.t[-1]) * self.held
         if self.solve(self._past_kink(self.z, row), row) and self._holds():
             self.accept()
@@ -113,12 +113,14 @@ class CornerCrossing:
         return self._pass_on_circle()
 
     def _continue_from_here(self) -> bool | Ending:
-        """Go on from where the equations do not hold any more, or no step leads on; or how the curve ends."""
+        """Continue where the equations cease to hold or no step succeeds; else return how the curve ends."""
         return self._reach_corner() or self._pass_on_circle()
 
     def _reach_corner(self) -> bool | Ending:
-        """Go on from a corner of the response: it is tracked from there on, or crossed; or how the curve ends
-        before that. False if the curve comes to none."""
+        """Reach a corner of the response, and track or cross it; False if there is none ahead.
+
+        It returns how the curve ends if it ends before the corner.
+        """
         if self.corner is not None:
             return False
         z, before, known = self.z, float(self.t[-1]), list(self.points)
@@ -144,7 +146,7 @@ class CornerCrossing:
         return False
 
     def _retreat_before(self, corner: FloatArray) -> None:
-        """Forget the points just beyond a corner: steps that are shorter than it is known may pass it."""
+        """Drop points just beyond a corner: steps shorter than its uncertainty may have passed it."""
         scale = np.asarray(self.newton.scale)
         while (
             len(self.points) > 1
@@ -153,7 +155,7 @@ class CornerCrossing:
             self.points.pop()
 
     def _keep_until(self, corner: FloatArray, at: Condition) -> Ending | bool:
-        """Keep points up to a corner as `_keep_values`, by the equations of the smooth curve."""
+        """Apply `_keep_values` up to a corner, with the equations of the smooth curve."""
         if not any(self._values_between(self.z, corner)):
             return True
         self.switch_equations(None)
@@ -172,7 +174,7 @@ class CornerCrossing:
         )
 
     def _leave_corner(self, there: FloatArray, side: int, came: FloatArray, before: float) -> bool:
-        """Go on from a corner that was come to from a side: along it, or on its other side."""
+        """Continue from a corner reached from a side: along it, or on its other side."""
         assert self.corner is not None
         if abs(self.corner.sides(there)[1 - side]) > self.options.max_jump:
             return self._along(there, came, before)
@@ -180,7 +182,7 @@ class CornerCrossing:
         return exact is not None and self._beyond(exact, came, before, 1 - 2 * side)
 
     def _along(self, z: FloatArray, came: FloatArray, before: float) -> bool:
-        """Go on along the corner that was landed on, to the side on which it holds."""
+        """Continue along the corner, in the direction in which it is the special point."""
         assert self.corner is not None
         found = self.corner.nearest(z)
         if found is None:
@@ -197,7 +199,7 @@ class CornerCrossing:
         return False
 
     def _beyond(self, z: FloatArray, came: FloatArray, before: float, sign: int) -> bool:
-        """Go on with the smooth curve from a corner, to the side where its function has a sign."""
+        """Continue with the smooth curve on the side of a corner where its onset function has a sign."""
         corner = self.corner
         assert corner is not None
         for leap in self.options.departure_lengths:
@@ -211,8 +213,8 @@ class CornerCrossing:
             row = (there - z) / np.asarray(self.newton.scale)
             if self.solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.max_move:
                 self.accept()
-                if sign * (corner.rise(self.z) @ self.t) < 0.0:  # two peaks lie together there: the chord
-                    self.t = -self.t  # between them is not the way that leads on
+                if sign * (corner.rise(self.z) @ self.t) < 0.0:  # two peaks are close to each other there:
+                    self.t = -self.t  # the chord between them points back across the corner
                 self.first = leap
                 turn = bool(before * self.t[-1] < 0.0)
                 self.points += [TrackedPoint(z, came, None, turn, switch=True), self.point_at(self.z, self.t)]
@@ -222,10 +224,10 @@ class CornerCrossing:
         return False
 
     def _leave_along_smooth(self) -> bool | Ending:
-        """Leave a corner that is no more the special point ahead, by the smooth curve.
+        """Leave a corner that ceases to be the special point, along the smooth curve.
 
-        It is left on the side that has the special point. Where its other side, behind, has it, the curve has
-        come from there.
+        The curve continues on the side that has the special point ahead. If the other side has one behind,
+        the curve has come from there.
         """
         assert self.corner is not None
         z, before = self.z, float(self.t[-1])
@@ -241,10 +243,10 @@ class CornerCrossing:
         return Ending.STALLED
 
     def _pass_on_circle(self) -> bool | Ending:
-        """Go on from a kink of the curve, on a circle about the point; or why it cannot be gone on.
+        """Find the way on from a kink, on circles about the point; else return how the curve ends.
 
-        Where what a contact does changes with continuous derivatives, second ones jump, and so does the
-        direction of a curve of folds or peaks. Where the derivatives jump the response has a corner.
+        Where a contact changes its state with continuous derivatives, second derivatives jump, and so does
+        the tangent of a curve of folds or peaks. Where first derivatives jump, the response has a corner.
         """
         problem, ending = self.smooth if self.corner is None else self.corner.problem, Ending.STALLED
         for radius in self.options.kink_radii:
@@ -259,7 +261,7 @@ class CornerCrossing:
         return ending
 
     def _back(self, radius: float) -> FloatArray | None:
-        """The point on the way back at a distance, by the chord; None if that is further than it was come."""
+        """The point behind on the curve at a distance, by the chord; None if the curve is shorter."""
         scale, near = np.asarray(self.newton.scale), self.z
         for point in reversed(self.points):
             far = float(np.linalg.norm((point.z - self.z) / scale))
@@ -270,7 +272,7 @@ class CornerCrossing:
         return None
 
     def turn_to(self, there: FloatArray, radius: float) -> bool | Ending | None:
-        """Go on to a point on a circle; None if it is none of the curve."""
+        """Continue to a point on a circle; None if it is not on the curve."""
         came, last = float(self.t[-1]), self.points[-1]
         row = (there - self.z) / np.asarray(self.newton.scale)
         row /= np.linalg.norm(row)
@@ -289,9 +291,9 @@ class CornerCrossing:
         return ending or None
 
     def _keep_values(self, step: float, other: FloatArray) -> Ending | bool:
-        """Keep the points at special values on the short way to a point; how the curve ends there.
+        """Add the points at special values on the short way to a point; return how the curve ends there.
 
-        If it does not end there, whether it could: an end that is passed must be landed on.
+        If it does not end, return True; False if a special value that was passed could not be landed on.
         """
         one, known = self.z, len(self.points)
         for part, i, value in sorted(self._values_between(one, other)):
@@ -309,9 +311,9 @@ class CornerCrossing:
         return True
 
     def _values_between(self, one: FloatArray, other: FloatArray) -> Iterator[tuple[float, int, float]]:
-        """Special values between two points: the part of the way, the index of the number, and the value.
+        """Yield special values between two points: the part of the way, the index in z, and the value.
 
-        They are values of s asked for, and ends of the range of frequencies.
+        They are the requested values of s, and the ends of the frequency range.
         """
         for i, wanted in ((-1, self.values), (-2, [self.low, self.high])):
             for value in wanted:

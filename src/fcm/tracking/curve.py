@@ -1,4 +1,4 @@
-"""One curve of special points of a response, followed both ways from a point of it."""
+"""A curve of special points of a response, followed in both directions from one of its points."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 class SpecialPointCurve(Frozen):
-    """One curve of special points, in the order along it."""
+    """A curve of special points, in order along it."""
 
     condition: Condition
     points: tuple[TrackedPoint, ...]
     s: FloatArray  # (point,)
     frequency: FloatArray  # (point,) [rad/s]
     amplitude: FloatArray  # (point, dof)
-    greatest: BoolArray  # (point,) of peaks: whether it is one, and not a trough
+    greatest: BoolArray  # (point,) false where a curve of peaks is a trough
     endings: tuple[Ending, Ending]
 
     @property
@@ -35,7 +35,7 @@ class SpecialPointCurve(Frozen):
         return all(ending.whole for ending in self.endings)
 
     def turns(self, cusp: float = TRACKING.curves.cusp_tolerance) -> list[tuple[int, str]]:
-        """Points at which the number turns back, and their kinds; cusp as of `CurveOptions`."""
+        """Points at which the number turns back, with their kinds; cusp is that of `CurveOptions`."""
         other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
         fold, turns = (
             self.condition.kind is Kind.FOLD,
@@ -46,11 +46,10 @@ class SpecialPointCurve(Frozen):
     def _turn_of_fold(self, i: int, cusp: float) -> str:
         """Kind of a turn of a curve of folds: "cusp", where two folds meet with one tangent, or "isola".
 
-        At an isola the frequency passes on.
-
         Along a curve of folds w . R_omega omega' + w . R_s s' = 0, with w the adjoint null vector. At a cusp
-        omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
-        response has an isolated point, or crosses itself. At a corner the frequency turns back, or does not.
+        w . R_omega is not 0, so that omega' vanishes with s' and the frequency turns back. At an isola
+        w . R_omega vanishes: the response has an isolated point, or crosses itself, and the frequency passes
+        on. At a corner only the signs of omega' beside it decide.
         """
         neighbours = [self.points[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.points)]
         if self.points[i].switch and len(neighbours) == 2:
@@ -60,7 +59,7 @@ class SpecialPointCurve(Frozen):
 
 
 def both_ways(setup: TrackingSetup, condition: Condition, point: TrackedPoint) -> SpecialPointCurve:
-    """The curve of special points through a point, followed both ways."""
+    """The curve of special points through a point, followed in both directions."""
     tracked_points, ending = follow_special_point(setup, condition, point, True)
     endings = (ending, ending)
     if ending is not Ending.CLOSED:
@@ -76,7 +75,7 @@ def recorded(
     tracked_points: list[TrackedPoint],
     endings: tuple[Ending, Ending],
 ) -> SpecialPointCurve:
-    """A curve with the reported quantities of its points."""
+    """The curve of tracked points with their reported quantities."""
     problem = setup.tracked(condition)
     return _joined(
         condition, tracked_points, [_reported(problem, point) for point in tracked_points], endings
@@ -86,7 +85,7 @@ def recorded(
 def with_points(
     setup: TrackingSetup, track: SpecialPointCurve, tracked_points: list[TrackedPoint]
 ) -> SpecialPointCurve:
-    """A curve with more points, its own among them."""
+    """The curve with further points; tracked_points include its own."""
     problem = setup.tracked(track.condition)
     own = zip(track.amplitude, track.greatest.tolist(), strict=True)
     known = {id(point): told for point, told in zip(track.points, own, strict=True)}
@@ -95,7 +94,7 @@ def with_points(
 
 
 def _reported(problem: ExtendedSystem, point: TrackedPoint) -> tuple[FloatArray, bool]:
-    """The amplitudes at a point, and whether it is no trough."""
+    """The amplitudes (dof,) at a point, and false if it is a trough."""
     problem.evaluate_scale(point.z)
     amplitude = problem.along(point.z)[1]
     return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, point)

@@ -23,23 +23,23 @@ T = TypeVar("T")
 
 
 class CachedSteps(Protocol):
-    """A function that takes a costly step, or has its result already: of the first, the second, ..."""
+    """A function that runs a costly step or returns its saved result; the order identifies steps."""
 
     def __call__(self, step: Callable[[], T], /) -> T: ...
 
 
 def uncached(step: Callable[[], T], /) -> T:
-    """Take a step, whatever was taken before; a `CachedSteps` without a cache."""
+    """Run a step; a `CachedSteps` without a cache."""
     return step()
 
 
 class TrackedCurves(Frozen):
-    """All curves of special points, and what could not be followed."""
+    """All curves of special points, and the points that could not be followed."""
 
     curves: tuple[SpecialPointCurve, ...]
     problems: tuple[str, ...] = ()
-    lost: tuple[tuple[Condition, FloatArray], ...] = ()  # points of ordinary curves that are on none of these
-    interrupted: bool = False  # so that there may be more
+    lost: tuple[tuple[Condition, FloatArray], ...] = ()  # special points of responses, on none of the curves
+    interrupted: bool = False  # there may be more curves
     uncertain: tuple[
         tuple[float, float], ...
     ] = ()  # values and frequencies where branches may have been missed
@@ -52,11 +52,11 @@ def tracked_curves(
     progress: Progress | None = None,
     once: CachedSteps = uncached,
 ) -> TrackedCurves:
-    """The curves of conditions, from special points of ordinary curves at some values of s.
+    """Follow the curves of conditions, from special points of response curves at some values of s.
 
-    An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
-    returns the curves that are finished. once takes each costly step. Of the way the system, the line, the
-    span and the options count: the step is the scene's, and all values of s but the ends are user values.
+    Onsets that appear only between two such values are found along the curves of the highest peaks. After an
+    interruption the finished curves are returned. once runs each costly step. Of setup, the system, the line,
+    the span and the options count; the step is the scene's, and the inner values of s are user values.
     """
     values = sorted({*np.linspace(*setup.span, setup.options.curves.start_values).tolist(), *starts})
     setup = TrackingSetup(
@@ -79,7 +79,7 @@ def tracked_curves(
 def _follow_all(
     made: _CurveCollection, values: list[float], conditions: list[Condition], progress: Progress | None
 ) -> None:
-    """Follow the curves from ordinary ones at some values."""
+    """Follow the curves from special points of response curves at some values of s."""
     system, line = made.setup.system, made.setup.line
     for number, value in enumerate(values):
         if progress is not None:
@@ -96,17 +96,17 @@ def _follow_all(
 
 
 class _CurveCollection:
-    """The curves that were followed so far."""
+    """The curves followed so far."""
 
     def __init__(self, setup: TrackingSetup, once: CachedSteps = uncached) -> None:
         self.setup, self.once = setup, once
         self.curves: list[SpecialPointCurve] = []
         self.problems: list[str] = []
         self.uncertain_at: list[tuple[float, float]] = []
-        self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
+        self.missed: list[tuple[Condition, FloatArray]] = []  # points at which no curve could begin
 
     def from_points(self, points: list[tuple[Condition, FloatArray]]) -> None:
-        """Follow curves from those points that no curve has passed; z = (x, omega, s)."""
+        """Follow curves from those points z = (x, omega, s) that no curve has passed."""
         for condition, z in points:
             point = land(self.setup, condition, z)
             if point is None or not self._is_top(condition, point):
@@ -117,7 +117,7 @@ class _CurveCollection:
                 self.curves.append(self.once(partial(both_ways, self.setup, condition, point)))
 
     def lost(self) -> list[tuple[Condition, FloatArray]]:
-        """Points at which no curve could begin, and that none has come to either."""
+        """Points at which no curve could begin and that no other curve has passed."""
         return [
             (condition, z)
             for condition, z in self.missed
@@ -132,7 +132,7 @@ class _CurveCollection:
         return curve.condition == condition and bool(near.any())
 
     def _is_top(self, condition: Condition, point: TrackedPoint) -> bool:
-        """Whether a peak that was landed on is one: beside a peak at a corner there may be a trough."""
+        """Whether a point landed on as a peak is no trough: next to a peak at a corner there may be one."""
         if condition.kind is not Kind.PEAK:
             return True
         problem = self.setup.tracked(condition)
@@ -141,7 +141,10 @@ class _CurveCollection:
 
 
 def _met_by_peaks(setup: TrackingSetup, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
-    """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
+    """Points of curves of peaks at which an onset function changes its sign.
+
+    The curves are those of a few peaks in the middle of the span.
+    """
     middle = setup.system.with_scene(setup.line.scene(setup.system.scene, 0.5 * sum(setup.span)))
     peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
     points = special_points(middle, peaks, setup.options).points

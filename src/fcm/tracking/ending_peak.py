@@ -1,4 +1,4 @@
-"""The end of a higher peak, which makes a peak the least: how far off the number is at which it lies."""
+"""The end of a higher peak that determines the least peak, and the error of the number at which it ends."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from fcm.tracking.tracked_point import Ending, TrackingSetup
 
 
 class EndingPeak(NamedTuple):
-    """The end of the higher peak that ends nearest to a least one.
+    """The end of the higher peak that ends closest to a least peak.
 
-    error: relative, of the number at which it ends, NaN where that is unknown; beside: a number where it
-    still is; leaves_range: the frequency [rad/s] at which it leaves the range that is traced, or NaN.
+    error: relative error of the number at which it ends, NaN if unknown. beside: a number at which it still
+    exists. leaves_range: frequency [rad/s] at which it leaves the traced range, or NaN.
     """
 
     error: float
@@ -29,10 +29,10 @@ class EndingPeak(NamedTuple):
 def ending_peak(
     setup: TrackingSetup, curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum
 ) -> EndingPeak:
-    """The end, and its error, of the higher peak that ends nearest to a least one.
+    """The end of the higher peak that ends closest to a least peak, with its error.
 
-    Where its curve turns there, the error is that of the turn: the curve with more harmonics is followed to
-    its own. Where it ends otherwise nothing tells it.
+    If its curve turns there, the error is that of the turn, from the turn of the curve with more harmonics.
+    For other ends the error is unknown.
     """
     ends = [
         (abs(float(curve.s[i]) - least.s), curve, i)
@@ -48,7 +48,7 @@ def ending_peak(
     leaves = i == len(curve.points) - 1 and curve.endings[-1] is Ending.RANGE
     of_an_end = (
         curve.frequency[i] in setup.system.scene.frequency_range
-    )  # the amplitude at an end is followed
+    )  # a curve of the amplitude at an end of the range
     at = float(curve.frequency[i]) if leaves or of_an_end else np.nan
     before = np.flatnonzero(abs(curve.s[:i] - least.s) >= setup.options.error.before_end * abs(least.s))
     begin = int(before[-1]) if before.size else 0
@@ -59,8 +59,10 @@ def ending_peak(
 
 
 def leaves_range(curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum) -> float:
-    """The frequency [rad/s] at which the curve of a least peak leaves the range that is traced, or NaN: then
-    no peak is beyond the number, within the range."""
+    """The frequency [rad/s] at which the curve of a least peak leaves the traced range, or NaN.
+
+    If it leaves, there is no peak within the range beyond this number.
+    """
     for curve in curves:
         for i, ending in zip((0, -1), curve.endings, strict=True):
             if ending is Ending.RANGE and curve.s[i] == least.s:
@@ -69,13 +71,13 @@ def leaves_range(curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum) ->
 
 
 def _ends(curve: SpecialPointCurve) -> list[int]:
-    """Points where a curve of peaks ends, or what it follows ceases to be the greatest."""
+    """Points where a curve of peaks ends, or becomes a trough."""
     changes = np.flatnonzero(curve.greatest[:-1] & ~curve.greatest[1:]).tolist()
     return sorted({0, len(curve.points) - 1, *changes})
 
 
 def _turned(curve: SpecialPointCurve) -> SpecialPointCurve:
-    """The curve in the opposite order."""
+    """The curve in reverse order."""
     points = tuple(replace(one, direction=-one.direction) for one in curve.points[::-1])
     return replace(
         curve,

@@ -1,8 +1,8 @@
 r"""Truncation errors at chosen points of a tracked curve, by the harmonics left out.
 
-The same extended system with the harmonics of the reference's reference is solved at the same value of the
-number. Where the number turns back that has no solution on one side: there the curve with more harmonics is
-followed from beside the turn to its own turn.
+The extended system is solved with as many harmonics as the reference of the reference has (`AT_POINTS`), at
+the same value of the number. Where the number turns back, this may have no solution. There the curve with
+more harmonics is followed to its own turn, from a point before it.
 """
 
 from __future__ import annotations
@@ -24,13 +24,10 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 
 class TruncationError(NamedTuple):
-    """Error by the harmonics left out: relative, and that of the number at a turn.
+    """Error by the harmonics left out; both are NaN if it is unknown."""
 
-    The relative one is that of a peak's amplitude, else of the frequency.
-    """
-
-    relative: float
-    number: float  # 0 where the number is given; NaN both where it is unknown
+    relative: float  # of a peak's amplitude, else of the frequency
+    number: float  # of the number at a turn; 0 where the number is given
 
 
 UNKNOWN = TruncationError(np.nan, np.nan)
@@ -38,13 +35,13 @@ UNKNOWN = TruncationError(np.nan, np.nan)
 
 @dataclass
 class _RefinedPoint:
-    """A point of a tracked curve with the harmonics of its setup."""
+    """A point of a tracked curve, with the setup that has its harmonics."""
 
     setup: TrackingSetup
     point: TrackedPoint
 
     def value(self, condition: Condition) -> float:
-        """The quantity whose error is estimated: the amplitude of a peak, or else the frequency."""
+        """The quantity whose error is estimated: the amplitude of a peak, else the frequency."""
         if condition.kind is not Kind.PEAK:
             return float(self.point.z[-2])
         problem = self.setup.tracked(condition)
@@ -53,7 +50,7 @@ class _RefinedPoint:
 
 
 def error_points(track: SpecialPointCurve) -> dict[int, str]:
-    """Numbers of the points at which the error is estimated, with their kinds."""
+    """Indices of the points at which the error is estimated, with their kinds."""
     ends = [] if Ending.CLOSED in track.endings else [0, len(track.points) - 1]
     marks = [*((i, "end") for i in dict.fromkeys(ends)), *((i, kind) for i, kind in track.turns())]
     if track.condition.kind is Kind.PEAK and track.greatest.any():
@@ -68,9 +65,9 @@ def error_points(track: SpecialPointCurve) -> dict[int, str]:
 def truncation_error(
     setup: TrackingSetup, track: SpecialPointCurve, i: int, begin: int | None = None
 ) -> TruncationError:
-    """The error at one point: the difference from the reference with more harmonics.
+    """The error at point i: the difference from the reference with more harmonics.
 
-    That of a turn is looked for from a point before, by default one that is near.
+    The reference's turn is sought from point begin, by default a near one before the turn.
     """
     here = _RefinedPoint(setup, track.points[i])
     begin = beginning(track, i, setup.options) if begin is None else begin
@@ -79,7 +76,7 @@ def truncation_error(
 
 
 def error_of_peak(setup: TrackingSetup, condition: Condition, point: TrackedPoint) -> float:
-    """The relative error of a peak by the harmonics left out; NaN where the reference has no peak near it."""
+    """The relative error of a peak by the harmonics left out; NaN if the reference has no peak near it."""
     here = _RefinedPoint(setup, point)
     return _difference(condition, here, here, False).relative
 
@@ -87,8 +84,7 @@ def error_of_peak(setup: TrackingSetup, condition: Condition, point: TrackedPoin
 def _difference(
     condition: Condition, here: _RefinedPoint, start: _RefinedPoint, turns: bool
 ) -> TruncationError:
-    """How far the reference's point is from one here; that of a turn follows the reference's point beside the
-    start."""
+    """The difference of the reference's point from `here`; for a turn, sought from `start` on."""
     value, more = here.value(condition), _more(here)
     if more == here.setup.system.harmonics:
         return TruncationError(0.0, 0.0)
@@ -101,7 +97,10 @@ def _difference(
 
 
 def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACKING) -> int | None:
-    """The point from which a turn is sought, some before it and not beyond another turn."""
+    """Index of the point from which a turn is sought: some points before it, but not beyond another turn.
+
+    None if point i is no turn.
+    """
     if not track.points[i].turn:
         return None
     j = i
@@ -111,7 +110,7 @@ def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACK
 
 
 def _more(found: _RefinedPoint) -> tuple[int, ...]:
-    """The harmonics of the reference; none more where nothing slips or opens."""
+    """The harmonics of the reference; those of the system if no contact slips or opens."""
     z, s = found.point.z, float(found.point.z[-1])
     system = found.setup.system.with_scene(found.setup.line.scene(found.setup.system.scene, s))
     further, y = FurtherHarmonics(system), z[None, :-1]
@@ -127,7 +126,7 @@ def _more(found: _RefinedPoint) -> tuple[int, ...]:
 def _landed(
     wider: TrackingSetup, condition: Condition, start: _RefinedPoint, turn: TrackedPoint, turns: bool
 ) -> _RefinedPoint | None:
-    """The point with more harmonics: that beside the start, or the turn that follows it."""
+    """The point with more harmonics: near the start, or the turn that follows it; None if not found."""
     landed = land(wider, condition, wider.system.extended(start.point.z, start.setup.system.harmonics))
     if landed is None or not _same_kind(wider, condition, landed, start):
         return None
@@ -151,7 +150,7 @@ def _landed(
 
 
 def _same_kind(wider: TrackingSetup, condition: Condition, point: TrackedPoint, start: _RefinedPoint) -> bool:
-    """Whether a peak stays one, and a trough one."""
+    """Whether a point is a peak, or a trough, with more harmonics as with fewer."""
     if condition.kind is not Kind.PEAK:
         return True
     tops = []

@@ -5,9 +5,9 @@ scene. One equation g = 0 is added to the balance R = 0. With the tangent t of t
 
     [dR/d(x, omega); row] t = (0, 1),
 
-it is t_omega = 0 of a fold and grad a . t = 0 of a peak of the amplitude a. Its derivatives by the unknowns
-are those of w^T dR t, with w the adjoint of the same matrix. So two more evaluations of the exact Jacobian, a
-little way along t, give all of them.
+g is t_omega for a fold and grad a . t for a peak of the amplitude a. Its derivatives by the unknowns are
+those of w^T dR t, with w the adjoint solution of the same matrix. So two more evaluations of the exact
+Jacobian, at a small distance along +-t, give all of them.
 """
 
 from __future__ import annotations
@@ -41,20 +41,20 @@ class Condition(NamedTuple):
     kind: Kind
     which: int = -1  # degree of freedom, or contact
     onset: str = ""  # one of `onset_functions.KINDS`
-    omega: float = 0.0  # of an end of the range
+    omega: float = 0.0  # frequency of an end of the range
 
 
 class Tangent:
     """The tangent of the response curve, t (unknown + 1,) in the problem's scale, with row . t = 1.
 
-    The factors of its matrix (unknown + 1, unknown + 1) are kept for the adjoint. Raises LinAlgError where
-    that is singular.
+    The factors of its matrix (unknown + 1, unknown + 1) are kept for the adjoint. Raises LinAlgError if the
+    matrix is singular.
     """
 
     def __init__(self, matrix: FloatArray) -> None:
         last = np.zeros(len(matrix))
         last[-1] = 1.0
-        *self._factors, info = dgetrf(matrix.T, overwrite_a=True)  # without a copy: of the transpose
+        *self._factors, info = dgetrf(matrix.T, overwrite_a=True)  # the transpose needs no copy
         if info > 0:
             raise np.linalg.LinAlgError
         self.t: FloatArray = dgetrs(*self._factors, last, trans=1)[0]
@@ -66,8 +66,7 @@ class Tangent:
 
 
 class Evaluation(NamedTuple):
-    """The balance evaluated at a place: its derivatives, and the slopes of a peak's ln amplitude by (y,
-    s)."""
+    """An evaluation of the balance: its derivatives, and those of ln(amplitude) of a peak by (y, s)."""
 
     jacobian: FloatArray  # (unknown, unknown + 1)
     by_s: FloatArray  # (unknown,)
@@ -75,28 +74,22 @@ class Evaluation(NamedTuple):
 
 
 class ExtendedSystem(Problem):
-    """The extended system of a special point, see the module.
-
-    y, s are the numbers z (unknown + 2,) of a problem, s the last.
-    """
+    """The extended system of a special point, see the module; z (unknown + 2,) = (x, omega, s)."""
 
     def __init__(
         self, varied: VariedBalance, condition: Condition, span: float, options: TrackingOptions = TRACKING
     ) -> None:
         self.options = options
         self.varied, self.condition, self.span = varied, condition, span
-        self.n, self.offset = varied.balance.unknowns, 0.0  # of an onset: its function, in the scale, is this
+        self.n, self.offset = varied.balance.unknowns, 0.0  # wanted value of a scaled onset function
         Problem.__init__(self, self.n + 1, 0, 0)
         self.has_root_margins = varied.balance.has_root_margins
         self.row = np.zeros(self.n + 1)
         self.row[-1] = 1.0
-        self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last
+        self.angles: FloatArray | None = None  # of the extremes of the cycle that define the peak
 
     def evaluate(self, z: FloatArray) -> int:
-        """Fill residual and derivatives.
-
-        They are nan where the response crosses itself: nothing is found there.
-        """
+        """Fill residual and Jacobian; the last row is nan where the response crosses itself."""
         z = np.asarray(z)
         self.varied.set_parameter(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
@@ -106,15 +99,15 @@ class ExtendedSystem(Problem):
         jacobian[:n, : n + 1], jacobian[:n, n + 1] = here.jacobian, here.by_s
         try:
             value, gradient = self._condition(y, here)
-        except np.linalg.LinAlgError:  # the response has no one direction there
+        except np.linalg.LinAlgError:  # the response has no unique tangent there
             residual[n], jacobian[n] = np.nan, np.nan
             return 0
-        unit = np.asarray(self.scale)[n]  # by which the row of this unknown is divided
+        unit = np.asarray(self.scale)[n]  # Newton's method divides this row by it
         residual[n], jacobian[n] = unit * value, unit * gradient
         return 0
 
     def surface(self, z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-        """Residual and derivatives by z of the balance alone, scaled, and the special-point condition."""
+        """Scaled residual and Jacobian (by z) of the balance alone, and the special-point condition."""
         z, scale = np.asarray(z), np.asarray(self.scale)
         self.varied.set_parameter(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
@@ -123,7 +116,7 @@ class ExtendedSystem(Problem):
         return np.array(self.varied.balance.residual) / scale[:n], matrix, self._special(y, here)
 
     def _special(self, y: FloatArray, here: Evaluation) -> float:
-        """The value of `_condition` without its derivatives, with a tangent of length 1."""
+        """The value of `_condition` for a unit tangent, without derivatives."""
         if self.condition.kind not in (Kind.FOLD, Kind.PEAK):
             return self._condition(y, here)[0]
         scale = np.asarray(self.scale)[:-1]
@@ -132,7 +125,7 @@ class ExtendedSystem(Problem):
         return float(t[-1] if self.condition.kind is Kind.FOLD else here.growth[:-1] @ (scale * t))
 
     def _evaluated(self, y: FloatArray) -> Evaluation:
-        """The balance evaluated at a place, with its derivative by s."""
+        """Evaluate the balance at y, with its derivative by s."""
         balance = self.varied.balance
         balance.evaluate(y)
         by_s, growth = self.varied.by_s(y), np.zeros(self.n + 2)
@@ -143,12 +136,10 @@ class ExtendedSystem(Problem):
         return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
     def evaluate_scale(self, z: FloatArray) -> int:
-        """Fill the units: those of the balance, and the span for s.
+        """Fill the scale: the units of the balance, and the span for s; set row to the response's tangent.
 
-        The row becomes the tangent of the response.
-
-        A peak is from here on the peak of those extremes that are the greatest of the cycle here. The
-        amplitude itself has a kink where others become greater.
+        For a peak, this fixes the extremes of the cycle that are greatest here. From then on the amplitude is
+        that of these extremes, since the amplitude itself has a kink where others become greater.
         """
         z = np.asarray(z)
         self.varied.set_parameter(float(z[-1]))
@@ -165,9 +156,9 @@ class ExtendedSystem(Problem):
         return 0
 
     def along(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Unit tangent of the response in the problem's scale, amplitudes and their growth along it (dof,).
+        """Unit tangent of the response in the problem's scale, amplitudes (dof,) and their growth along it.
 
-        Where the response has a corner, it is that of the side that z is on.
+        At a corner of the response it is the tangent on the side of z.
         """
         z = np.asarray(z)
         self.varied.set_parameter(float(z[-1]))
@@ -184,7 +175,7 @@ class ExtendedSystem(Problem):
         return Tangent(np.concatenate((scaled, self.row[None])))
 
     def _condition(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
-        """The special-point condition g, without a unit, and its derivatives by (y, s)."""
+        """The dimensionless special-point condition g, and its derivatives by (y, s)."""
         kind = self.condition.kind
         if kind is Kind.END:
             gradient = np.zeros(self.n + 2)
@@ -207,8 +198,7 @@ class ExtendedSystem(Problem):
         return found.value / unit - self.offset, gradient / unit
 
     def _fold_or_peak(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
-        """The equation of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it
-        is."""
+        """The condition of a fold or a peak, and its derivatives: growth along t, with row . t = 1."""
         scale = np.asarray(self.scale)[:-1]
         tangent = self._tangent(here.jacobian)
         t, special = tangent.t, here.growth
@@ -223,7 +213,7 @@ class ExtendedSystem(Problem):
         return value, gradient
 
     def _difference_length(self, y: FloatArray, ahead: FloatArray) -> float:
-        """Length of a difference along the tangent, so short that no margin nearly changes its sign."""
+        """Length of a difference along the tangent, so short that no margin comes close to a sign change."""
         signs, step = self._margins(y), self.options.special.difference_length
         for there in (self._margins(y + step * ahead), self._margins(y - step * ahead)):
             crossed = signs * there < 0.0
@@ -240,7 +230,7 @@ class ExtendedSystem(Problem):
         return step
 
     def jumps(self, z: FloatArray) -> bool:
-        """Whether the special-point condition jumps within the least difference about z."""
+        """Whether the special-point condition jumps within the least difference length about z."""
         self.varied.set_parameter(float(z[-1]))
         ahead = self.options.special.min_difference_fraction * np.asarray(self.scale)[:-1] * self.row
         sides = np.array(z[:-1]) - ahead, np.array(z[:-1]) + ahead
@@ -250,7 +240,7 @@ class ExtendedSystem(Problem):
         return abs(after - before) > self.options.pieces.max_jump
 
     def _margins(self, y: FloatArray) -> FloatArray:
-        """Functions whose signs change where the Jacobian is not smooth."""
+        """Functions that change sign where the Jacobian is not smooth."""
         balance = self.varied.balance
         if balance.margins:
             balance.evaluate_margins(y)
@@ -258,12 +248,12 @@ class ExtendedSystem(Problem):
         return values(balance.laws, y, self.varied.harmonics, self.options)
 
     def _special_at(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """Derivatives (unknown + 2,) of the condition at a place, the tangent held."""
+        """Derivatives (unknown + 2,) of the condition at y, with tangent and adjoint fixed."""
         here = self._evaluated(y)
         return here.growth - np.append(adjoint @ here.jacobian, adjoint @ here.by_s)
 
     def onset_at(self, z: FloatArray, condition: Condition) -> float:
-        """Value of an onset's function at z."""
+        """Value of an onset function at z."""
         self.varied.set_parameter(float(z[-1]))
         c, width = condition.which, self.varied.balance.width
         block = np.ascontiguousarray(z[c * width : (c + 1) * width])
@@ -272,7 +262,7 @@ class ExtendedSystem(Problem):
         ).value
 
     def amplitude_along(self, z: FloatArray, direction: FloatArray, dof: int) -> tuple[float, float]:
-        """An amplitude, and its rate along a direction (unknown + 2,), what s does to it included."""
+        """An amplitude, and its rate along a direction (unknown + 2,), including the change of s."""
         self.varied.set_parameter(float(z[-1]))
         y, balance = np.array(z[:-1]), self.varied.balance
         balance.evaluate(y)
@@ -283,7 +273,7 @@ class ExtendedSystem(Problem):
 
 
 def _direction(matrix: FloatArray, row: FloatArray, options: TrackingOptions = TRACKING) -> FloatArray:
-    """Unit vector (unknown + 1,) that a matrix (unknown, unknown + 1) takes to 0; row is nearly that."""
+    """Unit null vector (unknown + 1,) of a matrix (unknown, unknown + 1); row is close to it."""
     closed = np.concatenate((matrix, row[None]))
     try:
         t = np.linalg.solve(closed, np.eye(row.size)[-1])

@@ -1,4 +1,4 @@
-"""Costly steps of a search whose results are kept by their keys: an earlier run's are not taken again."""
+"""Cache of the costly steps of a search, by keys, which a resumed run uses."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class KeptSteps:
     known : iterable of (str, object)
         Keys and results of an earlier run.
     save : callable, optional
-        Keeps a key with its result as soon as the step is taken.
+        Saves a key with its result as soon as the step is finished.
 
     Examples
     --------
@@ -31,16 +31,13 @@ class KeptSteps:
         self._known, self._save = dict(known), save
 
     def of(self, what: str) -> KeptSteps:
-        """The steps of a part of the search, with keys of their own."""
+        """The steps of a part of the search, whose keys get a prefix."""
         start, save = f"{what}: ", self._save
         known = [(key.removeprefix(start), one) for key, one in self._known.items() if key.startswith(start)]
         return KeptSteps(known, None if save is None else lambda step: save((start + step[0], step[1])))
 
     def __call__(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
-        """The result of a step, kept or computed.
-
-        A kept one of another kind than it has counts as none.
-        """
+        """The result of a step, kept or computed; a kept result of another class is ignored."""
         known = self._known.get(key)
         if isinstance(known, kind):
             return known
@@ -51,5 +48,5 @@ class KeptSteps:
 
 
 def steps_of(states: Iterable[Any]) -> list[tuple[str, Any]]:
-    """Keys and results among what was read from a file."""
+    """Keys and results among the objects read from a file."""
     return [one for one in states if isinstance(one, tuple) and len(one) == 2 and isinstance(one[0], str)]

@@ -1,11 +1,11 @@
-r"""Continues a curve of special points past a point at which its equations have a kink.
+r"""Search for the continuation of a curve of special points past a kink of its equations.
 
-The solutions of the balance at all frequencies and values of s are a surface, and the condition of a special
-point is zero along lines on it. Where a contact begins to slip, open or close within its cycle, the slopes of
-its forces jump, or change as a root does, and so does that condition. The line then goes on in another
-direction, or along the jump, which no derivative on this side of the kink predicts. So the changes of its
-sign are looked for on a small circle on the surface about the point. One is where the curve came from,
-another is where it goes on.
+The solutions of the balance at all frequencies and values of s form a surface, and the special-point
+condition is zero along lines on it. Where a contact begins to slip, open or close within its cycle, the
+derivatives of its forces jump, or change like a square root, and so does this condition. The line then
+continues in another direction, or along the jump, which no derivative on this side of the kink predicts. So
+sign changes of the condition are located on a small circle on the surface about the point. One is where the
+curve came from, another is where it continues.
 """
 
 from __future__ import annotations
@@ -39,9 +39,10 @@ class Circle:
         self.axes = np.stack((ahead @ plane, np.array([-ahead[1], ahead[0]]) @ plane))
 
     def changes(self, back: FloatArray) -> list[CircleCrossing]:
-        """All changes of sign of the condition but that nearest to the way back, the furthest from it first.
+        """The sign changes of the condition, those farthest from the direction of back first.
 
-        None where there is no motion on a part of the circle.
+        The one nearest to it, where the curve came from, is left out. Empty if a part of the circle has no
+        solution.
         """
         way = self.axes @ ((back - self.z) / self.scale)
         came = float(np.arctan2(way[1], way[0]))
@@ -56,7 +57,7 @@ class Circle:
                 self._change(angles[i], angles[i + 1], float(np.abs(values).max()))
                 for i in np.flatnonzero(values[:-1] * values[1:] < 0.0)
             ]
-        except ValueError:  # of the search for a zero, at an angle where there is no motion
+        except ValueError:  # from brentq, at an angle without a solution
             return []
         found.sort(key=lambda one: float(np.cos(one.angle - came)))
         return found[:-1]
@@ -66,16 +67,16 @@ class Circle:
         return self.at(angle)[1]
 
     def at(self, angle: float) -> tuple[FloatArray, float]:
-        """The point at an angle, 0 is straight ahead, and the condition there; NaN where there is none.
+        """The point at an angle (0 is straight ahead), and the condition there; NaN without a solution.
 
-        It is sought across the plane of the circle.
+        Newton's method moves it normal to the plane of the circle.
         """
         z = self.z + self.radius * self.scale * (np.array([np.cos(angle), np.sin(angle)]) @ self.axes)
         for _ in range(self.options.max_iterations):
             try:
                 residual, matrix, special = self.problem.surface(z)
                 step = np.linalg.solve(np.concatenate((matrix, self.axes)), np.append(-residual, (0.0, 0.0)))
-            except np.linalg.LinAlgError:  # the response has no one direction there
+            except np.linalg.LinAlgError:  # the response has no unique tangent there
                 break
             if np.linalg.norm(step) < self.options.tolerance:
                 return z, special
@@ -83,7 +84,7 @@ class Circle:
         return z, np.nan
 
     def _change(self, low: float, high: float, most: float) -> CircleCrossing:
-        """The change of sign of the condition between two angles."""
+        """The sign change of the condition between two angles."""
         angle = float(
             brentq(
                 self.special, low, high, xtol=self.options.angle_tolerance, rtol=self.options.angle_tolerance

@@ -1,8 +1,8 @@
-"""Whether a curve of special points passes a point that was found otherwise: it is then not followed again.
+"""Test whether a known curve of special points passes a point, so that no curve is followed twice.
 
 Near a turn of the number, or a cusp, parts of a curve come close to each other and to other curves, so that
-no distance tells. The curve itself is found instead: in the plane through the point, across the chord of the
-curve that is next to it.
+distances do not decide. Instead the curve is computed in the plane through the point that is normal to the
+nearest chord of the curve.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def passes(curve: SpecialPointCurve, condition: Condition, point: TrackedPoint, 
 
 
 def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
-    """The chords between points next to which the origin lies, the nearest first."""
+    """Indices of the chords between points that are closest to the origin, the nearest first."""
     length, _, off = distances_from_chords(points)
     order = np.argsort(off)
     near: npt.NDArray[np.intp] = order[
@@ -45,8 +45,7 @@ def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> 
 def _crosses(
     curve: SpecialPointCurve, i: int, point: TrackedPoint, setup: TrackingSetup, scale: FloatArray
 ) -> bool:
-    """Whether the curve between a point and the next crosses, at a point, the plane there across its
-    chord."""
+    """Whether the curve between points i and i + 1 meets a point, in the plane there normal to its chord."""
     one, other = curve.points[i], curve.points[i + 1]
     problem = setup.tracked((other.corner if one.switch else one.corner) or curve.condition)
     chord = (other.z - one.z) / scale

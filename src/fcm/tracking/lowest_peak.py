@@ -1,11 +1,10 @@
-"""The least peak over a range of one number: follow the highest peaks, look where they are lowest, again.
+"""Search for the least peak over a range of one number, on the envelope of the highest followed peaks.
 
-What was followed is nowhere above the response. So where the response, traced at the lowest point of what was
-followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
-Ordinary curves are traced only at such points, at both ends of the range, and in the middle of a part where
-nothing was followed. If all is far above the least there, it is not sought in that part. A higher or a lower
-peak may be one that cannot be followed, of a motion with many states. Then only ordinary curves tell, see
-`by_trials`.
+The envelope of followed peaks is nowhere above the response. So its lowest point is the least peak if the
+response traced there has no higher peak; else that peak is followed as well. Response curves are traced only
+at such points, at both ends of the range, and in gaps where no peak was followed. A gap whose peaks are far
+above the least is skipped. Some peaks, of motions with many states, cannot be followed. Then only response
+curves decide, see `by_trials`.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)
 class LowestPeak(Frozen):
     """The least peak of a search, or None, with the curves that were followed.
 
-    checked: whether it is known to be least.
+    checked: whether response curves confirm that it is the least.
     """
 
     best: EnvelopeMinimum | None
@@ -60,7 +59,7 @@ class LowestPeak(Frozen):
 
 @dataclass
 class LowestPeakSearch:
-    """The search for the least peak of one scene and its targets, with the curves that are known."""
+    """The search for the least peak of one scene and its targets, with the curves known so far."""
 
     system: System
     line: ParameterLine
@@ -69,14 +68,14 @@ class LowestPeakSearch:
     options: SearchOptions = SEARCH
     steps: KeptSteps = field(default_factory=KeptSteps)
     curves: list[SpecialPointCurve] = field(default_factory=list)
-    pieces: list[MonotonePiece] = field(default_factory=list)  # of these, that count for the targets
+    pieces: list[MonotonePiece] = field(default_factory=list)  # of the curves that count for the targets
     visited_values: dict[float, PieceHeight] = field(
         default_factory=dict
-    )  # the greatest of the responses that were traced
+    )  # greatest height of the response at each traced value
     known_points: dict[float, list[tuple[Condition, PieceHeight]]] = field(
         default_factory=dict
-    )  # and all of them
-    visited: set[float] = field(default_factory=set)  # where what was met was followed, too
+    )  # all special points at each traced value
+    visited: set[float] = field(default_factory=set)  # values at which high peaks were also followed
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
@@ -92,7 +91,7 @@ class LowestPeakSearch:
         return found
 
     def run(self, known: LowestPeak | None = None, progress: Progress | None = None) -> LowestPeak:
-        """The least peak; from what was found with fewer harmonics, or else from both ends of the range."""
+        """Find the least peak, starting from curves with fewer harmonics, or from both ends of the range."""
         checked = False
         if progress is not None:
             progress(0.0)
@@ -119,15 +118,15 @@ class LowestPeakSearch:
                 for value in beyond:
                     self.visit(value)
                 if not beyond:
-                    break  # else a higher one is there; or lower ones, where the followed one ends
+                    break  # else new peaks beyond the end of the followed one may be higher
                 continue
             if seen:
-                break  # a higher one that could not be followed
+                break  # a higher peak there could not be followed
         checked = checked and not self._unknown(best) and not self._lower(best)
         return LowestPeak(best, tuple(self.curves), checked, self.system.harmonics)
 
     def best(self) -> EnvelopeMinimum | None:
-        """The least value of the envelope, after following curves wherever none was followed."""
+        """The least value of the envelope, after visiting gaps and values with a lower response."""
         while True:
             best = envelope_minimum(self.setup, self.pieces)
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
@@ -137,7 +136,7 @@ class LowestPeakSearch:
                 self.visit(value)
 
     def _unknown(self, best: EnvelopeMinimum | None) -> list[float]:
-        """Values about which nothing is followed, but for those where all is far above the least."""
+        """Values in gaps without a followed peak, except where all peaks are far above the least."""
         return [
             s for s in uncovered_values(self.setup, self.pieces) if best is None or self._is_near(s, best)
         ]
@@ -155,12 +154,12 @@ class LowestPeakSearch:
         )
 
     def _lower(self, best: EnvelopeMinimum | None) -> list[float]:
-        """Values at which the response was traced and is lower than the least of what was followed."""
+        """Values at which the traced response is lower than the least value of the envelope."""
         below = 0.0 if best is None else best.value * (1.0 - self.options.height_tolerance)
         return [s for s, top in self.visited_values.items() if 0.0 < top.value < below]
 
     def _beyond_end(self, best: EnvelopeMinimum | None) -> list[float]:
-        """Values next to a least that is at the end of what was followed, where that may have been lost."""
+        """Values just beyond the end of a followed peak, if the least value lies at this end."""
         if best is None or best.kind != "corner":
             return []
         near = self.setup.options.envelope.bracket * (self.span[1] - self.span[0])
@@ -169,7 +168,7 @@ class LowestPeakSearch:
         return [s for s in beyond if self.span[0] < s < self.span[1]]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
-        """The least peak of the responses traced until now, and its number; None where none has a peak."""
+        """The least peak of the responses traced so far, and its number; None if none has a peak."""
         peaks = {s: top for s, top in self.visited_values.items() if top.value > 0.0}
         if not peaks:
             return None
@@ -178,12 +177,11 @@ class LowestPeakSearch:
 
     @property
     def responses(self) -> int:
-        """Number of responses traced until now."""
+        """Number of responses traced so far."""
         return len(self.visited_values)
 
     def visit(self, value: float) -> float:
-        """Trace the response at a value, and follow what is high and not known; returns its greatest
-        height."""
+        """Trace the response at a value, follow its unknown high peaks, and return its greatest height."""
         self.visited.add(value)
         found = self.greatest_at(value)
         top = self.visited_values[value].value
@@ -198,7 +196,7 @@ class LowestPeakSearch:
         return top
 
     def greatest_at(self, value: float) -> list[tuple[Condition, PieceHeight]]:
-        """Special points of the response at a value that may be greatest, with their heights."""
+        """Special points of the response at a value that may be the greatest, with their heights."""
         if value not in self.known_points:
             here = self.system.with_scene(self.line.scene(self.system.scene, value))
             points = self._step(
@@ -215,7 +213,7 @@ class LowestPeakSearch:
         return self.known_points[value]
 
     def follow(self, condition: Condition, point: TrackedPoint) -> None:
-        """The curve through a point, if it is not known."""
+        """Follow the curve through a point, unless it is known."""
         if not any(passes(curve, condition, point, self.setup) for curve in self.curves):
             key = f"curve of {condition} through {point.z.tolist()}"
             curve = self._step(key, SpecialPointCurve, partial(both_ways, self.setup, condition, point))
@@ -227,7 +225,7 @@ class LowestPeakSearch:
         return self.steps(f"{self.system.harmonics} {self.span} {key}", kind, step)
 
     def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
-        """Height of the greatest target at a point; 0 where it is none of them."""
+        """Greatest height of the targets for which a point counts; 0 if there is none."""
         problem = self.setup.tracked(condition)
         problem.evaluate_scale(z)
         amplitude = problem.along(z)[1]
@@ -240,7 +238,7 @@ class LowestPeakSearch:
         return max(heights, key=lambda one: one.value, default=MIN_HEIGHT)
 
     def refine_curves(self, known: LowestPeak) -> None:
-        """Follow curves found with fewer harmonics from both their ends and their middle."""
+        """Follow curves found with fewer harmonics, starting from their ends and their middle."""
         for curve in known.curves:
             for i in sorted({0, len(curve.points) // 2, len(curve.points) - 1}):
                 z = self.system.extended(curve.points[i].z, known.harmonics)

@@ -1,16 +1,17 @@
-r"""The least of the greatest over two or three numbers: downhill along the peaks, with their exact slopes.
+r"""Minimax over two or three numbers: descent of the greatest peak, with exact derivatives of all peaks.
 
 With the peaks A_i(q), each followed along straight lines in the numbers q, the problem
 
     minimise t  subject to  A_i(q) <= t,  bounds on q
 
-is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It is
-solved by sequential quadratic programming. At its end the response is traced anew. Where peaks that were not
-followed are higher than the greatest at the start, the step is halved until they are lower; the next step
-follows the peaks that are there. Where a contact sticks throughout, its coefficient of friction has no effect
-and no direction of descent. So the least peak is then sought along the whole range of each number alone, as
-of one number; by trials where not all peaks can be followed. The descent begins again from there, as long as
-that finds less.
+is smooth, even at kinks where peaks are equal. Its derivatives are those of the extended system of each peak.
+It is solved by sequential quadratic programming. At its solution the response is traced anew. If peaks that
+were not followed are higher there than the greatest at the start, the step is halved until they are lower.
+The next step follows the peaks found there.
+
+Where a contact sticks throughout, its coefficient of friction has no effect, and the descent no direction. So
+the least peak is then sought along the whole range of each single number; by trials if not all peaks can be
+followed. If this finds a lower peak, the descent begins again from there.
 """
 
 from __future__ import annotations
@@ -38,16 +39,16 @@ from fcm.tracking.start_points import SpecialPoints, special_points
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 from fcm.tracking.trials import by_trials
 
-Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
+Member = tuple[Condition, int, FloatArray]  # the tracked condition, the degree of freedom, z = (x, omega)
 
 
 class LineMinimum(NamedTuple):
-    """The least peak over the range of one number, scaled, and whether all higher peaks could be followed."""
+    """The least peak over the range of one number (scaled), and whether all higher peaks were followed."""
 
     q: FloatArray
     value: float
     all_followed: bool
-    flat: tuple[float, float] | None = None  # values of the number, scaled, between which it stays as it is
+    flat: tuple[float, float] | None = None  # scaled values of the number between which the peak is constant
 
 
 class LeftRangeError(Exception):
@@ -57,7 +58,7 @@ class LeftRangeError(Exception):
 class PeakEnvelope:
     """Peaks of a response at numbers q (number,), scaled to 0 and 1 at their bounds."""
 
-    responses = 0  # that were traced until now
+    responses = 0  # number of responses traced so far
 
     def __init__(
         self,
@@ -71,14 +72,14 @@ class PeakEnvelope:
         self.steps = steps or KeptSteps()
         self.system, self.numbers, self.targets, self.options = system, tuple(numbers), targets, options
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
-        self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
+        self.lowest: tuple[FloatArray, float, Member] | None = None  # of all responses traced so far
 
     def line(self, q: FloatArray, direction: FloatArray) -> ParameterLine:
-        """The line from q along a direction, both scaled."""
+        """The line from q along a direction (both scaled)."""
         return ParameterLine(self.numbers, self.low + q * self.width, direction * self.width)
 
     def setup(self, q: FloatArray, direction: FloatArray) -> TrackingSetup:
-        """The tracking setup on the line from q, to the end of the direction."""
+        """The tracking setup on the line from q to q + direction."""
         return TrackingSetup(
             self.system,
             self.line(q, direction),
@@ -89,7 +90,7 @@ class PeakEnvelope:
         )
 
     def peaks(self, q: FloatArray) -> list[Member]:
-        """Special points of the response at q that count for the targets, by tracing it."""
+        """Trace the response at q; return its special points that count for the targets."""
         ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
         here = self.system.with_scene(self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
         setup, found = self.setup(q, np.zeros(q.size)), []
@@ -106,10 +107,7 @@ class PeakEnvelope:
         return [(condition, dof, point.z[:-1]) for condition, dof, point in found]
 
     def traced(self, q: FloatArray) -> tuple[float, list[Member]]:
-        """The greatest height of the response at q, and all members that count there.
-
-        It is infinite where nothing has a peak.
-        """
+        """The greatest height of the response at q (infinite without a peak), and all members there."""
         heights = [(self.height(member, q)[0], member) for member in self.peaks(q)]
         value, top = max(heights, key=lambda one: one[0], default=(np.inf, None))
         self.responses += 1
@@ -118,7 +116,7 @@ class PeakEnvelope:
         return value, [member for _, member in heights]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
-        """The least peak of the responses traced until now, and its numbers; None where none has a peak."""
+        """The least peak of the responses traced so far, and its numbers; None if none has a peak."""
         if self.lowest is None:
             return None
         q, value, (_, dof, z) = self.lowest
@@ -126,12 +124,12 @@ class PeakEnvelope:
         return self.low + q * self.width, EnvelopeMinimum(np.nan, value, (top,), INCOMPLETE)
 
     def moved(self, member: Member, q: FloatArray, to: FloatArray) -> Member | None:
-        """A member of the envelope at other numbers; None where it is no more.
+        """Follow a member of the envelope from q to other numbers; None if it ends before.
 
         Raises
         ------
         LeftRangeError
-            If its frequency leaves the range that is traced.
+            If its frequency leaves the traced range.
         """
         condition, dof, z = member
         if np.array_equal(q, to):
@@ -148,7 +146,7 @@ class PeakEnvelope:
         return (condition, dof, last.z[:-1]) if whole else None
 
     def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
-        """Height of a member of the envelope, with its slopes by q."""
+        """Height of a member of the envelope, with its derivatives by q."""
         condition, dof, z = member
         slopes, value = np.empty(q.size), 0.0
         for k, direction in enumerate(np.eye(q.size)):
@@ -168,9 +166,9 @@ class PeakEnvelope:
 def descend(
     valley: PeakEnvelope, near: FloatArray | None = None, progress: Progress | None = None
 ) -> tuple[FloatArray, EnvelopeMinimum] | None:
-    """The optimum over the numbers: their values, and the least peak there; None where nothing has a peak.
+    """Find the optimum: the values of the numbers, and the least peak there; None if there is no peak.
 
-    With numbers near it, as fewer harmonics find them, the way leads down from there.
+    near: numbers from which the descent starts, such as the optimum with fewer harmonics.
     """
     show = progress or (lambda _share: None)
     show(0.0)
@@ -209,7 +207,7 @@ def descend(
 def _flat_at(
     valley: PeakEnvelope, q: FloatArray, value: float, lines: Sequence[LineMinimum]
 ) -> tuple[tuple[int, float, float], ...]:
-    """Numbers on which the least peak does not depend at q, with the range of each."""
+    """The numbers on which the least peak at q does not depend, with the range of each."""
     found = []
     for k, line in enumerate(lines):
         same = abs(line.value - value) <= valley.options.height_tolerance * value
@@ -220,7 +218,7 @@ def _flat_at(
 
 
 def _starts(valley: PeakEnvelope, near: FloatArray | None) -> list[FloatArray]:
-    """Numbers from which a descent starts: the lowest of a coarse grid where none are known."""
+    """Numbers from which a descent starts: near, or the lowest of a coarse grid."""
     if near is not None:
         return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
     grid = map(np.array, product(valley.options.grid, repeat=len(valley.numbers)))
@@ -229,7 +227,7 @@ def _starts(valley: PeakEnvelope, near: FloatArray | None) -> list[FloatArray]:
 
 
 def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
-    """The least peak over the range of one number, with the others as they are."""
+    """The least peak over the range of number k, with the others fixed at q."""
     origin, direction = np.array(q), np.eye(q.size)[k]
     origin[k] = 0.0
     line, options = valley.line(origin, direction), valley.options.search
@@ -244,7 +242,7 @@ def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
 
 
 def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
-    """Descend from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
+    """Descend from q until neither a full step nor repeated halvings of it find a lower greatest peak."""
     value, members = valley.traced(q)
     for _ in range(valley.options.max_rounds):
         end = _minimax(valley, q, members, value)
@@ -261,7 +259,7 @@ def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, li
 
 
 def _minimax(valley: PeakEnvelope, q: FloatArray, members: list[Member], unit: float) -> FloatArray:
-    """Numbers at which the greatest of some members is least."""
+    """Solve the minimax problem for some members; return the numbers at which their greatest is least."""
     memory: dict[bytes, tuple[FloatArray, FloatArray]] = {}
     here: tuple[FloatArray, list[Member | None]] = (q, list(members))
 

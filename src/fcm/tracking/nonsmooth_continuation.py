@@ -1,8 +1,8 @@
-"""Continuation of a special point in a number of its scene: smooth pieces, and how these are joined.
+"""Continuation of a special point in a number of its scene, by connected smooth pieces.
 
-Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
-value of the number where they have a kink, at a corner of the response, or where another extreme of the cycle
-becomes the greatest. `CornerCrossing` finds the way on from there, as `corner_crossing` and `kinks` say.
+Each piece is followed by `fcm.continuation.follow`. It ends where its equations cease to hold: at a value of
+the number where they have a kink, at a corner of the response, or where another extreme of the cycle becomes
+the greatest. `CornerCrossing` continues from there, as described in `corner_crossing` and `kinks`.
 """
 
 from __future__ import annotations
@@ -24,18 +24,17 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 def follow_special_point(
     setup: TrackingSetup, condition: Condition, start: TrackedPoint, forward: bool
 ) -> tuple[list[TrackedPoint], Ending]:
-    """The curve of special points from one of them, with s rising or falling at first."""
+    """Follow the curve of special points from start, with s rising (forward) or falling at first."""
     return SmoothPieces(setup, condition).run(start, forward)
 
 
 def land(setup: TrackingSetup, condition: Condition, z: FloatArray) -> TrackedPoint | None:
-    """The point near z = (x, omega, s) at the same s; at a corner if there is one that holds."""
+    """The special point near z = (x, omega, s) at the same s, at a corner if one is special; else None."""
     return SmoothPieces(setup, condition).land(z)
 
 
 class _End(Frozen):
-    """An end of a smooth piece: a function of z, negative where the equations do not hold, and what
-    follows."""
+    """An end of a smooth piece: a function of z, negative where the equations do not hold, and the way on."""
 
     holds: End
     then: Callable[[], bool | Ending]
@@ -50,7 +49,7 @@ class SmoothPieces(CornerCrossing):
         if point is not None and overtaken(self.smooth, point.z):
             point = self._landed(
                 point.z
-            )  # as a peak of those extremes that are the greatest of a cycle there
+            )  # as the peak of those extremes that are the greatest of the cycle there
             if point is not None and overtaken(self.smooth, point.z):
                 return None
         return point
@@ -73,7 +72,7 @@ class SmoothPieces(CornerCrossing):
         return None
 
     def _held(self, z: FloatArray) -> TrackedPoint:
-        """The point found with s held, which is exactly as it was."""
+        """The point found with s held; s is restored exactly."""
         self.newton.z[-1] = z[-1]
         return self.point_at(np.array(self.newton.z), np.array(self.newton.tangent))
 
@@ -113,13 +112,13 @@ class SmoothPieces(CornerCrossing):
                 ending is Ending.STALLED
                 and np.linalg.norm(self._off(self.z - first)) < self.options.short_step
             ):
-                return self.points[:1], ending  # short steps about a kink, without progress
+                return self.points[:1], ending  # only short steps about a kink, without progress
             if isinstance(ending, Ending) or len(self.points) > self.options.max_points:
                 return self.points, ending if isinstance(ending, Ending) else Ending.LONG
         return self.points, Ending.LONG
 
     def _piece(self) -> bool | Ending:
-        """Follow the present equations to where they hold no more; whether a way leads on, or the end."""
+        """Follow a piece to its end; return true if the curve continues, else how it ends."""
         problem, s = self.newton.problem, float(self.z[-1])
         low = max([k for k in self.kinks if k < s] + [self.setup.span[0]])
         high = min([k for k in self.kinks if k > s] + [self.setup.span[1]])
@@ -155,14 +154,14 @@ class SmoothPieces(CornerCrossing):
         return Ending.LONG
 
     def _slowly(self) -> bool | Ending:
-        """Go on from where a step was too long: along a corner of the response ahead, or by short steps."""
+        """Continue after steps that were too long: at a corner of the response ahead, or by short steps."""
         ending = self._reach_corner()
         if not ending:
             self.first = 0.25 * self.options.short_step
         return ending or True
 
     def _ends_of_piece(self) -> list[_End]:
-        """The ends of a piece: the range of frequencies; of a smooth one another extreme, or a corner."""
+        """Ends of a piece: those of the frequency range; for a smooth piece other extremes and corners."""
         ends = [
             _End(End(lambda z: z[-2] - self.low), lambda: self._at_end_of_range(self.low)),
             _End(End(lambda z: self.high - z[-2]), lambda: self._at_end_of_range(self.high)),
@@ -182,7 +181,7 @@ class SmoothPieces(CornerCrossing):
         return ends
 
     def _keep(self, path: Path) -> None:
-        """Keep the points of a path but the first, and go to the last."""
+        """Append the points of a path but the first, and move to the last."""
         at = None if self.corner is None else self.corner.at
         for z, way, mark in zip(path.z[1:], path.direction[1:], path.mark[1:].tolist(), strict=True):
             user_point = z[-1] in self.values and bool(mark & (Mark.USER_POINT | Mark.END))
@@ -196,7 +195,7 @@ class SmoothPieces(CornerCrossing):
         return off
 
     def _at_end_of_range(self, omega: float) -> Ending:
-        """End the curve at the end of the range of frequencies, and land on that exactly."""
+        """End the curve exactly at an end of the frequency range."""
         row = np.zeros(self.z.size)
         row[-2] = np.sign(self.t[-2]) or 1.0
         guess = np.array(self.z)
@@ -210,14 +209,15 @@ class SmoothPieces(CornerCrossing):
     def _overtaken(self) -> Ending:
         """End the curve where other extremes than those of the peak become the greatest of the cycle.
 
-        There the amplitude has a kink that is a trough: it meets a peak, and takes the place of a trough.
+        There the amplitude has a kink that is a trough: the curve of a peak meets it, and that of a trough is
+        replaced by it.
         """
         return Ending.MET if is_top(self.smooth, self.points[-1]) else Ending.TROUGH
 
     def _closed(self, first: FloatArray, heading: FloatArray, known: int) -> int | None:
-        """Index of the first point past the one where the curve began, in its direction; None if none is.
+        """Index of the first point that passes the start of the curve in its direction, or None.
 
-        known: the number of points before those that are looked at.
+        known: number of points that are not examined.
         """
         scale = np.asarray(self.newton.scale)
         heading = heading / scale

@@ -1,19 +1,21 @@
-r"""Onset functions: signed functions of what a contact does over a cycle, for any number of harmonics.
+r"""Onset functions: signed functions of the state of a contact over a cycle, for any number of harmonics.
 
-With the load n = n_0 + k_v v before it is cut at 0 and p = k_u u:
+With p = k_u u and the load n = n_0 + k_v v, here also negative:
 
     separation  min n                               negative where the contact opens at some time
     closing     max n                               negative where it is open throughout
     slip        min(p + mu n) - max(p - mu n)       negative where a contact that is closed must slip
 
-A slider at rest at k_u w needs |p - k_u w| <= mu n at all times, which the last is about. Two more are for
-corners alone, as a contact that does not slip has them: a slider that began at 0 rests there while
+A slider that rests at k_u w needs |p - k_u w| <= mu n at all times; such a w exists while "slip" is not
+negative. Two more functions matter only for corners, at contacts that do not slip. A slider that began at 0
+rests there while
 
     upper limit  min(p + mu n)                      is positive, and
     lower limit  max(p - mu n)                      negative; else at the limit
 
-In a plane the slider is held by discs about p of radius mu n. By t these have to grow to have a place in
-common: -2 t is what "slip" is on a line, and a slider that began at 0 rests there while
+In a plane the slider must be in the discs about p of radius mu n. Let t be the least growth of their radii
+with which they have a common point. Then -2 t corresponds to "slip" on a line, and a slider that began at 0
+rests there while
 
     start        min(mu n - |p|)                    is positive.
 """
@@ -33,17 +35,14 @@ from fcm.tracking.options import TRACKING, TrackingOptions
 
 KINDS = ("separation", "closing", "slip")
 LIMITS = ("upper limit", "lower limit")
-START = "start"  # in a plane, in the place of these
-NORMAL = -1  # of the directions of a contact
+START = "start"  # in a plane, instead of LIMITS
+NORMAL = -1  # index of the normal among the directions of a contact
 
 ComplexArray = npt.NDArray[np.complex128]
 
 
 class Onset(NamedTuple):
-    """Value of an onset function of a contact, and its slopes.
-
-    By the contact's unknowns (width,), and by mu, k_u, k_v, n_0.
-    """
+    """Value of an onset function, and its derivatives by the contact's unknowns and by mu, k_u, k_v, n_0."""
 
     value: float
     slope: FloatArray
@@ -51,7 +50,7 @@ class Onset(NamedTuple):
 
 
 def _discs(law: Law) -> PlanarMargins | None:
-    """The discs that hold the slider of a contact in a plane; None on a line."""
+    """The discs that bound the slider of a contact in a plane; None on a line."""
     bounds = law.bounds if isinstance(law, KernelLaw) else None
     return bounds if isinstance(bounds, PlanarMargins) else None
 
@@ -93,10 +92,11 @@ def onset(
 def values(
     laws: list[Law], x: FloatArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> FloatArray:
-    """Values of the onset functions of all contacts: separation and closing, slip, and limits if none slips.
+    """Values of the onset functions of all contacts: separation, closing, slip, and the two limits.
 
-    They include contacts that cannot slip, or whose load does not vary, as a number may pass through the
-    value at which that is so. Their functions are then negative, or change sign with another one.
+    The limits of a contact that slips are replaced by 1 and -1. Contacts that cannot slip, or whose load does
+    not vary, are included, as a number may pass the value at which that is so. Their functions are then
+    negative, or change sign together with another one.
     """
     if not laws:
         return np.zeros(0)
@@ -149,10 +149,11 @@ def _values_in_plane(
 
 
 def _in_plane(law: Law, discs: PlanarMargins, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
-    """The onset function of the discs that hold a slider in a plane.
+    """The onset function of the discs that bound a slider in a plane, with its derivatives.
 
-    Those that hold the place which all miss least do so with weights by which their directions vanish, and
-    with the same weights the distances change; the place may move, and makes no difference.
+    The active discs of the point that misses all discs least have weights with which the sum of their
+    directions vanishes. With these weights the sum of their changes gives the derivative: the motion of the
+    point itself has no effect.
     """
     grown = discs.overlap(np.ascontiguousarray(x), law, kind == START)
     resting, motion = discs.resting, discs.motion
@@ -177,20 +178,20 @@ def _in_plane(law: Law, discs: PlanarMargins, x: FloatArray, kind: str, harmonic
             slope[along[direction]] += times * one * factor * at
         of_u = e_x * (at @ x[along[0]]) + e_y * (at @ x[along[1]])
         by += times * one * np.array([-(law.n_0 + law.k_v * load), of_u, -law.mu * load, -law.mu])
-    if kind != START:  # the place moves with the mean of u, and what holds it does not
+    if kind != START:  # a shift by the mean of u does not change whether the discs have a common point
         slope[:2] = 0.0
     return Onset(times * grown, slope, by)
 
 
 def _weights(e: FloatArray) -> FloatArray:
-    """Weights, of sum 1, with which the sum of directions (disc, 2) vanishes."""
+    """Weights (disc,) of sum 1 with which the weighted sum of directions (disc, 2) vanishes."""
     matrix = np.vstack((e.T, np.ones(len(e))))
     found: FloatArray = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
     return found if len(e) > 1 else np.ones(len(e))
 
 
 def kinds_of(law: Law) -> tuple[str, ...]:
-    """The kinds of onset functions that a contact can have."""
+    """The kinds of onset functions that a contact has."""
     if _discs(law) is not None:
         return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))

@@ -13,7 +13,7 @@ PIECE_STEPS = StepOptions(initial_step=1e-3, min_step=1e-7, max_steps=3000, retr
 
 
 class PieceOptions(Frozen):
-    """The smooth pieces of a tracked curve, and how they are joined; lengths are in the problem's scale.
+    """Options on the smooth pieces of a tracked curve and their connection; lengths in the problem's scale.
 
     Attributes
     ----------
@@ -22,39 +22,41 @@ class PieceOptions(Frozen):
     max_points, max_pieces : int
         Most points, and most pieces, of a curve; with more it ends as too long.
     reach : float
-        Length that stands before the first Newton step to a point of the curve, see `Newton.correct`.
+        Length assumed for the step before the first Newton step to a point of the curve, see
+        `Newton.correct`.
     max_correction : float
-        Length of the correction of a start from which on it is no start of this curve.
+        Length of the correction of a start, from which on the start does not belong to this curve.
     short_steps : int
-        Number of steps in a row that may be short.
+        Most steps in a row with short length.
     short_step : float
-        Length of a step below which a corner of the response is looked for ahead.
+        Length of a step below which a corner of the response is sought ahead.
     max_factor : float
         Length of the first step after short ones, relative to the last of them.
     reached_distance : float
-        Distance up to which a corner counts as reached, or as passed by a step too short to tell.
+        Distance up to which a corner counts as reached, or as passed by a very short step.
     corner_distance : float
         Distance above which a corner does not end a piece.
     departure_lengths : tuple of float
-        Lengths beyond a corner at which the curve is looked for again, in turn.
+        Lengths beyond a corner at which the curve is sought again, in turn.
     least_departure : float
         Length along the curve below which a way on is tried last.
     max_jump : float
         Value of the special-point condition on the far side of a corner, above which it jumps there.
     min_cosine_ahead : float
-        Cosine between the curve's direction and the way to a corner, above which the corner lies ahead.
+        Cosine between the tangent of the curve and the direction to a corner, above which the corner is
+        ahead.
     max_move : float
-        Length of the correction of a point beside a corner from which on it is not accepted.
+        Length of the correction of a point beside a corner, from which on the point is not accepted.
     kink_length : float
         Change of the number by which a kink is passed, relative to its span.
     kink_radii : tuple of float
-        Radii of the circles about a kink on which the way on is looked for, in turn.
+        Radii of the circles about a kink on which the way on is sought, in turn.
     radius_tolerance : float
-        Length of the correction of a point on such a circle, relative to the radius, above which it is not
-        accepted.
+        Length of the correction of a point on such a circle, relative to the radius, above which the point is
+        not accepted.
     min_radial_cosine : float
-        Cosine between the curve's direction at that point and the radius, below which another curve crosses
-        the circle.
+        Cosine between the tangent of the curve at that point and the radius, below which the point belongs to
+        another curve.
     """
 
     step: StepOptions = PIECE_STEPS
@@ -79,22 +81,22 @@ class PieceOptions(Frozen):
 
 
 class SpecialPointOptions(Frozen):
-    """The equations of a special point of a response.
+    """Options on the equations of a special point of a response.
 
     Attributes
     ----------
     min_amplitude : float
-        Least amplitude that is divided by.
+        Least amplitude in a division.
     difference_length : float
         Step of the difference quotient of the Jacobian along the response, relative to the extent of the
         response.
     min_difference_fraction : float
         Least such step, where a corner is near.
     corner_fraction : float
-        Longest such step relative to the way to a corner, as derivatives change there like a root.
+        Longest such step, relative to the distance to a corner, where derivatives change like a square root.
     max_tangent : float
         Length of the computed tangent, relative to the row that closes the equations, from which on the row
-        is nearly across it. The tangent is then taken from singular vectors.
+        is nearly normal to it. The tangent is then the singular vector.
     """
 
     min_amplitude: float = 1e-150
@@ -105,7 +107,7 @@ class SpecialPointOptions(Frozen):
 
 
 class CornerOptions(Frozen):
-    """Special points that are corners of a response. Lengths are in the problem's scale.
+    """Options on special points that are corners of a response; lengths are in the problem's scale.
 
     Attributes
     ----------
@@ -116,12 +118,12 @@ class CornerOptions(Frozen):
     first_step : float
         Length of the first step of the secant method.
     max_distance : float
-        Greatest length along a corner at which its special point is looked for.
+        Greatest length along a corner at which its special point is sought.
     side_distance : float
-        Distance from a corner at which its two sides are evaluated, beyond the rounding of its place: that
-        is some 1e-12 in a plane, where slip begins with a root.
+        Distance from a corner at which its two sides are evaluated. It exceeds the rounding error of the
+        corner: some 1e-12 in a plane, where slip begins like a square root.
     rounding : float
-        Distance up to which a point is at a corner.
+        Distance up to which a point counts as at a corner.
     """
 
     max_iterations: int = 20
@@ -133,13 +135,13 @@ class CornerOptions(Frozen):
 
 
 class KinkOptions(Frozen):
-    """The way on from a kink, on a circle about it.
+    """Options on the search for the way on from a kink, on a circle about it.
 
     Attributes
     ----------
     min_angle, max_angle : float
-        [rad] Least and greatest of the angles from the way back that are tried closely, where the way on may
-        make a narrow angle with it.
+        [rad] Least and greatest angle from the way back that are sampled closely: the way on may make a
+        narrow angle with the way back.
     max_iterations : int
         Most Newton steps to the surface of solutions.
     tolerance : float
@@ -147,8 +149,8 @@ class KinkOptions(Frozen):
     angle_tolerance : float
         [rad] Error of the angle at which the special-point condition changes its sign.
     jump_fraction : float
-        Value of the condition beside a change of its sign, relative to the greatest on the circle, above
-        which it jumps there and has no zero.
+        Value of the condition beside a sign change, relative to the greatest on the circle, above which it
+        jumps there and has no zero.
     """
 
     min_angle: float = 1e-3
@@ -160,12 +162,12 @@ class KinkOptions(Frozen):
 
 
 class OnsetOptions(Frozen):
-    """Options on how the extremes within a cycle are found that decide on the state of a contact.
+    """Options on the extremes within a cycle that decide the state of a contact.
 
     Attributes
     ----------
     samples_per_period : int
-        Number of samples for each period of the highest harmonic, among which an extreme is looked for.
+        Number of samples for each period of the highest harmonic, among which an extreme is sought.
     max_iterations : int
         Number of Newton steps from the extreme sample.
     """
@@ -175,7 +177,7 @@ class OnsetOptions(Frozen):
 
 
 class CurveOptions(Frozen):
-    """Options on how all tracked curves over a range of the number are found.
+    """Options on the search for all tracked curves over a range of the number.
 
     Attributes
     ----------
@@ -186,16 +188,16 @@ class CurveOptions(Frozen):
     frequency_tolerance : float
         Relative difference of frequencies below which a point is on a curve.
     max_peaks : int
-        Most curves of peaks along which onsets are looked for.
+        Most curves of peaks along which onsets are sought.
     min_height : float
         Height of a peak, relative to the greatest amplitude of its degree of freedom, up to which it is not
         tracked.
     min_prominence : float
         Prominence of a peak lower than others of its branch, relative to its height, up to which no tracked
-        curve begins there. Folds where a contact begins to slip have many that are smaller.
+        curve begins there. Folds where a contact begins to slip have many smaller peaks.
     cusp_tolerance : float
-        Rate of the frequency at a turn of the number, relative to that beside it, below which the turn is a
-        cusp: the frequency turns back, too.
+        Rate of the frequency at a turn of the number, relative to that at the points beside it, below which
+        the turn is a cusp: the frequency also turns back.
     """
 
     start_values: int = 13
@@ -208,7 +210,7 @@ class CurveOptions(Frozen):
 
 
 class KnownCurveOptions(Frozen):
-    """Whether a curve passes a point that was found otherwise.
+    """Options on the test whether a known curve passes a point.
 
     Attributes
     ----------
@@ -216,9 +218,9 @@ class KnownCurveOptions(Frozen):
         Distance in the problem's scale below which two points are the same.
     max_chord_part : float
         Distance of a point from a chord, relative to the chord, from which on it is not on that part of the
-        curve: it would turn by 90 degrees.
+        curve: the curve would have to turn by 90 degrees.
     nearest_chords : int
-        Number of chords, the nearest ones, on which the point is looked for.
+        Number of nearest chords at which the curve is computed.
     """
 
     point_tolerance: float = 1e-5
@@ -227,17 +229,17 @@ class KnownCurveOptions(Frozen):
 
 
 class TurnErrorOptions(Frozen):
-    """The error at a turn of the number.
+    """Options on the error at a turn of the number.
 
     Attributes
     ----------
     points_before : int
-        Number of points before a turn from which the turn with more harmonics is looked for.
+        Number of points before a turn at which the search for the turn with more harmonics begins.
     span_factor : float
-        Range of the number in which it is looked for, relative to the way from there to the turn.
+        Range of the number of this search, relative to the distance from its start to the turn.
     before_end : float
-        Distance from the value at which a peak ends, relative to that value, from which the end with more
-        harmonics is looked for.
+        Distance from the value at which a peak ends, relative to that value, at which the search for the end
+        with more harmonics begins.
     """
 
     points_before: int = 3
@@ -246,42 +248,44 @@ class TurnErrorOptions(Frozen):
 
 
 class EnvelopeOptions(Frozen):
-    """The greatest of several peaks over the number, and its least value.
+    """Options on the envelope of several peaks over the number, and on its least value.
 
     Attributes
     ----------
     brackets : int
-        Number of the lowest points about which the least value is looked for.
+        Number of the lowest points about which the least value is sought.
     value_tolerance : float
-        Error of the number at the least value, relative to its range, or to itself where that is less.
+        Error of the number at the least value, relative to its range, or to the number itself if that is
+        less.
     search_tolerance : float
-        Error of it, relative to the range, up to which it is sought by the values alone.
+        Error of the number, relative to the range, up to which the search uses only heights.
     bracket : float
-        Distance from there, relative to the range, at which the slopes on both sides tell what lies between.
+        Distance from the value found, relative to the range, at which the slopes on both sides decide on the
+        kind of the minimum.
     smooth_slope : float
-        Slope of a peak at the least value, relative to the lesser one of those on both sides, below which
-        that is where the peak turns, and no corner.
+        Slope of a peak at the least value, relative to the lesser one of those on both sides, below which the
+        minimum is smooth and no corner.
     chord_fraction : float
         Height of a peak by the chords, relative to the highest, below which it is not computed.
     min_gap : float
-        Width of a range in which no piece is known, relative to the whole range, above which it is looked at.
+        Width of a gap without pieces, relative to the whole range, above which the gap is examined.
     height_tolerance : float
         Relative difference of two peaks up to which they are equal, as at a crossing.
     unknown_factor : float
-        Height that stands for an unknown one, relative to the highest, as differences of infinities are none.
+        Finite height that replaces an unknown one, relative to the highest.
     extreme_tolerance : float
         Relative difference of two extremes of a cycle up to which they are equal.
     flat_slope : float
         Relative change of a peak over the whole range, by its slope, up to which it does not depend on the
         number.
     flat_height : float
-        Height of such a stretch above the least value, relative to that, up to which it counts as the least:
-        the onset of slip lowers peaks a little.
+        Height of such a flat stretch above the least value, relative to the latter, up to which the stretch
+        counts as the least: the onset of slip lowers peaks slightly.
     min_flat : float
-        Width of such a stretch, relative to the range, at least.
+        Least width of a flat stretch, relative to the range.
     wide_flat : float
-        Width of it, relative to the range, from which on what is left of the range is searched on its own, as
-        all other lengths are relative to the range, too.
+        Width of a flat stretch, relative to the range, from which on the rest of the range is searched
+        separately, since all other lengths are relative to the range.
     """
 
     brackets: int = 4
@@ -301,15 +305,15 @@ class EnvelopeOptions(Frozen):
 
 
 class TrackedStabilityOptions(Frozen):
-    """Options on where stability changes along a tracked curve.
+    """Options on changes of stability along a tracked curve.
 
     Attributes
     ----------
     corner_side : float
-        Distance to either side of a corner at which the sign of the determinant is taken, relative to the
-        response's extent: the response may turn back there.
+        Distance to either side of a corner at which the sign of the determinant is computed, in the scale:
+        the response may turn back at the corner.
     halvings : int
-        Number of bisections of a step in which the motion ceases to be stable.
+        Number of bisections of a step in which stability changes.
     """
 
     corner_side: float = 1e-6
@@ -317,23 +321,23 @@ class TrackedStabilityOptions(Frozen):
 
 
 class TrialOptions(Frozen):
-    """The least peak by trials.
+    """Options on the search for the least peak by trials.
 
     Attributes
     ----------
     values : int
-        Number of values over the range that are tried first, both ends among them.
+        Number of values over the range that are tried first, including both ends.
     minima, refinements, closer_values : int, int, int
-        Number of local minima of these values that are refined; most refinements, the others at the least
-        that is known then; and most further values for each.
+        Number of local minima of these values that are refined; most refinements, the further ones at the
+        least value known then; and most further values for each.
     min_distance : float
         Distance of two values, relative to the range, at which a refinement ends.
     same_height, close_height : float
-        Relative difference of two peaks up to which they are as high; and up to which the least is not
-        refined further beside its neighbours.
+        Relative difference of two peaks up to which they are equally high; and up to which the least is not
+        refined further.
     min_flat : float
-        Width of a stretch of peaks as high, relative to the range, from which on they do not depend on the
-        number.
+        Width of a stretch of equally high peaks, relative to the range, from which on they do not depend on
+        the number.
     """
 
     values: int = 5
@@ -364,16 +368,16 @@ class TrackingOptions(Frozen):
 
 
 class SearchOptions(Frozen):
-    """The search for the least peak over the range of one number; see `fcm.tracking.lowest_peak`.
+    """Options on the search for the least peak over one number; see `fcm.tracking.lowest_peak`.
 
     Attributes
     ----------
     max_visits : int
         Most values of the number at which a response is traced.
     height_tolerance : float
-        Relative height of a peak above the least one, above which it has not been followed.
+        Relative height above the expected least peak, above which a traced peak has not been followed.
     high_fraction : float
-        Height relative to the highest peak, from which on peaks are followed where they are met.
+        Height, relative to the highest peak, from which on peaks of a traced response are followed.
     tracking : TrackingOptions
         Options of the tracked curves.
     """
@@ -385,21 +389,21 @@ class SearchOptions(Frozen):
 
 
 class DescentOptions(Frozen):
-    """The search for the least peak over two or three numbers; see `fcm.tracking.minimax`.
+    """Options on the search for the least peak over two or three numbers; see `fcm.tracking.minimax`.
 
     Attributes
     ----------
     grid : tuple of float
-        Places in each range, relative to it, at which the first responses are traced.
+        Positions in each number's range, relative to it, at which the first responses are traced.
     starts : int
-        Number of the lowest of them from which a descent starts.
+        Number of the lowest of these responses from which a descent starts.
     max_rounds : int
         Most rounds of descending and of tracing anew.
     max_halvings : int
-        Most times that a step is halved at whose end other peaks are higher.
+        Most halvings of a step at whose end other peaks are higher.
     max_iterations : int
-        Most iterations of one descent, after which the responses are traced anew, as at some kinks it goes to
-        and fro.
+        Most iterations of one descent; then the responses are traced anew, as the descent may alternate at a
+        kink.
     min_change : float
         Relative change of the greatest height in an iteration below which a descent ends.
     min_improvement : float
@@ -407,15 +411,16 @@ class DescentOptions(Frozen):
     height_tolerance : float
         Relative height above the expected one, above which another peak has not been followed.
     out_of_range_height : float
-        Relative height that stands for a peak that has left the range of frequencies, so that no step leads
+        Relative height that replaces that of a peak which has left the frequency range, so that no step leads
         there.
     kink_tolerance : float
         Relative difference of two peaks up to which they meet in one kink.
     value_rounding : float
-        Distance from an end of a number's range, relative to it, below which the number is put there: it is
-        rounding.
+        Distance of a number from an end of its range, relative to the range, below which it is set to that
+        end.
     bound_tolerance : float
-        Distance from an end of a number's range, relative to it, below which the optimum lies at that end.
+        Distance from an end of a number's range, relative to the range, below which the optimum lies at that
+        end.
     search : SearchOptions
         Options of the search along a single number.
     """
@@ -435,6 +440,6 @@ class DescentOptions(Frozen):
     search: SearchOptions = SearchOptions()
 
 
-TRACKING = TrackingOptions()  # where nothing else is said
+TRACKING = TrackingOptions()  # the default
 SEARCH = SearchOptions()
 DESCENT = DescentOptions()

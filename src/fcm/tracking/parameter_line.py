@@ -1,4 +1,4 @@
-"""A balance whose scene has numbers that move along a line: values = origin + s * direction."""
+"""A balance with numbers of its scene on a line: values = origin + s * direction."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class ParameterLine(NamedTuple):
-    """A line in the space of some numbers of a scene: how they move together with the parameter s."""
+    """A line in the space of some numbers of a scene, with the parameter s."""
 
     numbers: tuple[Number, ...]
     origin: FloatArray  # (number,)
@@ -41,7 +41,7 @@ class ParameterLine(NamedTuple):
             for number, value in zip(self.numbers, values, strict=True)
             for address, one in number.values(value).items()
         }
-        # the rates there are taken of what it is made of; the level is relative to what was written
+        # a fixed draft gives the rates there; the level must stay relative to the written forces
         fix = all(number.key != LEVEL for number in self.numbers)
         keys = (number.key for number in self.numbers)
         swept = {**scene.parameters, **dict(zip(keys, values, strict=True))}
@@ -54,9 +54,9 @@ def line_along(number: Number) -> ParameterLine:
 
 
 class ParameterRates(NamedTuple):
-    """Rates of the balance by s.
+    """Rates by s of the residual and the contact forces (unknown,), and of X (harmonic, dof).
 
-    Of residual and contacts' forces (unknown,); by a structure of X (harmonic, dof).
+    displacements is None if only numbers of contacts or the excitation vary.
     """
 
     residual: FloatArray
@@ -71,16 +71,16 @@ class ParameterRates(NamedTuple):
 
 
 def _excitation(system: System, line: ParameterLine) -> list[tuple[ComplexArray, ComplexArray]]:
-    """Forces on the modes at s = 0 and their rates by s; then the same of those that grow with omega^2."""
+    """Forces on the modes at s = 0 with their rates by s; then those that grow with omega^2, likewise."""
     origin, one = (linear_of(line.scene(system.scene, s)) for s in (0.0, 1.0))
     return [(origin.force, one.force - origin.force), (origin.square, one.square - origin.square)]
 
 
 class VariedBalance:
-    """The balance of a system (of one curve) that `set_parameter` moves along a line, with the rates by s.
+    """The balance of a system (of one curve) that `set_parameter` moves along a line, with its rates by s.
 
-    A number of a contact is changed in the balance as it is, and so are the forces that a level multiplies;
-    another number of the structure makes another balance.
+    Numbers of contacts and amplitudes of forces are changed in the existing balance. Other numbers of the
+    structure require a new balance.
     """
 
     def __init__(self, system: System, line: ParameterLine) -> None:
@@ -89,9 +89,9 @@ class VariedBalance:
         fields = {address[-1] for number in line.numbers for address in number.addresses}
         rigid = bool((system.linear.natural == 0.0).any())
         self.structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
-        # where contacts start unstressed depends on their stiffness
+        # the unstressed positions of contacts depend on their stiffness
         self.structure |= "k_u" in fields and system.scene.start is not None
-        # of one number, or of those that no product of two makes, the contacts' rates are the same everywhere
+        # the contacts' rates are constant for a single number, or without products of two numbers
         self._constant = len(line.numbers) == 1 or "gap" not in fields
         excited = tables <= {"force", "base"} and fields <= {"amplitude", "acceleration"}
         self._excitation = _excitation(system, line) if excited else None
@@ -101,10 +101,10 @@ class VariedBalance:
         self._rates: list[Rates] = []
         self._contact_rates: FloatArray | None = None
         self._at_zero: FloatArray | None = None
-        self.numbers = contact_numbers(system.scene)  # mu, k_u, k_v, n_0 (contact, 4) where they are
+        self.numbers = contact_numbers(system.scene)  # present mu, k_u, k_v, n_0 (contact, 4)
 
     def another(self) -> VariedBalance:
-        """The varied balance with a balance of its own; what is the same everywhere is computed once."""
+        """A copy with a balance of its own; it shares everything that does not depend on s."""
         if not self.structure and self._constant:
             self._numbers(0.0)
         made = copy(self)
@@ -119,14 +119,14 @@ class VariedBalance:
         return self._system
 
     def set_parameter(self, s: float) -> None:
-        """Sets the varied numbers to parameter s of the line, and updates the balance."""
+        """Set the numbers to those at s, and update the balance."""
         if s == self.s:
             return
         self.s, self._system = s, None
         if self._excitation is not None:
             constant, square = (origin + s * rate for origin, rate in self._excitation)
             self.balance.receptance.set_external_forces(constant, square)
-            self.balance.largest[:] = 0.0  # units are of the motion there, as of a balance of its own
+            self.balance.largest[:] = 0.0  # units follow the motion there, as in a new balance
             return
         if self.structure:
             self.balance = self.system.new_balance()
@@ -139,10 +139,7 @@ class VariedBalance:
             self._contact_rates = None
 
     def _numbers(self, s: float) -> FloatArray:
-        """Parameters of the contacts (contact, 4) at s.
-
-        On a line where their rates are the same everywhere they follow from those.
-        """
+        """Parameters of the contacts (contact, 4) at s; by their rates where these are constant."""
         if self.structure or not self._constant:
             return contact_numbers(self.system.scene)
         if self._at_zero is None:
@@ -151,7 +148,7 @@ class VariedBalance:
         return numbers
 
     def by_s(self, z: FloatArray) -> ParameterRates:
-        """Rates by s at fixed z, where the balance was evaluated last."""
+        """Rates by s at fixed z, the point of the last evaluation of the balance."""
         force = self._forces_by_s(z)
         if not self.structure:
             return ParameterRates(apply_compliance(self.balance, force), force, None)
@@ -167,7 +164,7 @@ class VariedBalance:
         return ParameterRates(residual, force, displacements)
 
     def _forces_by_s(self, z: FloatArray) -> FloatArray:
-        """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""
+        """Rates (unknown,) of the contact forces by s; a preload acts like a mean normal displacement."""
         balance, rates, normal = self.balance, self.contact_rates(), self.balance.directions - 1
         found = np.zeros((self.contacts, balance.width))
         k_v, n_0 = self.numbers[:, 2], self.numbers[:, 3]
@@ -176,7 +173,7 @@ class VariedBalance:
         by_load = np.asarray(balance.tangent)[preload, :, normal]
         by_load[:, normal] += np.asarray(balance.counted)[preload]
         by_load /= k_v[preload, None]
-        by_load[:, normal] -= n_0[preload] > 0.0  # what the structure at rest is in equilibrium with
+        by_load[:, normal] -= n_0[preload] > 0.0  # the preload that the structure at rest balances
         found[preload] = rates[preload, 3:] * by_load
         for c in np.flatnonzero(moved & ~preload).tolist():
             here = slice(c * balance.width, (c + 1) * balance.width)

@@ -1,4 +1,4 @@
-"""Checks of a tracked peak: that it is no trough, and is among the greatest extremes of a cycle."""
+"""Checks of a tracked peak: that it is no trough, and belongs to the greatest extremes of the cycle."""
 
 from __future__ import annotations
 
@@ -12,9 +12,12 @@ from fcm.tracking.tracked_point import TrackedPoint
 
 
 def is_top(problem: ExtendedSystem, point: TrackedPoint) -> bool:
-    """Whether a tracked peak that was measured is one, and not a trough: growth falls along the response."""
+    """Whether a tracked peak is no trough: the growth falls along the response.
+
+    `evaluate_scale` must have been called at the point.
+    """
     if point.corner is None or point.switch:
-        problem.evaluate(point.z)  # no numbers where the response crosses itself, and a peak meets a trough
+        problem.evaluate(point.z)  # nan where the response crosses itself, and a peak meets a trough
         gradient = np.asarray(problem.jacobian)[problem.n, : problem.n + 1]
         return bool(gradient @ (np.asarray(problem.scale)[:-1] * problem.row) < 0.0)
     corner = Corner(problem, point.corner)
@@ -25,7 +28,7 @@ def is_top(problem: ExtendedSystem, point: TrackedPoint) -> bool:
 
 
 def overtaken(problem: ExtendedSystem, z: FloatArray) -> bool:
-    """Whether other extremes than those of the place measured last are the greatest of a cycle."""
+    """Whether other extremes than those fixed by the last `evaluate_scale` are the greatest of the cycle."""
     if problem.angles is None:
         return False
     problem.varied.set_parameter(float(z[-1]))

@@ -1,8 +1,8 @@
 r"""The envelope of several tracked peaks over a number, and its least value.
 
-A curve of peaks is cut into pieces on which the number rises or falls, and each piece is a function of the
-number, evaluated by Newton's method to rounding. The greatest of all is piecewise smooth: its least value is
-where a piece turns, where two pieces cross, or at an end of one.
+A curve of peaks is cut into pieces on which the number is monotone. Each piece is a function of the number,
+evaluated by Newton's method to rounding. The envelope, the greatest of all, is piecewise smooth. Its least
+value is at a minimum of a piece, at a crossing of two pieces, or at an end of one.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
 from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
-INCOMPLETE = "unfinished"  # what the least so far is of, where it was still sought
+INCOMPLETE = "unfinished"  # kind of the least value of an interrupted search
 
 
 class Target(NamedTuple):
@@ -42,17 +42,17 @@ class PieceHeight(NamedTuple):
 
 
 class EnvelopeMinimum(Frozen):
-    """The least value of an envelope on a line: the value of s, the amplitude, and which pieces have it."""
+    """The least value of an envelope on a line: the value of s, the amplitude, and the pieces with it."""
 
     s: float
     value: float
     active: tuple[PieceHeight, ...]
-    kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher, "bound", "flat", "trials",
+    kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher peak, "bound", "flat", "trials",
     # "unfinished"
-    between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
-    flat: tuple[tuple[int, float, float], ...] = ()  # a number's index, and between which of its values, here
-    # of s, the greatest does not depend on it
-    tried: tuple[tuple[float, float], ...] = ()  # s, rising, and the greatest there, if found by trials
+    between: tuple[float, float] | None = None  # neighbouring values of s, if it was found by trials
+    flat: tuple[tuple[int, float, float], ...] = ()  # index of a number, and the two values of it, here of s,
+    # between which the envelope does not depend on it
+    tried: tuple[tuple[float, float], ...] = ()  # ascending s, and the greatest height, if found by trials
 
 
 class MonotonePiece:
@@ -92,7 +92,7 @@ class MonotonePiece:
         )
 
     def point(self, s: float, rising: float) -> TrackedPoint | None:
-        """The point of the curve, along which s rises (1) or falls (-1); None where it is not come to."""
+        """The point at s of a curve along which s rises (1) or falls (-1); None if it is not found."""
         if (solved := self._solved(s)) is None:
             return None
         _, newton = solved
@@ -100,8 +100,7 @@ class MonotonePiece:
         return TrackedPoint(z, t if t[-1] * rising > 0.0 else -t, self._guess(s)[3])
 
     def _guess(self, s: float) -> tuple[FloatArray, int, float, Condition | None]:
-        """A guess at s by the chord: z, which chord, which part of it, and the corner that is tracked
-        there."""
+        """A guess at s by the chord: z, the index of the chord, the part of it, and the tracked corner."""
         i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
         one, other = self.tracked_points[i], self.tracked_points[i + 1]
         part = (s - self.s[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
@@ -122,7 +121,7 @@ class MonotonePiece:
         return self._problems[corner]
 
     def _height(self, problem: ExtendedSystem, newton: Newton) -> PieceHeight:
-        """Amplitude at a point, and its rate by s along the curve."""
+        """Amplitude at the point found, and its rate by s along the curve."""
         z, t = np.array(newton.z), np.asarray(newton.tangent) * np.asarray(newton.scale)
         value, slope = problem.amplitude_along(z, t / t[-1], self.dof)
         return PieceHeight(value, slope, z, self.dof)
@@ -131,7 +130,7 @@ class MonotonePiece:
 def pieces_of(
     setup: TrackingSetup, tracks: Sequence[SpecialPointCurve], target: Target
 ) -> list[MonotonePiece]:
-    """The monotone pieces of the curves that count for a target; of peaks where they are greatest."""
+    """The monotone pieces of the curves that count for a target; troughs are left out."""
     found = []
     for track in tracks:
         kind, which = track.condition.kind, track.condition.which
@@ -142,7 +141,7 @@ def pieces_of(
 
 
 def _monotone(track: SpecialPointCurve) -> list[list[int]]:
-    """Indices of runs of points along which s rises or falls, and that are greatest."""
+    """Indices of runs of points along which s is monotone, without troughs."""
     parts: list[list[int]] = [[]]
     for i in range(len(track.s)):
         if not track.greatest[i] and not track.points[i].turn:
@@ -174,13 +173,13 @@ def envelope_minimum(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> E
 
 
 class _Envelope:
-    """The envelope of the pieces: the greatest as a function of s, exactly."""
+    """The envelope of the pieces as an exact function of s."""
 
     def __init__(self, pieces: Sequence[MonotonePiece], setup: TrackingSetup) -> None:
         self.pieces, self.options = pieces, setup.options.envelope
 
     def highest(self, s: float) -> tuple[PieceHeight, MonotonePiece]:
-        """The highest piece at s; infinite where none is known."""
+        """The height of the highest piece at s, and the piece; infinite where none is known."""
         rough = {piece: piece.roughly(s) for piece in self.pieces if piece.covers(s)}
         if not rough:
             return PieceHeight(np.inf, 0.0, np.zeros(0), -1), self.pieces[0]
@@ -201,7 +200,7 @@ class _Envelope:
 def _where_flat(
     envelope: _Envelope, setup: TrackingSetup, grid: FloatArray, best: EnvelopeMinimum
 ) -> EnvelopeMinimum:
-    """The middle of the stretch on which the envelope does not depend on the number; else best."""
+    """The middle of the flat stretch at the least value, on which s has no effect; best without one."""
     span, options = setup.span[1] - setup.span[0], setup.options.envelope
 
     def flat(s: float) -> bool:
@@ -227,8 +226,10 @@ def _where_flat(
 
 
 def spans_beside_flat(setup: TrackingSetup, best: EnvelopeMinimum | None) -> list[tuple[float, float]]:
-    """What is left of the span below and above a least that is flat over most of it, each with as much again
-    of the flat stretch; none otherwise."""
+    """The rest of the span below and above a flat stretch over most of it; empty without such a stretch.
+
+    Each part includes a piece of the flat stretch that is as wide as itself.
+    """
     (low, high), options = setup.span, setup.options.envelope
     if best is None or not best.flat:
         return []
@@ -240,7 +241,7 @@ def spans_beside_flat(setup: TrackingSetup, best: EnvelopeMinimum | None) -> lis
 
 
 def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, fine: float) -> float:
-    """The last value on one side, from s over points of the grid, at which it is flat."""
+    """The last flat value on one side of s, over points of the grid and then by bisection."""
     for there in further.tolist():
         if not flat(there):
             while abs(there - s) > fine:
@@ -252,7 +253,7 @@ def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, f
 
 
 def uncovered_values(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> list[float]:
-    """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
+    """Values of s that no piece covers: ends of the span, and middles of gaps."""
     low, high = setup.span
     least, found, last = setup.options.envelope.min_gap * (high - low), [], low
     if not pieces:
@@ -265,7 +266,7 @@ def uncovered_values(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> l
 
 
 def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[float, float, float]:
-    """A value of s and its neighbours, among which those of the highest piece itself."""
+    """The grid value i and its neighbours, which bracket points of the highest piece on both sides."""
     s = float(grid[i])
     top = max((p for p in pieces if p.covers(s)), key=lambda p: p.roughly(s))
     low, high = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, len(grid) - 1)])
@@ -314,7 +315,7 @@ def _refined(
 
 
 def _ends_higher(piece: MonotonePiece, s: float, value: float, width: float) -> bool:
-    """Whether a piece that does not cover s ends higher than a value close by."""
+    """Whether a piece that does not cover s has an end close by that is higher than a value."""
     ends = ((piece.s[0], piece.height[0]), (piece.s[-1], piece.height[-1]))
     near = any(abs(end - s) < width and height > value for end, height in ends)
     return near and not piece.s[0] < s < piece.s[-1]
@@ -326,7 +327,7 @@ def _turned(
     between: tuple[float, float],
     setup: TrackingSetup,
 ) -> tuple[str, float]:
-    """The value of s where the envelope turns: where pieces cross, or one has its least value."""
+    """The kind and value of s of a minimum of the envelope: where pieces cross, or one has its minimum."""
     (one, other), span = pieces, setup.span[1] - setup.span[0]
     options = setup.options.envelope
     fine = options.value_tolerance * min(span, max(map(abs, between)))
@@ -340,7 +341,7 @@ def _turned(
 
 
 def _root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
-    """A zero of a function between two ends, or the end with the lesser value where it keeps its sign."""
+    """A zero of a function between two ends; if it keeps its sign, the end with the lesser magnitude."""
     if function(low) * function(high) > 0.0:
         return low if abs(function(low)) < abs(function(high)) else high
     return float(brentq(function, low, high, xtol=tolerance))

@@ -1,4 +1,4 @@
-"""Stability of the motion at the points of a tracked curve: at a peak where it is unstable, none stays."""
+"""Stability of the motion at the points of a tracked curve."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from fcm.tracking.curve import SpecialPointCurve, with_points
 from fcm.tracking.extended_system import ExtendedSystem, Kind
 from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
-Seen = tuple[TrackedPoint, float]  # a point, and what is said of it
+Seen = tuple[TrackedPoint, float]  # a point, and its stability
 
 
 def stability_along(setup: TrackingSetup, track: SpecialPointCurve) -> tuple[SpecialPointCurve, FloatArray]:
-    """The curve and the stability of its points (point,): 1 stable, 0 unstable, NaN where it is unknown.
+    """The curve and the stability of its points (point,): 1 stable, 0 unstable, NaN unknown.
 
-    As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
-    curve is that with two more points wherever this changes, one on either side.
+    As along a response, a fold belongs to its stable side, and so does a corner at which the response turns
+    back. The curve has two further points at each change of stability, one on either side.
     """
     return _StabilityAlongCurve(setup, track).run()
 
@@ -47,7 +47,7 @@ class _StabilityAlongCurve:
         return track, np.array([stable for _, stable in found])
 
     def _limit(self, one: Seen, other: Seen) -> list[Seen]:
-        """Points on both sides of where stability changes between two; none if it does not."""
+        """Points on both sides of a change of stability between two points; none if it does not change."""
         before, ends = one[1], [one, other]
         if _same(before, other[1]):
             return []
@@ -60,7 +60,7 @@ class _StabilityAlongCurve:
         return [end for end, old in zip(ends, (one, other), strict=True) if end is not old]
 
     def _middle(self, one: TrackedPoint, other: TrackedPoint) -> TrackedPoint | None:
-        """The point of the curve between two, on the plane half way across their chord."""
+        """The point of the curve in the plane that bisects the chord of two points; None if not found."""
         at = other.corner if one.switch else one.corner
         problem = self.setup.tracked(at or self.track.condition)
         z = 0.5 * (one.z + other.z)
@@ -81,13 +81,13 @@ class _StabilityAlongCurve:
         problem.evaluate_scale(point.z)
         fold = self.track.condition.kind is Kind.FOLD
         signs = {1.0, -1.0} if fold else _signs(problem, point)
-        if max(signs) < 0.0:  # of the real multipliers an odd number is above 1
+        if max(signs) < 0.0:  # an odd number of real multipliers is above 1
             return 0.0
         at_fold = min(signs) < 0.0
         return self._multipliers().classify(np.array(point.z[:-1]), at_fold).stable
 
     def _multipliers(self) -> Multipliers:
-        """The workspace for multipliers with the numbers as the problem has them."""
+        """The workspace for multipliers, with the present numbers of the problem."""
         varied = self.problem.varied
         if self.known is None or varied.structure:
             known = multipliers_of(varied.system, self.highest, self.setup.options.floquet)
@@ -103,7 +103,7 @@ def _same(one: float, other: float) -> bool:
 
 
 def _signs(problem: ExtendedSystem, point: TrackedPoint) -> set[float]:
-    """Signs of the balance's determinant at a point; at a corner of the response those on both sides."""
+    """Signs of the determinant of the balance at a point; at a corner of the response, on both sides."""
     scale, y = np.asarray(problem.scale)[:-1], np.array(point.z[:-1])
     ahead = problem.options.stability.corner_side * scale * np.asarray(problem.row)
     places = [y] if point.corner is None and not point.switch else [y - ahead, y + ahead]

@@ -1,4 +1,4 @@
-"""Starts of tracked curves: the special points of ordinary curves at some values of the number."""
+"""Starts of tracked curves: the special points of response curves at some values of the number."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from fcm.tracking.options import TRACKING, TrackingOptions
 
 
 class SpecialPoints(NamedTuple):
-    """Points z (unknown + 1,) at which conditions nearly hold, and what may be missing.
+    """Points z (unknown + 1,) at which conditions nearly hold.
 
-    faults: what is wrong with their curves; uncertain: frequencies [rad/s] at which the level, or a fold of
-    it, was not followed to its end, so that branches may be missing.
+    faults: text on faults of the response curves. uncertain: frequencies [rad/s] at which a curve of the
+    level, or a fold of it, was not followed to its end, so that branches may be missing.
     """
 
     points: list[tuple[Condition, FloatArray]]
@@ -35,10 +35,7 @@ class SpecialPoints(NamedTuple):
 def special_points(
     system: System, conditions: list[Condition], options: TrackingOptions = TRACKING
 ) -> SpecialPoints:
-    """The special points of a system's curves.
-
-    Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
-    """
+    """Trace all branches of a system, and find the special points of each condition on them."""
     response = every_branch(system)
     curves, branches = response.traced, response.traced.branches
     levels = tuple(one.omega for one in curves.found if not one.complete)
@@ -53,7 +50,7 @@ def special_points(
 
 
 def _amplitudes(quantities: Sequence[ReportedQuantities]) -> list[FloatArray]:
-    """Amplitudes along each path, (point, dof), 0 of what moves by rounding alone."""
+    """Amplitudes (point, dof) along each path, 0 where a degree of freedom moves only by rounding."""
     every = [one.amplitude for one in quantities]
     moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0)) if every else 0.0
     return [one * moves for one in every]
@@ -77,7 +74,7 @@ def _points(
 
 
 def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
-    """Indices of peaks: of the highest point where it is not an end, and of those that stand out."""
+    """Indices of peaks inside the curve: the highest one, and others with enough prominence."""
     curves, highest = options.curves, amplitude.max(initial=0.0)
     tops = np.flatnonzero(local_maxima(amplitude[:, None], curves.min_height)[:, 0])
     outstanding = [
@@ -90,7 +87,7 @@ def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDA
 def _onsets(
     system: System, path: Path, condition: Condition, options: TrackingOptions = TRACKING
 ) -> Iterator[FloatArray]:
-    """Points of onsets, where a function of a contact changes its sign between points, by the chord."""
+    """Yield points at which an onset function changes its sign, by linear interpolation."""
     law, c = system.laws()[condition.which], condition.which
     blocks = [np.ascontiguousarray(z[c * law.width : (c + 1) * law.width]) for z in path.z]
     value = np.array([onset(law, x, condition.onset, system.harmonics, options).value for x in blocks])

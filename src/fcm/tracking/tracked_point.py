@@ -1,4 +1,4 @@
-"""Points of tracked curves, how these end, and what all curves of a run share."""
+"""Points of tracked curves, their endings, and the setup that all curves of a run share."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Ending(Enum):
 
     @property
     def whole(self) -> bool:
-        """Whether the curve was followed to its end, or to the end that was asked for."""
+        """Whether the curve was followed to its end, or to an end of the requested range."""
         return self not in (Ending.CORNER, Ending.STALLED, Ending.LONG)
 
 
@@ -39,10 +39,10 @@ class TrackedPoint(Frozen):
 
     z: FloatArray
     direction: FloatArray
-    corner: Condition | None = None  # of the response, where that is what is special
+    corner: Condition | None = None  # the corner of the response, where this is the special point
     turn: bool = False  # the number turns back
-    user_point: bool = False  # the number has a value that was asked for
-    switch: bool = False  # a corner begins or ends to be what is special
+    user_point: bool = False  # the number has a requested value
+    switch: bool = False  # a corner becomes the special point, or ceases to be it
 
 
 class TrackingSetup(Frozen):
@@ -52,8 +52,8 @@ class TrackingSetup(Frozen):
     line: ParameterLine
     span: tuple[float, float]  # of s
     user_values: tuple[float, ...] = ()
-    step: float = 0.05  # longest
-    peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
+    step: float = 0.05  # longest step
+    peaks_only: bool = False  # end a curve where the number turns back and a peak meets a trough
     options: TrackingOptions = TRACKING
 
     @cached_property

@@ -1,8 +1,8 @@
-"""The least peak by trials: of ordinary curves alone, where the peaks cannot be followed.
+"""The least peak by trials: response curves only, where the peaks cannot be followed.
 
-First at values of the number over all of its range, then ever nearer to the lowest of those that are lower
-than their neighbours, and to the lowest of all until it is about as high as its neighbours. A lower one
-between two of them would be missed, so what is said is between which.
+Values over the whole range of the number are tried first. Then the lowest local minima of these are refined,
+and the lowest of all until it is about as high as its neighbours. A lower peak between two tried values may
+be missed, so the result states its neighbours.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fcm.tracking.peak_envelope import EnvelopeMinimum
 
 
 def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
-    """The least of the greatest peaks at the values that were tried; None where nothing has a peak."""
+    """The least of the greatest peaks at the tried values; None if there is no peak."""
     low, high = search.span
     options = search.options.tracking.trials
     for value in np.linspace(low, high, options.values).tolist():
@@ -49,11 +49,10 @@ def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
 
 
 def error_of_higher(search: LowestPeakSearch, best: EnvelopeMinimum) -> tuple[float, float]:
-    """The error of the higher peaks at the values that were tried next to the least, and the value where that
-    is the greatest.
+    """The greatest error of the higher peaks at the tried values next to the least, and its value.
 
-    Such a peak decides which value is the least. A peak of few harmonics alone is of no motion: its error is
-    NaN, as of each that the reference does not have.
+    Such a peak decides which value is the least. The error is NaN if the reference has no such peak: a peak
+    that exists only with few harmonics is spurious.
     """
     worst, at = 0.0, best.s
     for s in best.between or ():
@@ -70,7 +69,7 @@ def error_of_higher(search: LowestPeakSearch, best: EnvelopeMinimum) -> tuple[fl
 
 
 def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | None:
-    """Range of the tried values about one between which all have its height; None where few have."""
+    """Range of tried values about s with the same height; None if it is not wide enough."""
     options = search.options.tracking
     tried = sorted(search.visited_values)
     least = search.visited_values[s].value
@@ -87,7 +86,7 @@ def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | Non
 
 
 def _greatest(search: LowestPeakSearch, value: float) -> float:
-    """Greatest height at a value; a height that cannot be the least where there is no peak."""
+    """Greatest height at a value; without a peak, a height that cannot be the least."""
     if value not in search.visited_values:
         search.greatest_at(value)
     unknown = search.options.tracking.envelope.unknown_factor * max(
@@ -97,7 +96,7 @@ def _greatest(search: LowestPeakSearch, value: float) -> float:
 
 
 def _local_minima(search: LowestPeakSearch) -> list[float]:
-    """The values that were tried with a lower peak than their neighbours, the lowest first."""
+    """The tried values with no lower neighbour, the lowest first."""
     tried = sorted(search.visited_values)
     height = np.array([search.visited_values[value].value or np.inf for value in tried])
     around = np.pad(height, 1, constant_values=np.inf)
@@ -106,13 +105,13 @@ def _local_minima(search: LowestPeakSearch) -> list[float]:
 
 
 def _is_flat(search: LowestPeakSearch, s: float, tolerance: float) -> bool:
-    """Whether a value that was tried, and its neighbours, have peaks of the same height to a tolerance."""
+    """Whether a tried value and its neighbours have peaks of the same height to a tolerance."""
     heights = [search.visited_values[one].value for one in {s, *_neighbours(search, s)}]
     return max(heights) - min(heights) <= tolerance * max(heights)
 
 
 def _neighbours(search: LowestPeakSearch, s: float) -> tuple[float, float]:
-    """The tried values next to a value, on either side."""
+    """The tried values next to s on either side; s itself at an end."""
     tried = sorted(search.visited_values)
     i = tried.index(s)
     return tried[max(i - 1, 0)], tried[min(i + 1, len(tried) - 1)]

@@ -1,4 +1,4 @@
-"""Tracked curves with exact points at values of the number that are told, as that of the optimum."""
+"""Tracked curves with exact points at given values of the number, such as that of the optimum."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 def with_user_points(
     setup: TrackingSetup, track: SpecialPointCurve, values: Sequence[float]
 ) -> SpecialPointCurve:
-    """A curve with points at values of s where it passes them, by Newton's method from the chord."""
+    """Add points at values of s that a curve passes, by Newton's method from the chord."""
     points = list[TrackedPoint]()
     for i, point in enumerate(track.points):
         points.append(point)
@@ -34,7 +34,7 @@ def with_user_points(
 def values_at_height(
     setup: TrackingSetup, tracks: Sequence[SpecialPointCurve], targets: Sequence[Target], limit: float
 ) -> list[float]:
-    """Values of s at which a peak of a target has a height, exactly."""
+    """Exact values of s at which a peak of a target has the height limit."""
     found = list[float]()
     for piece in (piece for target in targets for piece in pieces_of(setup, tracks, target)):
         off: FloatArray = piece.height - limit
