@@ -1,6 +1,6 @@
-"""Periodic motions: shooting, Floquet's multipliers, curves of them, motions of several periods.
+"""Periodic motions by shooting: Floquet multipliers, continuation, motions of several periods.
 
-The names below are imported when first used: its options are those of every response.
+The names below are imported on first use, since every response needs the options of this package.
 """
 
 from typing import TYPE_CHECKING

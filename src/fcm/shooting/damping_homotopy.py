@@ -1,4 +1,4 @@
-"""A periodic motion that is reached from one with more damping, which is taken away in steps."""
+"""Homotopy in the damping: a periodic motion reached from one with more damping."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 
 
 def more_damped(scene: Scene, options: ShootingOptions = SHOOTING) -> tuple[Scene, float] | None:
-    """The scene with all damping raised, and the factor; None if it has enough damping, or none at all."""
+    """The scene with all damping raised, and the factor; None if its damping suffices, or a mode has none."""
     least = float(scene.modal.damping.min())
     if not 0.0 < least < options.damping.damping_ratio:
         return None
@@ -29,7 +29,7 @@ def damped(scene: Scene, factor: float) -> Scene:
 def less_damped(
     scene: Scene, z: FloatArray, factor: float, options: ShootingOptions = SHOOTING
 ) -> FloatArray | None:
-    """The motion of a scene from z, one with damping larger by a factor; None where the way ends before."""
+    """Follow a motion z with damping larger by a factor to the scene's damping; None if this fails."""
     points = [(np.log(factor), z)]
     ratio = options.damping.first_factor
     while factor > 1.0 and ratio < options.damping.max_factor:
@@ -46,7 +46,7 @@ def less_damped(
 
 
 def _guesses(points: list[tuple[float, FloatArray]], at: float) -> Iterator[FloatArray]:
-    """Guesses for the next damping: along the chord through the last two points, and the last one."""
+    """Yield guesses for the next damping: the secant predictor, and the last point."""
     if len(points) > 1:
         (before, one), (last, other) = points
         yield other + (other - one) * (at - last) / (last - before)
@@ -54,7 +54,7 @@ def _guesses(points: list[tuple[float, FloatArray]], at: float) -> Iterator[Floa
 
 
 def _corrected(problem: OrbitProblem, guesses: Iterator[FloatArray]) -> Iterator[FloatArray]:
-    """The motions that Newton's method comes to at the frequency of each guess."""
+    """Yield the motions that Newton's method finds at the frequency of each guess."""
     newton = Newton(problem)
     for guess in guesses:
         if correct_at_frequency(newton, guess):

@@ -1,4 +1,4 @@
-"""Floquet's multipliers of a motion in time, by the monodromy matrix of its sequence of states."""
+"""Floquet multipliers of a motion in time, from the monodromy matrix of its sequence of states."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Floquet:
-    """Computes Floquet `multipliers` of motions of a scene at any frequency; a workspace."""
+    """Workspace that computes the Floquet `multipliers` of motions of a scene at any frequency."""
 
     def __init__(self, system: EquationsOfMotion, options: StabilityOptions = STABILITY) -> None:
         scene, unit = system.scene, 1.0 / np.sqrt(system.scene.modal.mass)
@@ -40,8 +40,8 @@ class Floquet:
     def multipliers(self, segments: Segments, duration: float) -> ComplexArray:
         """The multipliers of segments that last for a duration [s], after which the motion repeats.
 
-        Of the modal displacements and velocities, and of the sliders that remember where they rest when the
-        period begins; infinite where a disturbance grows beyond all numbers.
+        The state of a disturbance has the modal displacements and velocities, and the sliders that keep their
+        rest position at the start of the period. Multipliers are infinite where a disturbance overflows.
         """
         self.states.take(segments, duration)
         self.monodromy.follow(2.0 * np.pi / duration)

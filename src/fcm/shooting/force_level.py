@@ -1,10 +1,10 @@
-"""Motions found by raising the level of the forces from rest, with the exact motion itself.
+"""Exact motions found by continuation in the level of the forces, from rest.
 
-The level is followed at the frequencies at which a balance follows it (`branches.force_level`). It goes from
-nearly 0, where the motion is linear, until it is well beyond the last passing of 1 by the balance of a few
-harmonics. Every passing of the level 1 is an exact motion straight away. The level is also followed, both
-ways, from motions known there that this curve does not pass, or does not reach as it stalls. Where it turns
-back below 1 the window of several motions may be at other frequencies (`level_folds`).
+The level is the parameter at the frequencies that a balance uses for this (`branches.force_level`). The curve
+goes from nearly 0, where the motion is linear, to well beyond the last crossing of level 1 by the balance of
+a few harmonics. Every crossing of level 1 is an exact motion. Curves are also followed, in both directions,
+from known motions that this curve does not pass, or does not reach because it stalls. Where a curve turns
+back below level 1, several motions may exist at other frequencies (`level_folds`).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class ForceLevelShooting(OrbitProblem):
-    """The closure of one period at omega [rad/s], z = (q, q', f, level) at the forces' angle 0."""
+    """The closure of one period at a fixed omega [rad/s]; z = (q, q', f, level) at the forces' angle 0."""
 
     def __init__(self, scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> None:
         super().__init__(scene, options=options)
@@ -47,18 +47,18 @@ class ForceLevelShooting(OrbitProblem):
             return None
 
     def evaluate_scale(self, z: FloatArray) -> int:
-        """Fill the units of lengths at z, see `OrbitProblem.measure`; the level by itself."""
+        """Fill the units at z, see `OrbitProblem.evaluate_scale`; the level is its own unit."""
         super().evaluate_scale(z)
         self._scale[-1] = max(abs(float(z[-1])), self.options.level.level_floor)
         return 0
 
     def evaluate_outputs(self, z: FloatArray, direction: FloatArray) -> int:
-        """Report nothing: only what the level passes matters."""
+        """Report no amplitudes: only crossings of level 1 matter."""
         return 0
 
 
 class FrequencyShooting(OrbitProblem):
-    """The closure of one period, z = (q, q', f, omega), with all harmonic forces times its `load`."""
+    """The closure of one period, z = (q, q', f, omega), with all harmonic forces times `load`."""
 
     @property
     def load(self) -> float:
@@ -83,10 +83,10 @@ Find = Callable[..., "LevelMotions"]
 
 
 class LevelMotions(Frozen):
-    """Motions (unknown + 1,) that the level leads to from a frequency, which is last in them.
+    """Motions (unknown + 1,), with their frequency last, found by continuation in the level at omega.
 
-    omega: that frequency [rad/s]; complete: whether the level was followed to its end; out_of_time: whether
-    it was not because its time was over.
+    omega: the frequency [rad/s] of the continuation. complete: whether the curve was followed to its end.
+    out_of_time: whether it was not because its time was over.
     """
 
     omega: float
@@ -98,12 +98,12 @@ class LevelMotions(Frozen):
 def level_motions(
     scene: Scene, known: Known, bounded: BranchBudget, find: Find | None = None
 ) -> Iterator[LevelMotions]:
-    """Motions that the level leads to from each frequency at which it is followed.
+    """Yield the motions found by continuation in the level at each of several frequencies.
 
-    Each has an equal share of the time. Where that was too short, and others leave more than it, the level is
-    followed once more, to the end.
+    Each frequency has an equal share of the time. Where that was too short, and the others leave a larger
+    share, the continuation is repeated.
 
-    known : the motions (unknown + 1,) that are known at a frequency. find : as `level_motions_at`, otherwise.
+    known : gives the known motions (unknown + 1,) at a frequency. find : replaces `level_motions_at`.
     """
     from fcm.branches.force_level import level_frequencies
     from fcm.harmonic_balance.system import System
@@ -130,9 +130,10 @@ def level_motions_at(
     bounded: BranchBudget,
     along: Follow = follow,
 ) -> LevelMotions:
-    """Motions that the level leads to at one frequency; one is the balance of one harmonic.
+    """Motions found by continuation in the level at one frequency; one is the system of one harmonic.
 
-    What was found is there, too, where look raises `WorkLimitError`. Curves are followed by `along`.
+    If the poll of bounded raises `WorkLimitError`, the motions found so far are returned. Curves are followed
+    by `along`.
     """
     from fcm.harmonic_balance.work_budget import WorkLimitError
 
@@ -154,7 +155,7 @@ def _followed(
     found: list[FloatArray],
     follow: Follow,
 ) -> bool:
-    """Follow the level and add what it leads to; whether it was followed to its end."""
+    """Follow the curves in the level and add their motions to found; return whether they are complete."""
     from fcm.branches.level_folds import level_folds
     from fcm.branches.linear_limits import lowest_linear_limit
     from fcm.branches.options import LEVEL_CURVE
@@ -184,7 +185,7 @@ def _followed(
 
 
 class _InterruptibleFollow(Frozen):
-    """Follows a curve as `follow`, and hands over its path also where poll raises `WorkLimitError`."""
+    """Follows a curve by `follow`, and gives its path to passes even if poll raises `WorkLimitError`."""
 
     poll: Poll
     passes: Callable[[Path], None]
@@ -214,7 +215,7 @@ def _from_rest(
 ) -> tuple[Path] | None:
     """The curve from where contacts are linear to the end of the span; None if it cannot be followed.
 
-    One that stalls is as far as it goes: from there on it would not be followed by other steps either.
+    A curve that stalls is returned as far as it goes: other steps would not follow it further.
     """
     options = problem.options.level
     for step in (options.max_step, options.retry_fraction * options.max_step):
@@ -229,7 +230,7 @@ def _from_rest(
 def _beyond_level_folds(
     scene: Scene, turns: Sequence[LevelFold], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[FloatArray]:
-    """Stable motions (unknown + 1,) beside folds of the level below 1, at frequencies within the range."""
+    """Yield stable motions (unknown + 1,) near folds of the level below 1, at frequencies in the range."""
     from fcm.branches.level_folds import reaches_level_one, solutions_past_fold
 
     problem, (low, high) = FrequencyShooting(scene, options=options), scene.frequency_range
@@ -244,7 +245,7 @@ def _beyond_level_folds(
 
 
 def _linear_starts(problem: ForceLevelShooting, linear: float) -> Iterator[FloatArray]:
-    """The motions (unknown + 1,) at levels at which contacts are linear, or nearly so."""
+    """Yield motions (unknown + 1,) at levels at which contacts are linear, or nearly so."""
     from fcm.branches.options import LEVEL_CURVE
 
     newton = Newton(problem)
@@ -257,7 +258,7 @@ def _linear_starts(problem: ForceLevelShooting, linear: float) -> Iterator[Float
 
 
 def _highest_level(one: System, omega: float, options: ShootingOptions = SHOOTING) -> float:
-    """Level up to which the curve is followed, told by that of a few harmonics."""
+    """Level up to which the curve is followed, from that of the balance with a few harmonics."""
     from fcm.branches.force_level import solutions
     from fcm.branches.linear_limits import highest_linear_limit
     from fcm.branches.options import LEVEL_CURVE

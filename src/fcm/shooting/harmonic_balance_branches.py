@@ -1,4 +1,4 @@
-"""Branches of the exact motion beside others, from branches of the balance over the range."""
+"""Guesses for further branches of exact motions, from branches of the balance over the range."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Place = tuple[float, State]  # frequency [rad/s], and a guess there
 
 
 def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
-    """Whether a path passes the motion z, which need not be one of its points."""
+    """Whether a path passes through the motion z, even between its points."""
     before, after = path.z[:-1], path.z[1:]
     rise, ahead = after[:, -1] - before[:, -1], z[-1] - before[:, -1]
     across = np.flatnonzero(ahead * (z[-1] - after[:, -1]) <= 0.0)
@@ -45,13 +45,13 @@ def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
 
 
 def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArray) -> bool:
-    """Whether Newton's method leads from a guess to the motion z, at its frequency."""
+    """Whether Newton's method converges from a guess to the motion z, at the frequency of z."""
     there = correct_at_frequency(newton, np.append(guess[:-1], z[-1]))
     return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < PATH.solution_tolerance)
 
 
 def is_stable(found: UncheckedResponse, z: FloatArray) -> bool:
-    """Whether small disturbances of a solution (unknown + 1,) of a balance die out."""
+    """Whether a solution (unknown + 1,) of a balance is stable."""
     from fcm.stability.floquet import multipliers_of
 
     of = multipliers_of(found.system, found.system.scene.frequency_range[1])
@@ -61,8 +61,10 @@ def is_stable(found: UncheckedResponse, z: FloatArray) -> bool:
 def states_of_branches(
     scene: Scene, found: UncheckedResponse, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
-    """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
-    first."""
+    """Yield each end and top of a balance's branches: its height, the point, and guesses around it.
+
+    The nearest guesses come first.
+    """
     for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True):
         around_tops = [
             (top, _around(even, top, options)) for top, even in _tops(path, quantities.amplitude, options)
@@ -79,10 +81,9 @@ def states_of_branches(
 def _tops(
     path: Path, amplitude: FloatArray, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
-    """Points where degrees of freedom are highest, and the points they are chosen from.
+    """Yield points inside a path where degrees of freedom are highest, with the mask they are chosen from.
 
-    Those are the points with an even number of real multipliers above 1, as a mask (point,); tops are inside
-    the range, too.
+    The mask (point,) has the points with an even number of real multipliers above 1.
     """
     even = path.parity > 0.0
     inside = (path.parameter > path.parameter.min()) & (path.parameter < path.parameter.max())
@@ -96,7 +97,7 @@ def _tops(
 
 
 def _around(even: npt.NDArray[np.bool_], top: int, options: ShootingOptions = SHOOTING) -> Iterator[int]:
-    """A top and the points around it that no fold is between, the nearest first."""
+    """Yield a top and the points around it without a fold between, the nearest first."""
     for i in (top, *(top + way * step for step in options.balance.peak_offsets for way in (-1, 1))):
         if 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all():
             yield i
@@ -116,9 +117,10 @@ def _guesses_at(
 def converged_balance(
     scene: Scene, apart: bool, poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[UncheckedResponse]:
-    """The response of the balance with every branch, whose ends and tops lead to those of the exact motion.
+    """Yield the response of the balance with every branch, from which branches of exact motions are found.
 
-    Of many contacts, for which that has one harmonic, only where branches are known to be apart.
+    With many contacts the balance has one harmonic. It is then used only if apart: the balance is known to
+    have more solutions than motions were found.
     """
     from fcm.harmonic_balance.static_equilibrium import RestError
 
@@ -132,10 +134,10 @@ def converged_balance(
 
 
 def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
-    """The response of the balance with every branch, and as many harmonics as it takes.
+    """The response of the balance with every branch, and as many harmonics as its accuracy needs.
 
-    Those by which symmetric motions lose their symmetry are among them; with many contacts it has one
-    harmonic.
+    These include the harmonics with which symmetric motions lose their symmetry. With many contacts the
+    balance has one harmonic.
     """
     from fcm.accuracy.further_levels import with_levels_below_peaks
     from fcm.accuracy.refinement import refined_response, retrace
@@ -161,11 +163,11 @@ def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING)
 def states_across(
     scene: Scene, frequencies: Sequence[float], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> dict[float, list[State]]:
-    """Guesses where branches of the balance pass frequencies [rad/s] that are within the scene's range."""
+    """Guesses where branches of the balance cross frequencies [rad/s] within the scene's range."""
     from fcm.harmonic_balance.static_equilibrium import RestError
 
     whole, (low, high) = scene.whole(), scene.frequency_range
-    inside = [omega for omega in frequencies if low <= omega <= high]  # none where there is no range
+    inside = [omega for omega in frequencies if low <= omega <= high]  # empty without a range
     if not (inside and whole.contacts and whole.modal.frequency.all()):
         return {}
     try:
@@ -180,7 +182,7 @@ def states_across(
 
 
 def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
-    """Places of paths at a frequency, between their points."""
+    """Yield the points of paths at a frequency, by linear interpolation."""
     for path in paths:
         before, after = path.z[:-1], path.z[1:]
         ahead, rise = omega - before[:, -1], after[:, -1] - before[:, -1]
@@ -190,7 +192,7 @@ def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
 
 
 def _single_harmonic(whole: Scene, poll: Poll, options: ShootingOptions) -> System:
-    """The system that is balanced with one harmonic."""
+    """The system with one harmonic."""
     from fcm.harmonic_balance.system import System
 
     one = System(whole, (1,), other_options=options.balance.others)
@@ -199,7 +201,7 @@ def _single_harmonic(whole: Scene, poll: Poll, options: ShootingOptions) -> Syst
 
 
 def _branches_with_few_harmonics(one: System, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
-    """The branches of a few harmonics, or of one where there are many contacts."""
+    """The branches with a few harmonics, or with one for many contacts."""
     from fcm.accuracy.unchecked_response import unchecked_response
 
     return unchecked_response(

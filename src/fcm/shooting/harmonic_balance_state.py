@@ -1,4 +1,4 @@
-"""A state to start from, from a point of harmonic balance."""
+"""Initial states for shooting, from points of the harmonic balance."""
 
 from __future__ import annotations
 
@@ -77,9 +77,9 @@ def balanced_states(
     poll: Callable[[], None] | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> list[State]:
-    """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there.
+    """Guesses from the scene's harmonic balance at a frequency [rad/s]; empty without a solution.
 
-    poll is called now and then.
+    poll is called regularly.
     """
     return balance_solutions(scene, frequency, poll, options)[0]
 
@@ -90,9 +90,9 @@ def balance_solutions(
     poll: Callable[[], None] | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> tuple[list[State], bool]:
-    """Guesses from the scene's balance at a frequency, and whether there are no more.
+    """Guesses from the scene's balance at a frequency, and whether they are complete.
 
-    There are no more if the level of the forces was followed to its end.
+    They are complete if the curve in the level of the forces was followed to its end.
     """
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
@@ -112,10 +112,7 @@ def balance_solutions(
 def computed_state(
     scene: Scene, harmonics: tuple[int, ...], z: FloatArray, options: ShootingOptions = SHOOTING
 ) -> State:
-    """The state of a point of the whole scene's balance, without the friction of contacts that are held.
-
-    Otherwise as `state_of`.
-    """
+    """`state_of` for the scene without held contacts, less the friction of those that are held."""
     state = state_of(scene.whole(), harmonics, z, options)
     return replace(state, friction=state.friction[scene.computed()])
 
@@ -125,7 +122,8 @@ def state_of(
 ) -> State:
     """The state at the forces' angle 0 of a point z of the balance (`fcm.harmonic_balance.residual`).
 
-    The contacts' forces on the balanced motion have more harmonics than that, and move the modes by them.
+    The contact forces of the balanced motion have further harmonics; the state includes the modes' response
+    to these.
     """
     system, highest = EquationsOfMotion(scene, float(z[-1])), options.balance.force_harmonics * max(harmonics)
     driven = list(system.harmonics)
@@ -145,7 +143,7 @@ def state_of(
         friction[j] = f.real.sum()
     modal, rates = scene.modal, system.omega * np.arange(highest + 1)[:, None]
     dynamic = modal.frequency**2 - rates**2 + 2j * modal.damping * modal.frequency * rates
-    # a mode without damping whose own frequency a harmonic has exactly: the forces do not say what it does
+    # the response of an undamped mode exactly at its natural frequency is undetermined: 0
     q = np.divide(wave, modal.mass * dynamic, out=np.zeros_like(wave), where=dynamic != 0.0)
     return State(q.real.sum(axis=0), (1j * rates * q).real.sum(axis=0), friction)
 
@@ -171,7 +169,7 @@ def _modal(
 def _forces(
     contact: Contact, u: complex, v: complex, u_mean: float, v_mean: float
 ) -> tuple[tuple[complex, complex], tuple[float, float], float]:
-    """Balanced friction and normal force of a contact: fundamentals, means, and friction at the angle 0."""
+    """Balanced friction and normal force of a contact: fundamentals, means, and friction at angle 0."""
     law = SingleHarmonicLaw(ClosedForm(), contact)
     x = np.array([u_mean, v_mean, u.real, u.imag, v.real, v.imag])
     law.evaluate(x, 0)

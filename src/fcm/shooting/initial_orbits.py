@@ -1,4 +1,4 @@
-"""Periodic motions from which the curves of a scene are followed: near its harmonic balance, or from rest."""
+"""Periodic motions from which the curves of a scene start: near its harmonic balance, or from rest."""
 
 from __future__ import annotations
 
@@ -31,25 +31,25 @@ if TYPE_CHECKING:
 
 
 class InitialOrbits(NamedTuple):
-    """Points from which branches are followed, and why there are none where there are none."""
+    """Points from which branches are followed, and reasons where there are none."""
 
     points: list[FloatArray]  # z, from which branches are followed
-    missed: dict[float, str]  # of ends of the range why there is none
-    sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
+    missed: dict[float, str]  # reasons by the ends of the range that have none
+    sought: bool  # whether they come from elsewhere in the range, as the usual frequencies gave none
     away_from_balance: (
         bool  # whether the balance has more solutions than there are points: see `converged_balance`
     )
 
 
 def find_initial_orbits(problem: OrbitProblem, poll: Poll = never_interrupt) -> InitialOrbits:
-    """Points from which branches are followed.
+    """Find points from which branches are followed.
 
-    At both ends, and at the resonances inside, near every solution of the balance, and from motions in which
-    contacts stick as the scene starts; where that leads to no stable motion at an end, also the one that a
-    motion from rest comes to. Where there is none at all, near the first solution of the balance of one
-    harmonic that leads to a motion, anywhere in the range; else from the first motion with more damping that
-    leads to one without.
-    poll is called now and then.
+    At both ends of the range, and at the resonances inside, the guesses are all solutions of the balance and
+    motions in which contacts stick as the scene starts. Without a stable motion at an end, the motion from
+    rest is simulated there. If nothing is found at all, frequencies across the range are tried: first
+    solutions of the balance of one harmonic, then motions with more damping that is taken away.
+
+    poll is called regularly.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside, apart = inner_resonances(scene), False
@@ -83,10 +83,10 @@ def find_initial_orbits(problem: OrbitProblem, poll: Poll = never_interrupt) -> 
 
 
 class BalanceOrbits(NamedTuple):
-    """Points that the branches of a balance lead to, and whether each is as high as the balance there.
+    """Points found from the branches of a balance, and whether each is as high as the balance there.
 
-    unreached: frequencies [rad/s] and heights of tops at which the balance is stable, but no orbit as high
-    was found.
+    unreached: frequencies [rad/s] and heights of ends and tops at which the balance is stable, but no orbit
+    of that height was found.
     """
 
     points: list[FloatArray]
@@ -97,11 +97,10 @@ class BalanceOrbits(NamedTuple):
 def orbits_along_balance(
     problem: OrbitProblem, found: UncheckedResponse, poll: Poll = never_interrupt
 ) -> BalanceOrbits:
-    """Points beside the ends and tops of a balance's branches.
+    """Points near the ends and tops of a balance's branches.
 
-    What `find_initial_orbits` has, at its frequencies, need not lead there: some branches are closed, or
-    are so for the exact motion alone.
-    poll is called now and then.
+    The points of `find_initial_orbits` need not lead to them: some branches are isolas, perhaps only for the
+    exact motion. poll is called regularly.
     """
     points, alike, unreached = list[FloatArray](), True, list[tuple[float, float]]()
     for height, top, places in states_of_branches(problem.scene, found, problem.options):
@@ -111,7 +110,7 @@ def orbits_along_balance(
             high = bool(there) and there[-1][0] >= problem.options.start.min_height * height
             if high:
                 break
-        if there:  # some may lead to a lower branch
+        if there:  # the others may be on a lower branch
             _add_distinct(problem, points, max(there, key=lambda one: one[0])[1])
         alike = alike and high
         if not high and is_stable(found, top):
@@ -120,13 +119,13 @@ def orbits_along_balance(
 
 
 def height_of(problem: OrbitProblem, z: FloatArray) -> float:
-    """The greatest amplitude of any degree of freedom."""
+    """The greatest amplitude of all degrees of freedom."""
     shot = problem.shot(z)
     return 0.0 if shot is None else float(shot.amplitude.max())
 
 
 def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatArray]:
-    """The motion near a guess, as a point of a curve."""
+    """Yield the motion near a guess, if there is one, as a point of a curve."""
     omega, guess = place
     for orbit in _shot(problem.scene, omega, [guess], poll, problem.options):
         with suppress(SimulationError):
@@ -134,7 +133,7 @@ def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatAr
 
 
 def _first_anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
-    """The first point that the balance leads to, at frequencies across the range."""
+    """The first point found from the balance, or else by damping, at frequencies across the range."""
     scene = problem.scene
     for omega in np.linspace(*scene.frequency_range, problem.options.start.frequencies + 1)[::-1].tolist():
         for orbit in _shot(
@@ -148,7 +147,7 @@ def _first_anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
 
 
 def _by_damping(problem: OrbitProblem, poll: Poll) -> Iterator[list[FloatArray]]:
-    """The points that motions with more damping lead to, at frequencies across the range."""
+    """Yield points found from motions with more damping, at frequencies across the range."""
     scene = problem.scene
     more = more_damped(scene, problem.options)
     if more is None:
@@ -171,9 +170,9 @@ def _by_damping(problem: OrbitProblem, poll: Poll) -> Iterator[list[FloatArray]]
 def _corrected_states(
     scene: Scene, omega: float, poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[State]:
-    """Guesses from the balance of one harmonic, with more of them where Newton's method leads to that.
+    """Yield guesses from the balance of one harmonic, if possible corrected with more harmonics.
 
-    To follow the level of the forces with as many takes a hundred times as long.
+    Continuation in the level of the forces with as many harmonics would take a hundred times as long.
     """
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
@@ -198,10 +197,10 @@ def _corrected_states(
 def solution_at(
     scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit:
-    """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
+    """A stable solution near the balance, else the one that a simulation from rest approaches, else any.
 
-    Where the scene says from which friction it starts, rather one in which contacts stick with just that.
-    poll is called now and then.
+    With a [start] in the scene, solutions in which contacts stick with that friction come first. poll is
+    called regularly.
 
     Raises
     ------
@@ -220,7 +219,7 @@ def solution_at(
 def near_balance(
     scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Iterator[Orbit]:
-    """The motions that shooting finds from the solutions of the balance."""
+    """Yield the motions that shooting finds from the solutions of the balance."""
     return _shot(scene, omega, balanced_states(scene, omega, poll, options), poll, options)
 
 
@@ -231,7 +230,7 @@ def _shot(
     poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> Iterator[Orbit]:
-    """The motions that shooting finds from guesses."""
+    """Yield the motions that shooting finds from guesses."""
     for guess in guesses:
         try:
             orbit = shoot(EquationsOfMotion(scene, omega), guess, poll, options)
@@ -248,7 +247,7 @@ def _from_rest(
     poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> list[Orbit]:
-    """The motion that a simulation from rest comes to; none if it comes to none and there are others."""
+    """The motion that a simulation from rest approaches; empty without one if there are others."""
     try:
         return [approached(EquationsOfMotion(scene, omega), poll, options)]
     except SimulationError:
@@ -258,7 +257,7 @@ def _from_rest(
 
 
 def inner_resonances(scene: Scene) -> list[float]:
-    """Natural frequencies inside the range, contacts all stuck and all open; none without a balance."""
+    """Natural frequencies inside the range, with all contacts stuck or open; empty without a balance."""
     from fcm.branches.force_level import linear_resonances
     from fcm.harmonic_balance.system import System
 
@@ -274,12 +273,12 @@ def _add_distinct(problem: OrbitProblem, found: list[FloatArray], z: FloatArray)
 
 
 def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = never_interrupt) -> FloatArray:
-    """The point z of a solution, its stuck contacts as little stressed as can be, or as the scene starts.
+    """The point z of a solution whose stuck contacts rest as near as possible to where the scene starts.
 
     Raises
     ------
     SimulationError
-        If it is not determined.
+        If the solution is not determined.
     """
     z = problem.z(orbit.state, orbit.frequency)
     near = problem.shot(z)
@@ -295,7 +294,7 @@ def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = never_interrup
 
 
 def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
-    """Message that a solution is not determined, and why."""
+    """Message on why a solution is not determined."""
     unit = orbit.scene.frequency_unit
     where = f"the solution at {spoken(orbit.frequency, unit)} to start from is not determined"
     ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
@@ -311,7 +310,7 @@ def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> st
 
 
 def start_reason(scene: Scene, orbit: Orbit, near: Shot) -> str:
-    """Message that the contacts of a scene cannot rest where it starts."""
+    """Message that contacts cannot rest where the scene starts."""
     names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
     at = spoken(orbit.frequency, scene.frequency_unit)
     return (

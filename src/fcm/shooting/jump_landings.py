@@ -1,4 +1,4 @@
-"""Points of exact curves at the frequencies at which other stretches end: there a swept motion may land."""
+"""Points of exact curves at the frequencies at which other stable stretches end, where a sweep may land."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 
 
 def with_landings(problem: OrbitProblem, branches: list[list[OrbitRecord]]) -> list[list[OrbitRecord]]:
-    """The points of branches, and one more wherever a stable stretch passes the end of another.
+    """Add a point to branches wherever a stable stretch passes the frequency at which another ends.
 
-    A stable stretch ends at a fold or where stability changes. Between two points of a curve amplitudes are
-    known to the square of their distance only; what a sweep jumps to is known like what it jumps from.
+    A stable stretch ends at a fold or where stability changes. Interpolation between two points has an error
+    of the order of their distance squared. With these points a sweep's landing is as accurate as its jump.
 
     Parameters
     ----------
-    branches : list of list of Sample
+    branches : list of list of OrbitRecord
         Each in the order along its curve.
     """
     ends = {p.frequency for points in branches for p in points if p.stable and p.mark & _ENDS}

@@ -1,9 +1,9 @@
-"""Periodic motions in which no contact changes its state: linear, and found without a search.
+"""Periodic motions in which no contact changes its state: linear, and found without iteration.
 
-A contact that sticks may hold itself closed by its own residual friction, wedged in the strained structure.
-Such a motion may be far from every other, and no branch need lead to it. All that the residual friction of
-the sticking contacts changes is the mean, and linearly; so whether any of it keeps them all from slipping and
-opening, and the open ones open, is a linear programme.
+A contact that sticks may be held closed by its own residual friction, wedged in the strained structure. Such
+a motion may be far from every other, and no branch need lead to it. The residual friction of the sticking
+contacts changes only the mean, and linearly. So a linear program decides whether some residual friction keeps
+these contacts from slipping and opening, and the open ones open.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ class LinearOrbit(Frozen):
 def linear_motions(
     scene: Scene, omega: float, as_started: bool = False, options: ShootingOptions = SHOOTING
 ) -> list[LinearOrbit]:
-    """Motions in which a contact with friction sticks, at a frequency [rad/s]; of the scene with what is
-    held.
+    """Motions at a frequency [rad/s] in which a contact with friction sticks and none changes its state.
 
-    Their residual friction is the nearest to that of the scene's start, or just that.
+    Held contacts are included. The residual friction is the nearest to that of the scene's start, or with
+    as_started exactly that.
     """
     whole = scene.whole()
     system, count = EquationsOfMotion(whole, omega), len(whole.contacts)
@@ -55,15 +55,14 @@ def linear_motions(
 
 
 def started_states(scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> list[State]:
-    """Guesses from linear motions whose contacts rest where the scene starts."""
+    """Guesses from linear motions whose sticking contacts rest where the scene starts."""
     computed = scene.computed()
     found = linear_motions(scene, omega, as_started=True, options=options)
     return [replace(one.state, friction=one.state.friction[computed]) for one in found]
 
 
 def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
-    """Guesses at a level of the forces: about rest with the contacts as they are there, then all stuck, then
-    all open."""
+    """Yield guesses at a level of the forces: contacts as at rest, then all stuck, then all open."""
     whole, computed = scene.whole(), scene.computed()
     system, rest = EquationsOfMotion(whole, omega).at_level(level), unloaded(whole)
     at_rest = system.preload + system.stiffness * (system.normal @ rest.q) > 0.0
@@ -107,7 +106,10 @@ def _motion(
 def linear_answer(
     system: EquationsOfMotion, closed: npt.NDArray[np.bool_], stuck: list[int]
 ) -> tuple[npt.NDArray[np.complex128], FloatArray, FloatArray]:
-    """The modes' harmonic answer (driven, mode), their mean without residual friction, what that adds."""
+    """Response of the modes: harmonics (driven, mode), mean without residual friction, and its derivative.
+
+    The derivative (mode, stuck contact) is that of the mean by residual friction.
+    """
     modal, across, along = system.scene.modal, system.normal, system.tangential
     stiffness, steady = np.diag(modal.mass * modal.frequency**2), np.array(system.static, dtype=np.float64)
     for contact, row, shut in zip(system.scene.contacts, across, closed, strict=True):
@@ -132,7 +134,7 @@ def _limits(
     mean: FloatArray,
     by_residual: FloatArray,
 ) -> Iterator[tuple[FloatArray, float]]:
-    """Conditions that keep every contact in its state: rows, and least values of row @ residual."""
+    """Yield the conditions that keep every contact in its state: rows, and lower bounds of row @ residual."""
     for j, contact in enumerate(system.scene.contacts):
         if j not in stuck:
             press, sign = contact.k_v * system.normal[j], 1.0 if closed[j] else -1.0
@@ -152,9 +154,9 @@ def sticking(
     mean: FloatArray,
     by_residual: FloatArray,
 ) -> Iterator[tuple[FloatArray, float]]:
-    """Conditions that keep contact j from slipping either way, as `_limits`.
+    """Yield the conditions that keep contact j from slipping in either direction, as `_limits`.
 
-    own: which of the residual friction is its own.
+    own: mask of its own entry in the residual friction.
     """
     contact = system.scene.contacts[j]
     press, pull = contact.k_v * system.normal[j], contact.k_u * system.tangential[j]
@@ -179,7 +181,7 @@ def _nearest_inside(
     just_that: bool,
     options: ShootingOptions = SHOOTING,
 ) -> FloatArray | None:
-    """The residual friction nearest to what is wanted with rows @ residual >= least, or None."""
+    """The residual friction nearest to wanted with rows @ residual >= least, or None."""
     size = float(np.abs(least).max()) or 1.0
     if (rows @ wanted >= least + options.linear.min_limit_distance * size).all():
         return wanted
@@ -194,7 +196,7 @@ def _nearest_inside(
 
 
 def _nearest_number(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
-    """The nearest residual friction, as `_nearest_inside`, of a single contact that sticks."""
+    """The nearest residual friction for a single contact that sticks, see `_nearest_inside`."""
     row = rows[:, 0]
     if (least[row == 0.0] > 0.0).any():
         return None
@@ -204,9 +206,9 @@ def _nearest_number(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> 
 
 
 def _nearest(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
-    """The nearest residual friction by the sum of the distances, which are unknowns of a linear program."""
-    with undisturbed():  # a library that is interrupted while it is loaded cannot be loaded again
-        from scipy.optimize import linprog  # takes a tenth of a second to load
+    """The nearest residual friction in the 1-norm, by a linear program."""
+    with undisturbed():  # an import that is interrupted cannot be repeated
+        from scipy.optimize import linprog  # loading takes a tenth of a second
 
     count = wanted.size
     one, none = np.eye(count), np.zeros((len(rows), count))

@@ -11,21 +11,21 @@ from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class ClosureOptions(Frozen):
-    """Newton's method on the closure of a period, x(T) - x(0) = 0.
+    """Options of Newton's method on the closure of a period, x(T) - x(0) = 0.
 
     Attributes
     ----------
     tolerance : float
-        Closure of the period, relative to the size of the motion, up to which it counts as periodic.
+        Closure error of the period, relative to the size of the motion, up to which it counts as periodic.
     max_iterations : int
         Most Newton steps.
     min_step : float
         Factor on a Newton step down to which it is shortened; below it the method has diverged.
     rank_tolerance : float
-        Singular value, relative to the greatest, below which nothing changes along a direction, as where a
-        contact never slips.
+        Singular value, relative to the greatest, below which the closure does not change along a direction,
+        as where a contact never slips.
     min_return : float
-        Distance of a multiplier from 1, below which the forces may not decide what the motion is.
+        Distance of a multiplier from 1, below which the forces may not determine the motion.
     """
 
     tolerance: float = 1e-11
@@ -36,7 +36,7 @@ class ClosureOptions(Frozen):
 
 
 class ApproachOptions(Frozen):
-    """A simulation from rest towards a periodic motion.
+    """Options on the simulation from rest towards a periodic motion.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class ApproachOptions(Frozen):
         Difference of the mean cycle amplitude between two halves, relative to the range of amplitudes, above
         which the motion grows or decays.
     settled_fraction : float
-        Part that damping leaves of a disturbance which counts as settled.
+        Remaining part of a disturbance at which it counts as settled.
     """
 
     cycles: tuple[int, ...] = (10, 20, 40, 80, 160)
@@ -55,15 +55,15 @@ class ApproachOptions(Frozen):
 
 
 class SteadyOptions(Frozen):
-    """A simulation until the motion is steady.
+    """Options on the simulation until the motion is steady.
 
     Attributes
     ----------
     cycles : tuple of int
         Numbers of cycles that are simulated in turn; after each the motion is tested for being periodic.
     ranging_cycles : int
-        Number of cycles of such a turn from which on its amplitudes count for the range of a motion that
-        never repeats, as it may linger and burst out.
+        Number of cycles of such a turn, from which on its amplitudes count for the range of a motion that
+        never repeats: it may be intermittent.
     max_periods : int
         Most periods of the force after which a steady motion may repeat.
     max_distance : float
@@ -76,8 +76,8 @@ class SteadyOptions(Frozen):
         Spread of cycle amplitudes in one window, relative to the window before, below which the motion
         decays.
     distinct_distance : float
-        Distance of a motion of twice the periods from the other, relative to it, from which on it is not
-        taken for the one that leaves it.
+        Distance of a motion of twice the periods from the other motion, relative to it, from which on it does
+        not count as the one that bifurcates from it.
     """
 
     cycles: tuple[int, ...] = (20, 40, 80, 160, 320, 640, 640, 640)
@@ -90,18 +90,18 @@ class SteadyOptions(Frozen):
 
 
 class PeriodDoublingOptions(Frozen):
-    """Motions with twice the period of other motions.
+    """Options on motions with twice the period of other motions.
 
     Attributes
     ----------
     distances : tuple of float
-        Distances from a motion, relative to it, at which one of twice its period is looked for, in turn.
+        Distances from a motion, relative to it, at which one of twice its period is sought, in turn.
     max_points : int
-        Most points to either side of a flip from which that is done; further ones lie beyond bends.
+        Most points on either side of a flip from which this is tried; the curve may bend beyond them.
     max_distance : float
         Scaled distance of the last point of a curve from a flip, below which the curve ends at that flip.
     closure_tolerance : float
-        Closure after fewer periods, relative to the motion, below which the motion repeats after these.
+        Closure error after fewer periods, relative to the motion, below which it repeats after these.
     """
 
     distances: tuple[float, ...] = (0.03, 0.1, 0.3)
@@ -111,12 +111,12 @@ class PeriodDoublingOptions(Frozen):
 
 
 class OrbitOptions(Frozen):
-    """Options on how the points of a curve of periodic solutions are recorded.
+    """Options on the records of the points of a curve of periodic solutions.
 
     Attributes
     ----------
     max_cached : int
-        Most numbers of computed periods that are kept, as a place is asked for more than once.
+        Most floating-point numbers of cached periods; a point is often needed more than once.
     min_duration : float
         Duration of a contact's state, relative to the period, below which it is left out.
     min_amplitude : float
@@ -129,23 +129,23 @@ class OrbitOptions(Frozen):
 
 
 class StartOptions(Frozen):
-    """Motions from which curves are followed.
+    """Options on motions from which curves are followed.
 
     Attributes
     ----------
     max_guesses : int
         Most guesses about a peak of the balance; the highest motion found from them is followed.
     min_height : float
-        Height of a motion, relative to the peak, from which on no further guess is tried; the balance of one
-        harmonic may be off.
+        Height of a motion, relative to the peak, from which on no further guess is tried: the balance may
+        have an error.
     frequencies : int
-        Number of intervals of the range at whose ends starts from more harmonics are tried, where nothing
-        else was found.
+        Number of intervals of the range at whose ends starts corrected with more harmonics are tried, if
+        nothing else was found.
     damped_frequencies : int
-        Number of intervals of the range at whose ends starts with more damping are tried, where still nothing
+        Number of intervals of the range at whose ends starts with more damping are tried, if still nothing
         was found.
     harmonics : tuple of int
-        Harmonics of the balance from which these starts come.
+        Harmonics of the balance that gives the corrected starts.
     corrected_harmonics : tuple of int
         Harmonics of the balance that corrects the starts.
     distinct_distance : float
@@ -162,19 +162,19 @@ class StartOptions(Frozen):
 
 
 class BalanceOptions(Frozen):
-    """The harmonic balance that gives the guesses of exact motions.
+    """Options of the harmonic balance that gives the guesses of exact motions.
 
     Attributes
     ----------
     accuracy : float
-        Relative accuracy that is asked of it.
+        Relative accuracy of the balance.
     peak_spacing : int
-        Number of points of a path within which one peak stands for those of other degrees of freedom.
+        Number of points of a path within which one peak represents those of other degrees of freedom.
     peak_offsets : tuple of int
-        Numbers of points from a peak to those from which motions are looked for, in turn.
+        Offsets, in points, from a peak to the points from which motions are sought, in turn.
     harmonics : tuple of int
-        Harmonics of the balance whose branches are looked for; with three a closed branch may be as far off
-        as another one is.
+        Harmonics of the balance whose branches are sought; with three harmonics the error of an isola may be
+        as large as its distance from another branch.
     guess_harmonics : tuple of int
         Harmonics of a guess, where contacts are few.
     many_contacts : int
@@ -182,7 +182,7 @@ class BalanceOptions(Frozen):
     force_harmonics : int
         Highest harmonic of the forces of a guess, relative to the highest harmonic of its motion.
     others : tuple
-        Options of its branches, of the classes of `fcm.branches.options`; the others are the default.
+        Options of its branches that are not the default, of the classes of `fcm.branches.options`.
     """
 
     accuracy: float = 1e-2
@@ -196,13 +196,12 @@ class BalanceOptions(Frozen):
 
 
 class DampingHomotopyOptions(Frozen):
-    """A motion that is reached from one with more damping.
+    """Options on the homotopy from a motion with more damping.
 
     Attributes
     ----------
     damping_ratio : float
-        Damping ratio of the least damped mode with which motions are found from afar; the damping is raised
-        to it.
+        Damping ratio to which the least damped mode is raised: with it motions are found from remote guesses.
     first_factor, min_factor : float
         Factor on the damping in the first step, and in the largest step.
     max_factor : float
@@ -216,7 +215,7 @@ class DampingHomotopyOptions(Frozen):
 
 
 class ForceLevelOptions(Frozen):
-    """The level of the forces as the parameter.
+    """Options on continuation in the level of the forces.
 
     Attributes
     ----------
@@ -227,7 +226,7 @@ class ForceLevelOptions(Frozen):
     linear_fraction : float
         Lowest level of a curve, relative to the level up to which contacts are linear.
     level_floor : float
-        Least unit of the level along the curve: above it the level is measured by itself.
+        Least unit of the level along the curve; a greater level is its own unit.
     """
 
     max_step: float = 0.2
@@ -237,17 +236,18 @@ class ForceLevelOptions(Frozen):
 
 
 class LinearOrbitOptions(Frozen):
-    """Motions in which no contact changes its state.
+    """Options on motions in which no contact changes its state.
 
     Attributes
     ----------
     max_combined : int
-        Number of contacts up to which all combinations of closed and open are tried; of more, all closed.
+        Number of contacts up to which all combinations of closed and open are tried; with more, only all
+        closed.
     limit_distance : float
-        Distance of a motion from its limits of slip, relative to the forces, that is tried first.
+        Distance of a motion from its slip limits, relative to the forces, that is tried first.
     min_limit_distance : float
-        Distance of a motion from its limits of slip, relative to the forces, that is tried last; a motion on
-        its limit belongs to others.
+        Distance of a motion from its slip limits, relative to the forces, that is tried last; a motion on the
+        limit is part of another curve.
     """
 
     max_combined: int = 3
@@ -256,22 +256,22 @@ class LinearOrbitOptions(Frozen):
 
 
 class PartlyStickingOptions(Frozen):
-    """Motions in which some contacts always stick.
+    """Options on motions in which some contacts always stick.
 
     Attributes
     ----------
     limit_distances : tuple of float
-        Distances of the residual friction from two limits at a time, relative to the forces, in turn.
+        Distances of the residual friction from its limits, relative to the forces, that are tried in turn.
     min_distance : float
-        Distance of one residual friction from another, relative to the largest distance, up to which it is
+        Distance between two residual frictions, relative to the largest distance, up to which the second is
         not tried.
     max_tries : int
         Most residual frictions that are tried for the same contacts.
     amplitude_tolerance : float
         Relative difference of an amplitude from a family's range, up to which the motion lies within it.
     closure_tolerance : float
-        Closure of a motion found with held contacts, relative to it, below which it is accepted once they are
-        free.
+        Closure error of a motion found with held contacts, relative to the motion, below which it is a guess
+        for the released contacts.
     cycles : tuple of int
         Numbers of cycles that are simulated in turn, each before an attempt to close the period.
     """
@@ -285,17 +285,17 @@ class PartlyStickingOptions(Frozen):
 
 
 class LocatedPeakOptions(Frozen):
-    """Peaks and folds that are located alone, from guesses.
+    """Options on peaks and folds that are located from guesses, without the whole curve.
 
     Attributes
     ----------
     windows : tuple of float
-        Widths to either side of a guess, relative to its frequency, in which it is looked for, in turn.
+        Widths to either side of a guess, relative to its frequency, in which the point is sought, in turn.
     max_distance : float
-        Scaled distance of the curve from a guess, from which on it is another curve.
+        Scaled distance of the curve from a guess, from which on it is a different curve.
     min_growth : float
-        Slope of an amplitude by scaled length, relative to the amplitude, up to which it counts as none:
-        paths take no notice of less.
+        Slope of an amplitude by scaled length, relative to the amplitude, up to which it counts as 0, as it
+        does in continuation.
     peak_tolerance : float
         Relative difference of two frequencies or amplitudes, up to which they are the same.
     """
@@ -307,15 +307,15 @@ class LocatedPeakOptions(Frozen):
 
 
 class ResidualFrictionOptions(Frozen):
-    """The residual friction force of a contact that sticks all the time.
+    """Options on the residual friction force of a contact that always sticks.
 
     Attributes
     ----------
     margin : float
-        Distance from the limit of slip, relative to the forces, that the residual friction keeps.
+        Least distance of the residual friction from the slip limit, relative to the forces.
     rounding : float
         Difference from the wanted residual friction, relative to that distance, up to which it counts as
-        reached, whatever the limits are.
+        reached without evaluation of the limits.
     """
 
     margin: float = 1e-9
@@ -323,17 +323,17 @@ class ResidualFrictionOptions(Frozen):
 
 
 class FamilyOptions(Frozen):
-    """Families of motions over the residual friction of contacts that always stick.
+    """Options on families of motions over the residual friction of contacts that always stick.
 
     Attributes
     ----------
     steps : int
-        Number of steps from one limit of slip to the other.
+        Number of steps from one slip limit to the other.
     min_step : float
-        Length of a step, relative to the longest before, down to which it is shortened; below it the family
-        has an end of its own.
+        Length of a step, relative to the longest before, down to which it is shortened; if it fails, the
+        family ends there.
     max_iterations : int
-        Most Newton steps for a motion: with more, a shorter step along the family finds it sooner.
+        Most Newton steps for a motion: if more are needed, a shorter step along the family is faster.
     min_fraction : float
         Factor on a Newton step down to which it is shortened.
     max_factor : float
@@ -342,13 +342,13 @@ class FamilyOptions(Frozen):
         Residual friction, relative to the first distance between its limits, beyond which the family counts
         as endless: such a contact is pressed together by its own residual friction.
     zero_distance : float
-        Least change of the distance from the limits in a step, relative to the greatest distance, that the
-        next step is computed from.
+        Least change of the distance from the limits in a step, relative to the greatest distance, in the
+        computation of the next step.
     max_combined : int
         Number of contacts up to which all combinations of directions are followed.
     bound_tolerance : tuple[float, float]
         Distance of a motion beyond the range of a family, relative to that range, up to which it belongs to
-        the family: of one contact, and of several.
+        the family: with one sticking contact, and with several.
     halvings_to_stable : int
         Number of bisections between two motions of which one is stable.
     halvings_to_extreme : int
@@ -356,8 +356,7 @@ class FamilyOptions(Frozen):
     amplitude_tolerance : float
         Range of an amplitude over a family, relative to the amplitude, up to which it is constant.
     max_motions : int
-        Most motions of a family that are computed, as some contacts have hundreds of sets of those that
-        stick.
+        Most motions of a family that are computed: a family may pass hundreds of sets of sticking contacts.
     """
 
     steps: int = 8
@@ -376,20 +375,20 @@ class FamilyOptions(Frozen):
 
 
 class StabilityChangeOptions(Frozen):
-    """Options on where stability changes along a curve.
+    """Options on changes of stability along a curve.
 
     Attributes
     ----------
     max_evaluations : int
         Most motions that are computed to locate one change.
     certain_fraction : float
-        Distance of the greatest multiplier from the limit of stability, relative to the tolerance of growth,
-        up to which the change is located.
+        Distance of the greatest multiplier from the stability limit, relative to the tolerance of growth, up
+        to which the change counts as located.
     max_divisions : int
-        Most divisions of the way between two points in search of a window of stability.
+        Most divisions of the interval between two points in search of a window of stability.
     safe_growth : float
-        Logarithm of the greatest multiplier, at both of two points, below which no window is looked for
-        between them.
+        Logarithm of the greatest multiplier, at both of two points, below which no window is sought between
+        them.
     max_ranges : int
         Most frequency ranges without a stable motion, the widest first, in whose middle the motion is
         simulated.
@@ -406,19 +405,20 @@ class StabilityChangeOptions(Frozen):
 
 
 class BranchSearchOptions(Frozen):
-    """The search for all branches.
+    """Options on the search for all branches.
 
     Attributes
     ----------
     compared_motions : int
-        Number of motions of a branch that are looked for on other branches, to tell whether it is new.
+        Number of motions of a branch that are compared with other branches, to decide whether it is new.
     max_broken : int
-        Number of branches that break off, from which on no others are looked for: where contacts rattle, with
-        ten impacts a period and more, unstable motions are countless.
+        Number of branches that break off, from which on no others are sought: where contacts rattle, with ten
+        or more impacts per period, unstable motions are countless.
     poll_interval : float
-        [s] Time between two readings of the processor time, which takes long to read on some machines.
+        [s] Time between two readings of the processor time, which are slow on some machines.
     rounding_frequency : float
-        Frequency relative to that of the highest mode, above which what a period does is near to rounding.
+        Frequency, relative to that of the highest mode, above which the motion in a period is close to
+        rounding.
     """
 
     compared_motions: int = 7
@@ -459,4 +459,4 @@ class ShootingOptions(Frozen):
     floquet: StabilityOptions = STABILITY
 
 
-SHOOTING = ShootingOptions()  # where nothing else is said
+SHOOTING = ShootingOptions()  # the default

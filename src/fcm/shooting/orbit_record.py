@@ -1,4 +1,4 @@
-"""Records of periodic solutions on a curve: everything that is reported, without the motion in time."""
+"""Records of periodic solutions on a curve: all reported quantities, without the motion in time."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ from fcm.units import spoken
 
 
 class OrbitRecord(Frozen):
-    """A periodic solution as it is reported, with its place on a curve."""
+    """A periodic solution with its reported quantities and its point on a curve."""
 
     frequency: float  # [rad/s]
     state: State  # at the forces' angle 0
     states: tuple[str, ...]  # of each contact over the period
     measure: Measure
     contact_loads: FloatArray  # (contact, 4) as of `contact_loads`
-    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
-    residual: float  # by which the period fails to close, relative to the motion
-    stable: bool  # whether small disturbances die out, or at least do not grow
+    multipliers: npt.NDArray[np.complex128]  # Floquet multipliers, the greatest first
+    residual: float  # closure error of the period, relative to the motion
+    stable: bool  # whether small disturbances do not grow
     z: FloatArray  # (unknown + 1,), the frequency last
     direction: FloatArray  # (unknown + 1,) of the curve, in the units of z
-    mark: int = 0  # of `Mark`, joined
+    mark: int = 0  # flags of `Mark`
     held: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (held, 3): see `_held_distances`
-    steady: SteadyMotion | None = None  # how it repeats or ranges, where it does not after every period
+    steady: SteadyMotion | None = None  # the steady motion, if it does not repeat after every period
 
     @property
     def repeats(self) -> int:
@@ -54,9 +54,9 @@ def recorded_point(problem: OrbitProblem, z: FloatArray, direction: FloatArray, 
 
 
 def recorded(problem: OrbitProblem, z: FloatArray) -> OrbitRecord:
-    """The record of a solution without its place on a curve, made once for each z.
+    """The record of a solution without direction and mark, made once for each z.
 
-    It is made while its period is still known, if it is asked for when the curve comes there.
+    If it is requested when the curve reaches z, the period is still cached.
     """
     key = z.tobytes()
     if key not in problem.samples:
@@ -76,7 +76,7 @@ def _record_of(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -
 
 
 def _held_distances(shot: Shot) -> FloatArray:
-    """Distances of held contacts from their limit or gap, and greatest forces, (held, 3)."""
+    """Distances of held contacts from their slip limit or gap, and their greatest forces: (held, 3)."""
     least, greatest = (one.reshape(2, -1) for one in shot.scanned.part(shot.system.parts.held))
     return np.column_stack((shot.held_distances, greatest[0], np.maximum(greatest[1], -least[1])))
 
@@ -92,7 +92,7 @@ def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
 
 
 def recorded_steady(omega: float, motion: SteadyMotion) -> OrbitRecord:
-    """The record of a motion that a simulation has come to."""
+    """The record of a steady motion that a simulation has reached."""
     none = np.zeros(0)
     return OrbitRecord(
         omega, motion.state, motion.states, motion.measure, motion.contact_loads, motion.multipliers,
@@ -101,10 +101,11 @@ def recorded_steady(omega: float, motion: SteadyMotion) -> OrbitRecord:
 
 
 def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[OrbitRecord]:
-    """The points of a path, with those added at which stability changes between folds, and changes back.
+    """Records of the points of a path, with points added at changes of stability between folds.
 
-    A fold belongs to the stable side, and so does a point at which stability changes.
-    located : whether to add those; to find them takes three times as long as the rest.
+    A fold belongs to its stable side, and so does a point at which stability changes.
+
+    located : whether to add these points; locating them takes three times as long as the rest.
     """
     points = [
         recorded_point(problem, path.z[k], path.direction[k], int(path.mark[k]))
@@ -122,7 +123,7 @@ def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Orb
 
 
 def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[OrbitRecord]) -> list[OrbitRecord]:
-    """Records with a point for each change of stability, but where it is at a point already."""
+    """Records with a point at each change of stability, added or marked if it is at a point already."""
     out = list(points[:1])
     for k, point in enumerate(points[1:]):
         before = points[k]

@@ -1,8 +1,9 @@
-"""Motions in which some contacts stick all through, on residual friction of their own, while others slip.
+"""Motions in which some contacts always stick, on their own residual friction, while others slip.
 
-Like those of `linear_orbits` they may be far from every motion that a curve has: with other residual friction
-the contacts that stick would open or slip. Residual friction that may hold them is found as if the others
-stuck, slid without friction or were open; with it held, the others are simulated from there.
+Like those of `linear_orbits` they may be far from every motion of a curve: with other residual friction the
+sticking contacts would open or slip. Residual friction that may hold these contacts is computed as if the
+others stuck, slid without friction or were open. Then the sticking contacts are held with it, and the motion
+with the others is simulated.
 """
 
 from __future__ import annotations
@@ -37,10 +38,10 @@ Choices = list[FloatArray]
 
 
 class PartlyStickingOrbit(Frozen):
-    """A stable motion in which some contacts stick all through, and its family over residual friction."""
+    """A stable motion in which some contacts always stick, and its family over residual friction."""
 
     states: tuple[str, ...]  # of each contact over the period
-    residual: FloatArray  # (contact,) k_u w of the slip motions w; 0 of those that do not stick
+    residual: FloatArray  # (contact,) k_u w of the slip motions w; 0 for contacts that do not stick
     family: Family
 
 
@@ -51,10 +52,9 @@ def partly_stuck_motions(
     poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> list[PartlyStickingOrbit]:
-    """Partly sticking motions that belong to no family that is known, at a frequency [rad/s]; of the scene
-    with what is held.
+    """Partly sticking motions at a frequency [rad/s] that belong to no known family.
 
-    None are sought of more contacts than `options.linear.max_combined`.
+    Held contacts are included. With more contacts than `options.linear.max_combined` none are sought.
     """
     whole, found, families = scene.whole(), list[PartlyStickingOrbit](), list(known)
     system = EquationsOfMotion(whole, omega)
@@ -75,7 +75,7 @@ def partly_stuck_motions(
 def partly_stuck_as_started(
     scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> list[State]:
-    """Guesses from partly sticking motions whose contacts rest where the scene starts."""
+    """Guesses from partly sticking motions whose sticking contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
     system = EquationsOfMotion(whole, omega)
     wanted = system.k_u * resting(whole)
@@ -88,7 +88,7 @@ def partly_stuck_as_started(
 
 
 def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[int, ...]]:
-    """Sets of contacts that may stick while others do not."""
+    """Yield sets of contacts that may stick while others do not."""
     rough = [j for j, contact in enumerate(scene.contacts) if has_friction(contact)]
     count = len(scene.contacts)
     for size in range(1, count if count <= options.linear.max_combined else 1):
@@ -98,7 +98,7 @@ def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[i
 def _residual_guesses(
     system: EquationsOfMotion, poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
-    """Sets of contacts, and residual friction with which they may stick."""
+    """Yield sets of contacts, and residual friction with which they may stick."""
     for stuck in _sets(system.scene, options):
         poll()
         for residual in _spread_out(_choices(system, stuck, options=options), options):
@@ -111,10 +111,10 @@ def _choices(
     just: FloatArray | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> Choices:
-    """Residual friction that keeps contacts stuck, whatever the others do, as far as that is linear."""
+    """Residual friction that keeps contacts stuck, for each combination of linear states of the others."""
     scene, found = system.scene, Choices()
     others = [j for j in range(len(scene.contacts)) if j not in stuck]
-    for letters in product("EFS", repeat=len(others)):  # stuck, without friction, open
+    for letters in product("EFS", repeat=len(others)):  # stuck, closed without friction, open
         pairs = list(zip(others, letters, strict=True))
         closed = np.array([dict(pairs).get(j) != "S" for j in range(len(scene.contacts))])
         springs = [*stuck, *(j for j, letter in pairs if letter == "E" and has_friction(scene.contacts[j]))]
@@ -133,7 +133,7 @@ def _choices(
 
 
 def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOOTING) -> Choices:
-    """Points near the corners of the region rows @ x >= least, and the middle of them."""
+    """Points near the vertices of the region rows @ x >= least, and first their mean."""
     size, count, found = float(np.abs(least).max()) or 1.0, rows.shape[1], Choices()
     for kept in options.partly_sticking.limit_distances:
         beyond = least + kept * size
@@ -147,7 +147,7 @@ def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOO
 
 
 def _spread_out(choices: Choices, options: ShootingOptions = SHOOTING) -> Choices:
-    """Some of the choices that are not near to one another; the first come first."""
+    """Choices that are not close to one another; earlier ones take precedence."""
     kept, size = Choices(), float(np.ptp(choices, axis=0).max(initial=0.0)) if choices else 0.0
     for one in choices:
         if all(np.abs(one - other).max() > options.partly_sticking.min_distance * size for other in kept):
@@ -156,14 +156,14 @@ def _spread_out(choices: Choices, options: ShootingOptions = SHOOTING) -> Choice
 
 
 def _has_family(known: Family, stuck: tuple[int, ...], residual: FloatArray) -> bool:
-    """Whether a whole family of just these contacts has this residual friction in its bounds."""
+    """Whether a complete family of exactly these contacts includes this residual friction."""
     if not known.complete or known.contacts != stuck:
         return False
     return bool(((-known.friction[:, 1] <= residual) & (residual <= -known.friction[:, 0])).all())
 
 
 def _contains(known: Family, orbit: Orbit, options: ShootingOptions = SHOOTING) -> bool:
-    """Whether a motion has a contact that sticks in a family, and its amplitudes are within that."""
+    """Whether a motion shares a sticking contact with a family, and its amplitudes lie within the family."""
     room = options.partly_sticking.amplitude_tolerance * known.greatest
     amplitude = orbit.measure.amplitude
     inside = (amplitude >= known.least - room) & (amplitude <= known.greatest + room)
@@ -178,19 +178,19 @@ def _with_held(
     poll: Poll,
     options: ShootingOptions = SHOOTING,
 ) -> Orbit | None:
-    """The stable motion with contacts held on residual friction, if they stick in it by themselves."""
+    """The stable motion found with contacts held on residual friction, if they also stick when released."""
     contacts = system.scene.contacts
     rest = {j: float(force) / contacts[j].k_u for j, force in zip(stuck, residual, strict=True)}
     held = system.scene.holding([HeldContact(j, contacts[j], False, w) for j, w in rest.items()])
     try:
         orbit = _approached(EquationsOfMotion(held, system.omega), poll, options)
         return None if orbit is None else _released(system, orbit.state, rest, poll, options)
-    except SimulationError:  # it cannot be computed
+    except SimulationError:  # the motion cannot be computed
         return None
 
 
 def _approached(system: EquationsOfMotion, poll: Poll, options: ShootingOptions = SHOOTING) -> Orbit | None:
-    """The stable motion that a simulation from no displacement comes to soon; None without any."""
+    """The stable motion that a simulation from zero displacement soon approaches; None without one."""
     state = State.unloaded(system.scene)
     for count in options.partly_sticking.cycles:
         for _, end in cycles_from(system, count, state):
@@ -209,7 +209,7 @@ def _released(
     poll: Poll,
     options: ShootingOptions = SHOOTING,
 ) -> Orbit | None:
-    """The motion with no contact held, if those stick all through it; else None."""
+    """The motion with the held contacts released, if it is stable and they always stick; else None."""
     contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
     friction = np.zeros(len(contacts))
     friction[[j for j in range(friction.size) if j not in rest]] = state.friction
@@ -226,7 +226,7 @@ def _released(
 
 
 def _with_family(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> PartlyStickingOrbit | None:
-    """The motion with its family; None if that is unknown."""
+    """The motion with its family; None if the family is unknown."""
     system, state = EquationsOfMotion(orbit.scene, orbit.frequency), orbit.state
     x = np.concatenate((state.q, state.velocity, state.friction))
     try:

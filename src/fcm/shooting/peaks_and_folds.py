@@ -1,4 +1,4 @@
-"""Peaks and folds of exact curves alone: each on a short piece of the curve, begun at a guess beside it."""
+"""Location of peaks and folds of exact curves, each on a short piece of the curve near a guess."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class OrbitGuess(Frozen):
     frequency: float  # [rad/s]
     state: State
     neighbour: tuple[float, State]
-    dof: int | None  # whose peak is sought; a fold if None
+    dof: int | None  # the degree of freedom whose peak is sought; None for a fold
 
 
 def located(problem: OrbitProblem, guess: OrbitGuess, known: list[OrbitRecord]) -> OrbitRecord | None:
-    """The peak or fold near a guess; None where there is none.
+    """The peak or fold near a guess; None if there is none.
 
-    known : pieces' peaks and folds that were found before, to which those of this piece are added.
+    known : the peaks and folds found so far; those of this piece are added.
     """
     z = _on_curve(problem, guess)
     if z is None:
@@ -50,7 +50,7 @@ def located(problem: OrbitProblem, guess: OrbitGuess, known: list[OrbitRecord]) 
 
 
 def _on_curve(problem: OrbitProblem, guess: OrbitGuess) -> FloatArray | None:
-    """The point of the curve in the plane through a guess, across the curve; else at its frequency."""
+    """The point of the curve in the plane through a guess normal to it, or else at the guess's frequency."""
     z = problem.z(guess.state, guess.frequency)
     other = problem.z(guess.neighbour[1], guess.neighbour[0])
     newton, chord = Newton(problem), other - z
@@ -73,7 +73,7 @@ def _within(
             mark = int(path.mark[k])
             if mark & Mark.END and path.parameter[k] not in problem.scene.frequency_range:
                 continue
-            if k < first and mark == Mark.PEAK:  # the start's own
+            if k < first and mark == Mark.PEAK:  # a peak at the start, see `_peak_at_start`
                 continue
             here = recorded_point(problem, path.z[k], path.direction[k], mark)
             here = _with_stable_side(problem, path.z, path.direction, int(k), here)
@@ -82,7 +82,7 @@ def _within(
 
 
 def _leaves_start(problem: OrbitProblem, path: Path) -> int:
-    """The first point of a path that is another motion than its start: a peak there may be a point again."""
+    """Index of the first point of a path that differs from its start: a peak at the start may be repeated."""
     if not len(path.z):
         return 0
     tolerance, start = problem.options.peaks.peak_tolerance, _amplitudes(problem, path, 0)
@@ -96,9 +96,9 @@ def _leaves_start(problem: OrbitProblem, path: Path) -> int:
 def _peak_at_start(
     problem: OrbitProblem, paths: Sequence[Path], left: Sequence[int]
 ) -> list[tuple[OrbitRecord, PeakDofs]]:
-    """The common start of two paths if it is a peak, which is then within no step of either.
+    """The common start of two paths, if it is a peak: no step of either path contains it.
 
-    left : the first points of the paths that are other motions.
+    left : the first points of the paths that differ from the start.
     """
     if any(k >= len(path.z) for path, k in zip(paths, left, strict=True)):
         return []
@@ -116,10 +116,7 @@ def _peak_at_start(
 
 
 def _peak_dofs(problem: OrbitProblem, path: Path, k: int) -> PeakDofs:
-    """Mask (dof,) of amplitudes no less than at the points beside point k.
-
-    A mark does not say whose peak it is.
-    """
+    """Mask (dof,) of amplitudes no less than at the neighbours of point k; marks do not name the dof."""
     here, *sides = (_amplitudes(problem, path, i) for i in (k, k - 1, k + 1) if 0 <= i < len(path.z))
     highest: PeakDofs = np.logical_and.reduce([here > 0.0, *(here >= side for side in sides)])
     return highest
@@ -133,7 +130,7 @@ def _amplitudes(problem: OrbitProblem, path: Path, k: int) -> FloatArray:
 def _with_stable_side(
     problem: OrbitProblem, z: FloatArray, direction: FloatArray, k: int, here: OrbitRecord
 ) -> OrbitRecord:
-    """The record of a fold, counted as stable if one side of it is."""
+    """The record of a fold, which is stable if one side of it is; other records are unchanged."""
     if not here.mark & Mark.FOLD or here.stable:
         return here
     sides = [i for i in (k - 1, k + 1) if 0 <= i < len(z)]
@@ -154,7 +151,7 @@ def _differ(one: OrbitRecord, other: OrbitRecord, options: ShootingOptions = SHO
 
 
 def _distance_from_guess(one: OrbitRecord, guess: OrbitGuess) -> float:
-    """A measure of how far a point is from what was looked for: the highest peak, or the nearest fold."""
+    """A measure by which the best candidate is least: the highest peak, or the nearest fold."""
     if guess.dof is not None:
         return -float(one.measure.amplitude[guess.dof])
     return abs(one.frequency - guess.frequency)

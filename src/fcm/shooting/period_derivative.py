@@ -1,4 +1,4 @@
-"""The derivative of a motion by its start, and by the frequency or the level of the forces, as arrays."""
+"""Derivatives of a motion by its initial state, and by the frequency or the level of the forces."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class InstantDerivative(NamedTuple):
     """The derivative of the state at an instant of a motion."""
 
     columns: FloatArray  # (unknown + 2, d): by each of x = (q, q', f), by the parameter; last the state
-    rate: FloatArray  # (d,) of the state [1/s]
+    rate: FloatArray  # (d,) time derivative of the state [1/s]
 
 
 def derivative_at(
@@ -32,10 +32,9 @@ def derivative_at(
 def period_derivative(
     system: EquationsOfMotion, segments: Segments, duration: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives of x = (q, q', f) after periods of a duration T by x at their start, and by the frequency
-    or by the level, whichever is the parameter.
+    """Derivatives of x = (q, q', f) after a duration T by the initial x, and by the parameter.
 
-    The periods shorten as the frequency grows: dT / d omega = -T / omega.
+    The parameter is the frequency or the level. T shortens as the frequency grows: dT / d omega = -T / omega.
     """
     kernel, u = system.derivative(), system.unknowns
     by_state, by_parameter = np.empty((u, u)), np.empty(u)
@@ -48,12 +47,12 @@ def period_derivative(
 def displacement_rates(
     system: EquationsOfMotion, segments: Segments, places: FloatArray, way: FloatArray, rate: float
 ) -> FloatArray:
-    """The derivative of the modal displacements along a way of x and the frequency, at places: (place, mode).
+    """Directional derivative (place, mode) of the modal displacements at places, by initial x and frequency.
 
     Parameters
     ----------
     places : (place, 2)
-        Segments, and positions in them in steps.
+        Segments, and positions in them, in steps.
     way : (unknown,)
         Change of x = (q, q', f) at the start of the segments.
     rate : float

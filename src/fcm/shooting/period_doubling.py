@@ -1,7 +1,8 @@
-"""Curves of motions that repeat after twice as many periods, from where the period doubles.
+"""Curves of motions of doubled period, from the period doublings (flips) on.
 
-Where a multiplier passes -1 a motion loses its stability to one of twice its periods. The curve of those
-passes through the flip and comes back by the same motions, a period later: it is followed to there.
+Where a multiplier passes -1, a motion loses its stability to one of twice its period. The curve of these
+motions passes through the flip and returns by the same motions, shifted by half their period. So it is
+followed only up to the flip.
 """
 
 from __future__ import annotations
@@ -26,23 +27,20 @@ from fcm.time_domain.state import State
 
 
 class DoubledPeriodProblem(OrbitProblem):
-    """Problem of motions with twice the periods of others.
-
-    A curve of them has ended where it comes to those.
-    """
+    """Problem of motions with twice the period of another problem, at whose motions their curves end."""
 
     def __init__(self, once: OrbitProblem) -> None:
         super().__init__(once.scene, 2 * once.repeats, once.options)
         self.once, self._way = once, np.zeros(0)
 
     def reset_flips(self) -> None:
-        """Forget what flips were passed, before another curve is followed."""
+        """Reset the detection of flips before another curve is followed."""
         self._way = np.zeros(0)
 
     def has_passed_flip(self, z: FloatArray) -> bool:
         """Whether the curve has passed a flip since the last call.
 
-        There what half the periods lack turns round.
+        At a flip the closure error after half the period changes its sign.
         """
         shot = self.once.shot(z)
         if shot is None:
@@ -53,7 +51,7 @@ class DoubledPeriodProblem(OrbitProblem):
         )
 
     def half_period_later(self, z: FloatArray) -> FloatArray:
-        """The unknowns of the same motion, begun after half of its periods."""
+        """The unknowns of the same motion, shifted by half its period."""
         shot = self.once.shot(z)
         return z if shot is None else z + np.append(shot.closure[self.free], 0.0)
 
@@ -64,7 +62,7 @@ def doubled_paths(
     along: Follow,
     poll: Poll = never_interrupt,
 ) -> tuple[list[Path], int]:
-    """The curves that begin at the flips of branches, and how many flips none was found from."""
+    """The curves that begin at the flips of branches, and the number of flips without one."""
     starts, lost = doubled_starts(problem, branches, poll)
     span, options = problem.scene.frequency_range, FollowOptions(problem.scene.max_step)
     following = Following(options, along)
@@ -85,7 +83,7 @@ def doubled_paths(
 def to_flips(
     problem: DoubledPeriodProblem, points: list[OrbitRecord], branches: list[list[OrbitRecord]]
 ) -> list[OrbitRecord]:
-    """The points of a curve, with the flips of others at which it ends within the range."""
+    """The points of a curve, extended by the flips of other branches at which it ends within the range."""
     ends = [flip(branch, k) for branch in branches for k in flips(branch)]
     for end in (0, -1):
         last = points[end]
@@ -103,14 +101,14 @@ def to_flips(
 
 
 def bifurcations(points: list[OrbitRecord]) -> Iterator[tuple[int, Bifurcation]]:
-    """The places k in a branch where stability changes between the points k and k + 1, but at no fold."""
+    """Yield the indices k where stability changes between points k and k + 1, but not at a fold."""
     for k, (one, other) in enumerate(pairwise(points)):
         if one.stable != other.stable and not (one.mark | other.mark) & Mark.FOLD:
             yield k, bifurcation_of((other if one.stable else one).multipliers.tolist())
 
 
 def flips(points: list[OrbitRecord]) -> Iterator[int]:
-    """The places k in a branch where the period doubles."""
+    """Yield the indices k of `bifurcations` at which the period doubles."""
     return (k for k, kind in bifurcations(points) if kind is Bifurcation.PERIOD_DOUBLING)
 
 
@@ -122,7 +120,7 @@ def flip(points: list[OrbitRecord], k: int) -> OrbitRecord:
 def doubled_starts(
     problem: DoubledPeriodProblem, branches: list[list[OrbitRecord]], poll: Poll = never_interrupt
 ) -> tuple[list[FloatArray], int]:
-    """Motions of twice the periods beside the flips of branches, and how many flips lead to none."""
+    """Motions of doubled period near the flips of branches, and the number of flips without one."""
     found, lost = list[FloatArray](), 0
     for points in branches:
         for k in flips(points):
@@ -137,10 +135,10 @@ def doubled_starts(
 def _near_flip(
     problem: DoubledPeriodProblem, points: list[OrbitRecord], k: int, poll: Poll
 ) -> Iterator[FloatArray]:
-    """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first.
+    """Yield motions of doubled period at the frequencies of points near a flip, unstable points first.
 
-    Not at flips themselves, beside which a motion hardly changes that does not repeat. Where none is near an
-    unstable motion, that which a disturbance of it comes to may be one.
+    Flips themselves are left out: close to one, the two motions hardly differ. If Newton's method finds none,
+    the motion that a disturbed unstable motion approaches may be one.
     """
     ends = [id(flip(points, j)) for j in flips(points)]
     after, before = (
@@ -161,7 +159,7 @@ def _near_flip(
 
 
 def _doubled(problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot) -> Iterator[FloatArray]:
-    """Motions in the direction in which a disturbance changes its sign after each period."""
+    """Yield motions found in the direction of the disturbance that changes its sign after each period."""
     for reach in problem.options.doubling.distances:
         try:
             guess = Shot(once.system, _disturbed(once, reach), problem.shooting.resting, problem.repeats)
@@ -175,7 +173,7 @@ def _doubled(problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot) -> I
 def _approached(
     problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot, poll: Poll
 ) -> Iterator[FloatArray]:
-    """The motion that a simulation comes to from a disturbed motion."""
+    """Yield the motion that a simulation from a disturbed motion approaches."""
     x, system = _disturbed(once, problem.options.doubling.distances[0]), once.system
     found = steady(system, State(x[system.q], x[system.p], x[system.f]), poll, problem.options)
     if isinstance(found, SteadyMotion) and found.periods == problem.repeats:
@@ -187,7 +185,7 @@ def _approached(
 
 
 def _disturbed(once: Shot, reach: float) -> FloatArray:
-    """Start of a motion, moved by reach, relative to it, along the disturbance that changes its sign."""
+    """The start of a motion, moved along the disturbance that changes its sign; reach is relative to it."""
     values, vectors = np.linalg.eig(once.derivative * (once.scale / once.scale[:, None]))
     way = vectors[:, values.real.argmin()].real
     x: FloatArray = once.x + reach * way / np.abs(way).max() * once.scale
@@ -197,7 +195,7 @@ def _disturbed(once: Shot, reach: float) -> FloatArray:
 def _repeating_solution(
     problem: DoubledPeriodProblem, point: OrbitRecord, shot: Shot
 ) -> Iterator[FloatArray]:
-    """The solution of the doubled problem that a motion gives, unless it repeats before."""
+    """Yield the solution of the doubled problem for a motion, unless it repeats after half the period."""
     if (
         Shot(shot.system, shot.x, periods=problem.once.repeats).residual
         < problem.options.doubling.closure_tolerance

@@ -1,4 +1,4 @@
-"""Periodic solutions by shooting: the fixed points of the motion over one period, and their stability."""
+"""Periodic solutions by shooting: fixed points of the period map, and their stability."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ from fcm.time_domain.state import State
 from fcm.time_domain.trajectory import Motion
 from fcm.units import spoken
 
-Poll = Callable[[], None]  # called now and then; raises what ends the search
+Poll = Callable[[], None]  # called regularly; raises an exception to end the search
 
 
 def never_interrupt() -> None:
-    """A `Poll` that lets the search take as long as it does."""
+    """A `Poll` that never ends the search."""
 
 
 class Orbit(Frozen):
-    """A periodic solution, one period from the instant at which the forces' angle is 0."""
+    """A periodic solution over one period, from the instant at which the forces' angle is 0."""
 
     scene: Scene
     frequency: float  # [rad/s]
     state: State  # at its start
     cycle: Cycle
-    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
-    residual: float  # by which it fails to close, relative to its size
+    multipliers: npt.NDArray[np.complex128]  # Floquet multipliers, the greatest first
+    residual: float  # closure error, relative to its size
     iterations: int
 
     @property
     def stable(self) -> bool:
-        """Whether small disturbances die out, or at least do not grow."""
+        """Whether small disturbances do not grow."""
         return within_unit_circle(self.multipliers)
 
     @property
@@ -62,34 +62,35 @@ class Orbit(Frozen):
 
 
 def within_unit_circle(multipliers: npt.NDArray[np.complex128], options: ShootingOptions = SHOOTING) -> bool:
-    """Whether no disturbance grows, but for rounding."""
+    """Whether no multiplier exceeds 1 in magnitude, but for rounding."""
     return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + options.floquet.classification.growth_tolerance)
 
 
 def periodic(
     scene: Scene, frequency: float, guess: State | None = None, options: ShootingOptions = SHOOTING
 ) -> Orbit:
-    """A periodic solution of a scene, stable or not, at one frequency.
+    """Find a periodic solution of a scene, stable or not, at one frequency.
 
-    Newton's method on the closure of one period of the exact motion (shooting), with the exact derivative.
+    It applies Newton's method to the closure of one period of the exact motion (shooting), with the exact
+    derivative.
 
     Parameters
     ----------
     scene : Scene
         From `fcm.load_scene`.
     frequency : float
-        Of the external forces [rad/s].
+        Frequency of the external forces [rad/s].
     guess : State, optional
-        At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
-        `harmonic_state`. By default the solution is the one that a simulation from rest approaches, or
-        goes around when that one is not stable; its residual friction is that of the scene's [start].
+        State at the forces' angle 0, from `Motion.end`, a neighbouring `Orbit.state`, or `harmonic_state`. By
+        default a simulation from rest, with the residual friction of the scene's [start], gives the guess.
+        It approaches the solution, or moves around it if it is unstable.
     options : ShootingOptions, optional
         Tolerances and limits.
 
     Raises
     ------
     SimulationError
-        If no periodic solution is found from there.
+        If no periodic solution is found.
 
     Examples
     --------
@@ -123,7 +124,7 @@ def unloaded(scene: Scene) -> State:
 def approached(
     system: EquationsOfMotion, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit:
-    """The periodic solution that a simulation from rest comes near to.
+    """The periodic solution that a simulation from rest approaches.
 
     Raises
     ------
@@ -139,7 +140,7 @@ def approached(
             state = end
         orbit = shoot(system, state, poll, options)
         unstable += orbit is not None and not orbit.stable
-        # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
+        # twice near an unstable one: the motion goes around it, with a multiple of its period or irregularly
         if orbit is not None and (orbit.stable or unstable > 1):
             return orbit
     at = spoken(system.omega, system.scene.frequency_unit)
@@ -152,7 +153,7 @@ def approached(
 def _description(
     system: EquationsOfMotion, amplitude: FloatArray, options: ShootingOptions = SHOOTING
 ) -> str:
-    """Sentence on a motion that has not become periodic, by the amplitudes of its last cycles."""
+    """Sentence on a motion that has not become periodic, from the amplitudes of its last cycles."""
     first, second = np.array_split(amplitude, 2)
     if abs(second.mean() - first.mean()) > options.approach.max_drift * np.ptp(amplitude):
         return "It may grow without end, repeat only after several periods, or need a guess"
@@ -170,7 +171,7 @@ def _description(
 def shoot(
     system: EquationsOfMotion, guess: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit | None:
-    """The orbit by Newton's method from a state at the forces' angle 0; None when it does not converge."""
+    """The orbit by Newton's method from a state at the forces' angle 0; None if it does not converge."""
     x = np.concatenate((guess.q, guess.velocity, guess.friction))
     found = converged(Shot(system, x), poll=poll, options=options)
     return None if found is None else closed(*found)
@@ -183,21 +184,21 @@ def converged(
     shortest: float | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> tuple[Shot, int] | None:
-    """The shot that closes, by Newton's method from one that does not, and the number of steps it took.
+    """The shot that closes, by Newton's method from one that does not, and the number of steps.
 
-    None after the most steps, where only a shorter part of one than the shortest brings it nearer, and where
-    what closes is not determined.
+    None after `most` steps, if a step has to be shortened below the factor `shortest`, or if the solution is
+    not determined by the forces.
     """
     found = _newton(shot, most, poll, shortest, options)
     return found if found is not None and _determined(found[0], options) else None
 
 
 def _determined(shot: Shot, options: ShootingOptions) -> bool:
-    """Whether the forces decide what the motion is, and not rounding.
+    """Whether the forces determine the motion, and not rounding.
 
-    In the resonance of an undamped mode a disturbance returns unchanged, and no motion repeats but one so
-    great that it would repeat without forces, too, to the precision of its closure. A mode that is free to
-    drift has such disturbances, and a motion that the forces decide.
+    At the resonance of an undamped mode a disturbance returns unchanged. Then only a motion closes that is so
+    great that, within the closure tolerance, it would also close without forces. A mode that is free to drift
+    has such disturbances as well, but its motion is determined by the forces.
     """
     if np.abs(1.0 - shot.other_multipliers).min(initial=1.0) > options.closure.min_return:
         return True
@@ -231,16 +232,16 @@ def closed(shot: Shot, iterations: int = 0) -> Orbit:
 
 
 def _step(shot: Shot, options: ShootingOptions = SHOOTING) -> FloatArray:
-    """Newton's step of a shot; along directions in which nothing changes, none."""
+    """The Newton step of a shot, of minimum norm: 0 along directions in which the closure does not change."""
     matrix = shot.by_state * shot.scale / shot.scale[:, None]
     solution = np.linalg.lstsq(matrix, -shot.closure / shot.scale, rcond=options.closure.rank_tolerance)[0]
-    with np.errstate(over="ignore"):  # what is not finite is refused when it is tried
+    with np.errstate(over="ignore"):  # a step that is not finite is rejected when it is tried
         step: FloatArray = solution * shot.scale
     return step
 
 
 def _improved(shot: Shot, shortest: float, options: ShootingOptions = SHOOTING) -> Shot | None:
-    """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
+    """The shot after a Newton step, shortened until the closure error decreases; None if it never does."""
     step, size = _step(shot, options), 1.0
     while size > shortest:
         try:
@@ -248,7 +249,7 @@ def _improved(shot: Shot, shortest: float, options: ShootingOptions = SHOOTING) 
         except SimulationError:  # too far away to be computed
             size *= 0.5
             continue
-        # across corners of the map the residual may grow for one step
+        # across corners of the map a full step may increase the residual
         if new.residual < shot.residual * (1.0 if size < 1.0 else 2.0 if shot.residual > 1e-6 else 1.0):
             return new
         size *= 0.5

@@ -1,4 +1,4 @@
-"""Periodic motions as a problem of the continuation: one period of the exact motion closes."""
+"""Periodic motions as a continuation problem: the closure of one period of the exact motion."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def correct_at_frequency(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
-    """Whether Newton's method comes to the curve from near z, with the frequency held."""
+    """Correct z by Newton's method at its frequency; return whether it converges. newton.z has the result."""
     if solution_near(newton, z, reach=reach) is None:
         return False
     newton.z[-1] = z[-1]
@@ -33,17 +33,17 @@ class OrbitProblem(Problem):
     """The closure of one period, z = (q, q', f, omega) at the forces' angle 0, without f that are always 0.
 
     The residual is that of `Shooting`: continuous, and smooth while the sequence of states over the period
-    stays, which is the label of a point. Most changes of the sequence hardly show in the curve; where a slip
-    is new it may have a corner.
+    stays the same. This sequence is the label of a point. Most changes of it hardly affect the curve; where a
+    new slip begins, the curve may have a corner.
 
     Parameters
     ----------
     scene : Scene
-        Its `frequency_range` is the unit of frequencies.
+        The width of its `frequency_range` is the unit of frequencies.
     repeats : int
         Periods of the force after which the motion closes.
     options : ShootingOptions, optional
-        Tolerances and limits of all that is done with the problem.
+        Tolerances and limits of all computations with the problem.
 
     Examples
     --------
@@ -65,14 +65,14 @@ class OrbitProblem(Problem):
         super().__init__(self.free.size, 1, len(scene.modal.dofs))
         self.labelled = True
         self.span = scene.frequency_range[1] - scene.frequency_range[0]
-        self.periods = 0  # that have been computed
+        self.periods = 0  # number of periods computed
         self._block, self._all = np.ix_(self.free, self.free), self.free.size == self.shooting.size
         self._residual, self._jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
         self._output, self._growth = np.asarray(self.output), np.asarray(self.growth)
         self._scale, self._root = np.asarray(self.scale), float(np.sqrt(self.free.size))
         self._shots: dict[bytes, Shot | None] = {}
-        self._numbers = 0  # in them
-        self.samples: dict[bytes, OrbitRecord] = {}  # what is kept of points, see `recorded`
+        self._numbers = 0  # number of floats in them
+        self.samples: dict[bytes, OrbitRecord] = {}  # records of points, see `recorded`
         self._rates = scene.modal.frequency
 
     def z(self, state: State, omega: float) -> FloatArray:
@@ -80,7 +80,7 @@ class OrbitProblem(Problem):
         return np.append(self.shooting.unknowns(state), omega)
 
     def shot(self, z: FloatArray) -> Shot | None:
-        """The period that begins at z, computed once; None where there is none."""
+        """The period that begins at z, cached; None if it cannot be computed."""
         z = np.asarray(z)
         key = z.tobytes()
         shot = self._shots.get(key)
@@ -94,11 +94,11 @@ class OrbitProblem(Problem):
 
     @property
     def full(self) -> bool:
-        """Whether so many periods are kept that they may be forgotten with the next step."""
+        """Whether the cache is so full that its periods may be dropped in the next step."""
         return 2 * self._numbers > self.options.orbit.max_cached
 
     def forget(self) -> None:
-        """Forget all periods that are kept."""
+        """Drop all cached periods."""
         self._shots, self._numbers = {}, 0
 
     def _made(self, z: FloatArray) -> Shot | None:
@@ -109,10 +109,7 @@ class OrbitProblem(Problem):
             return None
 
     def evaluate(self, z: FloatArray) -> int:
-        """Fill residual and Jacobian at z, see `Problem`.
-
-        They are nan where there is no motion, so that no solution is looked for there.
-        """
+        """Fill residual and Jacobian at z, see `Problem`; nan if the period cannot be computed."""
         shot, jacobian = self.shot(z), self._jacobian
         if shot is None:
             jacobian[:] = self._residual[:] = np.nan
@@ -128,17 +125,16 @@ class OrbitProblem(Problem):
         return 0
 
     def evaluate_residual(self, z: FloatArray) -> int:
-        """Fill the residual alone at z, see `Problem`."""
+        """Fill the residual at z, see `Problem`."""
         shot = self.shot(z)
         self._residual[:] = np.nan if shot is None else shot.closure[self.free]
         return 0
 
     def evaluate_scale(self, z: FloatArray) -> int:
-        """Fill the units of lengths at z: the size of the motion.
+        """Fill the units at z: the size of the motion, and the width of the frequency range.
 
-        Those of velocities are displacements times the modes' own frequencies.
-
-        So the higher harmonics count by their displacements.
+        Units of modal velocities are those of displacements times the modes' natural frequencies, or omega if
+        that is more. So higher harmonics count by their displacements.
         """
         shot = self.shot(z)
         if shot is None:
@@ -151,16 +147,16 @@ class OrbitProblem(Problem):
         return 0
 
     def evaluate_margins(self, z: FloatArray) -> int:
-        """Fill the margin with the label of the states, see the class; it stays where there is no motion."""
+        """Fill the margin with the label of the states, see the class; unchanged without a period."""
         shot = self.shot(z)
         if shot is not None:
             self.margin[0] = _label(shot, self.options)
         return 0
 
     def evaluate_outputs(self, z: FloatArray, direction: FloatArray) -> int:
-        """Fill the amplitudes, half the peak-to-peak, and their growth.
+        """Fill the amplitudes, half the peak-to-peak, and their growth along direction.
 
-        An extreme grows as the motion at its instant.
+        The rate of an extreme is that of the displacement at its instant.
         """
         shot = self.shot(z)
         output, growth = self._output, self._growth
@@ -180,9 +176,9 @@ class OrbitProblem(Problem):
 
 
 def _label(shot: Shot, options: ShootingOptions = SHOOTING) -> float:
-    """A number for the states over the period, from its start, and for the contacts that are at a limit.
+    """A checksum of the states over the period, from its start, and of the contacts at a slip limit.
 
-    A transition that passes the start is a corner of the friction force there, though of nothing else.
+    A transition that passes the start of the period is a corner of the friction force there only.
     """
     states = shot.segments.lasting(shot.duration, options.orbit.min_duration * shot.duration)
     limited = bytes([choice.contact for choice in shot.chosen if choice.limited])

@@ -27,9 +27,9 @@ class Shot:
     system : EquationsOfMotion
     x : (unknown,)
     resting : (contact,), optional
-        The slip motions w that contacts which always stick are to have; any will do by default.
+        Wanted slip motions w of contacts that always stick; by default they are free.
     periods : int
-        Of the force, after which the motion is to repeat.
+        Periods of the force after which the motion is to repeat.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Shot:
             self._choose(resting)
 
     def _choose(self, resting: FloatArray) -> None:
-        """Let the closure of contacts that always stick be the distance from their chosen slip motions."""
+        """Replace the closure of contacts that always stick by the distance from their chosen w."""
         first, seen = self.system.f.start, self.segments.seen()
         self.chosen = traction_choices(self.system, self.segments, resting, stuck_of(self.system, seen))
         for choice in self.chosen:
@@ -54,7 +54,7 @@ class Shot:
 
     @cached_property
     def scale(self) -> FloatArray:
-        """Size of each number of x: (unknown,)."""
+        """Size (unknown,) of each entry of x."""
         scale: FloatArray = self.segments.scale(self.system.per_unit, self.system.tuned())
         return scale
 
@@ -76,7 +76,7 @@ class Shot:
 
     @cached_property
     def sequence(self) -> bytes:
-        """States of the contacts from segment to segment: while they stay, the closure is smooth."""
+        """States of the contacts in each segment: the closure is smooth while they stay the same."""
         return np.asarray(self.segments.states).tobytes()
 
     @property
@@ -107,7 +107,7 @@ class Shot:
 
     @cached_property
     def scanned(self) -> Scanned:
-        """Extremes of all that is reported of the motion."""
+        """Extremes of all reported quantities of the motion."""
         return scanned(self.system, self.segments)
 
     @cached_property
@@ -123,9 +123,9 @@ class Shot:
 
     @cached_property
     def held_distances(self) -> FloatArray:
-        """Relative distance of each held contact from its limit, or from closing: (held,).
+        """Relative distance (held,) of each held contact from its slip limit, or from closing.
 
-        Negative if it passes that.
+        Negative if it passes the limit.
         """
         least, greatest = self.scanned.part(self.system.parts.limits)
         most = greatest[::3]
@@ -134,17 +134,16 @@ class Shot:
 
     @cached_property
     def other_multipliers(self) -> npt.NDArray[np.complex128]:
-        """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays, and
-        of each that stays closed without friction, whose f = 0 does; nor the 0 of a slider that forgets.
+        """Floquet multipliers without the trivial ones of contacts.
+
+        These are 1 for a contact that always sticks (its w stays), and for one that stays closed without
+        friction (its f = 0 stays); and 0 for a slider that forgets its position.
         """
         return floquet_of(self.system).multipliers(self.segments, self.duration)
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
-        """Floquet multipliers, the greatest first.
-
-        1 for each contact that always sticks, or stays closed smooth.
-        """
+        """All Floquet multipliers, the greatest first; with the 1 and 0 of `other_multipliers`."""
         values = np.zeros(self.x.size, dtype=np.complex128)
         ones = sum(states == 1 << STICKING for states in self.segments.seen())
         values[: self.other_multipliers.size] = self.other_multipliers
@@ -153,12 +152,12 @@ class Shot:
 
 
 class Shooting:
-    """Periodic motions of a scene as the roots of a residual, over all frequencies.
+    """Periodic motions of a scene as roots of a residual, at any frequency.
 
-    With more than one period these are the motions that repeat after so many, and also those that do before.
+    With several periods these are the motions that repeat after this number or after a divisor of it.
 
-    The unknowns are (q, q', f) at the forces' angle 0 without the friction forces that are always zero:
-    `free` has their places. The residual is continuous, and smooth while the sequence of states stays.
+    The unknowns are (q, q', f) at the forces' angle 0, without friction forces that are always zero; `free`
+    has their indices. The residual is continuous, and smooth while the sequence of states stays the same.
 
     Examples
     --------
@@ -176,7 +175,7 @@ class Shooting:
         carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
         self.free = np.flatnonzero(np.concatenate((np.ones(2 * scene.modal.mass.size, dtype=bool), carries)))
         self.size = 2 * scene.modal.mass.size + len(scene.contacts)
-        self.periods = 0  # that have been computed
+        self.periods = 0  # number of periods computed
         self._system: EquationsOfMotion | None = None
 
     def system(self, omega: float) -> EquationsOfMotion:

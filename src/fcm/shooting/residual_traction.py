@@ -1,9 +1,9 @@
-"""The friction force of a contact that sticks all through the period.
+"""The friction force of a contact that sticks through the whole period.
 
-Its slip motion w can have any value between the greatest lower and the least upper slip limit, and the
-solution is one of a family. A contact that starts with some w ends with the w nearest to it: that one is
-chosen, so that the solutions over the frequency are one curve. It starts unstressed, w = 0, unless static
-loads have made it slip, or the scene's [start] says otherwise.
+Its slip motion w may have any value between the greatest lower and the least upper slip limit, so that the
+solution is one of a family. A contact that starts with some w ends with the nearest admissible w. This member
+is chosen, so that the solutions over the frequency form one curve. The contact starts unstressed, w = 0,
+unless static loads have made it slip, or the scene's [start] says otherwise.
 """
 
 from __future__ import annotations
@@ -21,19 +21,17 @@ from fcm.time_domain.flow import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKI
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.state import State
 
-BOTH_SIGNS = (
-    1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP
-)  # of what has been seen of a contact: slip in both directions
+BOTH_SIGNS = 1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP  # states of a contact that slips in both directions
 
 
 class Choice(NamedTuple):
-    """The difference of a stuck contact's friction force from the one that is chosen for it."""
+    """The difference between the friction force of a stuck contact and the one that is chosen for it."""
 
     contact: int
     gap: float  # to be added to the force
     row: FloatArray  # (2 modes + contacts,) derivative of the gap by x = (q, q', f)
-    rate: float  # and by the frequency
-    limited: bool  # whether it is a limit of slip, and not the w that is wanted
+    rate: float  # derivative of the gap by the frequency
+    limited: bool  # whether the choice is at a slip limit, and not at the wanted w
 
 
 def resting(scene: Scene) -> FloatArray:
@@ -57,12 +55,12 @@ def _resting(contacts: tuple[Contact, ...], displacement: FloatArray, friction: 
 
 
 def always_stuck(system: EquationsOfMotion, segments: Segments) -> list[int]:
-    """The contacts that stick all through the segments."""
+    """The contacts that stick in all segments."""
     return stuck_of(system, segments.seen())
 
 
 def stuck_of(system: EquationsOfMotion, seen: list[int]) -> list[int]:
-    """Contacts that stick all the time, by the states that each has been in: see `Segments.seen`."""
+    """The contacts that always stick, from the states of each, see `Segments.seen`."""
     return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
 
 
@@ -73,16 +71,16 @@ def traction_choices(
     stuck: list[int],
     options: ResidualFrictionOptions = SHOOTING.traction,
 ) -> list[Choice]:
-    """Choices of the friction for the contacts that stick all through the segments.
+    """Choices of the friction for the contacts stuck, which stick in all segments.
 
-    wanted: the w of all, (contact,).
+    wanted: the wanted w of all contacts, (contact,).
     """
     if not stuck:
         return []
     y = np.asarray(segments.y)[0]
     gaps = (system.sticking @ y[: system.unknowns] - system.k_u * wanted).tolist()
     margin = {j: _margin(system, y, j, options) for j in stuck}
-    # a gap needs no search that is within a bound of the limits, or of no size
+    # the limits need no evaluation for a gap within a bound of them, or for a negligible one
     known = {j: max(options.rounding * margin[j], segments.held(j) - margin[j]) for j in stuck}
     far = [j for j in stuck if abs(gaps[j]) > known[j]]
     room = limit_distances(system, segments, far) if far else {}
@@ -101,10 +99,11 @@ def _choice(
     above: Extreme,
     below: Extreme,
 ) -> Choice:
-    """Choice of the force for the w that is wanted, or the nearest with |f| <= mu n all through the period.
+    """Choice of the force for the wanted w, or for the nearest w with |f| <= mu n through the whole period.
 
-    Of a contact, with the gap to what is wanted; it keeps a margin away from the limit, so that rounding does
-    not decide between stick and slip. Above and below are the least of mu n - f and of mu n + f.
+    of: the contact, its gap to the wanted w, and its margin. The margin is kept from the limit, so that
+    rounding does not decide between stick and slip. above and below are the least of mu n - f and of mu n +
+    f.
     """
     j, gap, margin = of
     sign = 1.0 if gap > 0.0 else -1.0
@@ -134,9 +133,10 @@ def one_sided_slips(
     seen: list[int],
     options: ResidualFrictionOptions = SHOOTING.traction,
 ) -> list[tuple[int, float]]:
-    """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
+    """Contacts that slip in one direction only, each with a correction of its closure.
 
-    None of these is periodic: the slip takes the force to its limit, where the contact sticks.
+    With it the closure is continuous with the gap of a `Choice`. No such motion is periodic: the slip moves
+    the force to its limit, where the contact then sticks.
     """
     found = []
     for j, states in enumerate(seen):
@@ -150,7 +150,7 @@ def one_sided_slips(
 def limit_distances(
     system: EquationsOfMotion, segments: Segments, contacts: list[int]
 ) -> dict[int, tuple[Extreme, Extreme]]:
-    """Least values of mu n - f and of mu n + f over the segments, for each contact."""
+    """Least values of mu n - f and of mu n + f over the segments, by contact."""
     found, _ = extremes_by(system.limits, system, segments)
     return {j: (found[2 * j], found[2 * j + 1]) for j in contacts}
 
@@ -158,7 +158,7 @@ def limit_distances(
 def _room_derivative(
     system: EquationsOfMotion, segments: Segments, j: int, sign: float, place: Extreme
 ) -> tuple[FloatArray, float]:
-    """The derivatives of the least of mu n - sign f by x and by the frequency."""
+    """The derivatives of the least value of mu n - sign f by x and by the frequency."""
     columns = derivative_at(system, segments, place.segment, place.position).columns
     rates = columns[:-1, : system.linear] @ system.limit_rows[2 * j + (sign < 0.0)]
     return rates[:-1], float(rates[-1])

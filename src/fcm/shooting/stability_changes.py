@@ -1,7 +1,7 @@
-"""Changes of stability between two points of an exact curve.
+"""Location of changes of stability between two points of an exact curve.
 
-While the sequence of states stays, the multipliers change smoothly; where it changes they may jump, as where
-a contact begins to slip. A contact that always sticks has a multiplier 1 on either side and tells nothing.
+The multipliers are smooth while the sequence of states stays the same. Where it changes they may jump, as
+where a contact begins to slip. The multiplier 1 of a contact that always sticks gives no information.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from fcm.shooting.problem import OrbitProblem
 
 
 class CrossingPoint(NamedTuple):
-    """A place between two points of a path."""
+    """A point between two points of a path."""
 
-    part: float  # of the way: 0 and 1 are the points
-    excess: float  # of the greatest multiplier over where stability ends, on a logarithmic scale
+    part: float  # of the interval: 0 and 1 are the two points
+    excess: float  # logarithm of the greatest multiplier over the stability limit
     z: FloatArray
     direction: FloatArray
-    there: bool  # stability ends there, as far as can be told
+    there: bool  # whether it is at the stability limit within the tolerance
 
 
 def crossing(problem: OrbitProblem, path: Path, first: int) -> CrossingPoint | None:
-    """The last place of the stable side between a point of a path and the next; None if it is not found.
+    """The last stable point between a point of a path and the next; None if it is not found.
 
-    By secants, and in the middle where one does not come nearer. What jumps is located as closely as a
-    change of label is.
+    It is located by the secant method, with bisection where this fails. A jump of the multipliers is located
+    as closely as a change of label.
     """
     ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
     bracket = problem.options.stability.sign_change
@@ -52,9 +52,9 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> CrossingPoint | N
 
 
 def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> CrossingPoint:
-    """The place between two points with its excess.
+    """The point at a part of the interval, with its excess.
 
-    The excess is counted from half of what is sure below the limit, so that what is there is stable.
+    The excess counts from slightly below the limit, half the tolerance, so that a located point is stable.
     """
     shot = problem.shot(z)
     others = np.zeros(0) if shot is None else np.abs(shot.other_multipliers)

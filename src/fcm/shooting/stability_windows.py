@@ -1,8 +1,8 @@
-"""Windows of stability, or of its loss, between two points of an exact curve that agree.
+"""Windows of stability, or of instability, between two points of an exact curve with equal stability.
 
-What tells of them are functions of the multipliers that vary smoothly where those do not; see
-`fcm.stability.bifurcation_functions`. Where the states of the contacts change on the way, multipliers may
-jump, and nothing tells of it: there the middle is looked at.
+They are predicted by functions of the multipliers that are smooth even where the multipliers are not, see
+`fcm.stability.bifurcation_functions`. Where the states of contacts change between the points, multipliers may
+jump, which no function predicts: there the middle is examined.
 """
 
 from __future__ import annotations
@@ -47,16 +47,16 @@ class ClassifiedPoint(Protocol):
 
 
 class Window(NamedTuple):
-    """A place between two points at which stability differs from both."""
+    """A point between two points at which stability differs from that of both."""
 
-    first: int  # of these
+    first: int  # index of the first of the two
     z: FloatArray
     direction: FloatArray
     orientation: float
 
 
 class _PathSamples(NamedTuple):
-    """Functions of the multipliers of all points of a path, (point,) each: see `MultiplierSample`."""
+    """Functions of the multipliers at all points of a path, (point,) each, see `MultiplierSample`."""
 
     length: FloatArray
     stable: npt.NDArray[np.bool_]
@@ -65,15 +65,12 @@ class _PathSamples(NamedTuple):
     pair: FloatArray
 
     def places(self, first: int, end: int) -> list[MultiplierSample]:
-        """Samples of the points from the first to before the end."""
+        """The samples of the points from first to end - 1."""
         rows = zip(*(values[first:end].tolist() for values in self), strict=True)
         return [MultiplierSample(*row) for row in rows]
 
     def suspected(self, jumps: npt.NDArray[np.bool_], options: ShootingOptions) -> list[int]:
-        """Mask of the points after which there may be a window.
-
-        There a dip is foretold, or multipliers may jump.
-        """
+        """Indices of the points after which there may be a window: a predicted dip, or a possible jump."""
         low, high = self.stable[:-1], self.stable[1:]
         dips = np.where(
             low,
@@ -99,9 +96,9 @@ class _PathSamples(NamedTuple):
 def with_windows(
     problem: OrbitProblem, path: Path, points: Sequence[ClassifiedPoint]
 ) -> tuple[Path, list[int]]:
-    """A path with a point inside each window, and the numbers of these points.
+    """A path with a point added inside each window, and the indices of these points.
 
-    points : of the path, in its order.
+    points : those of the path, in its order.
     """
     if not points:
         return path, []
@@ -129,7 +126,7 @@ def with_windows(
 
 
 def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jumps: bool) -> Window | None:
-    """A place in a window between a point and the next, if samples of the points predict one; else None.
+    """A point in a window between points k and k + 1, if there is a predicted one; else None.
 
     jumps : whether multipliers may jump there.
     """
@@ -143,7 +140,7 @@ def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jump
         after: Sequence[MultiplierSample],
         times: int,
     ) -> bool:
-        """Whether a window is found, the way divided so often already; `between` is then there."""
+        """Whether a window is found between low and high, after times divisions; `between` is then in it."""
         nonlocal between
         alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
         again = times < problem.options.stability.max_divisions
@@ -175,9 +172,9 @@ def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jump
 def _multiplier_sample(
     length: float, multipliers: ComplexArray, stable: bool, options: StabilityOptions
 ) -> MultiplierSample:
-    """The sample of a point by its multipliers.
+    """The sample of a point from its multipliers.
 
-    Of contacts that always stick, or stay closed smooth, these are 1 and tell nothing.
+    Multipliers of exactly 1, of contacts that always stick or stay closed without friction, are left out.
     """
     values = tuple(multipliers[multipliers != 1.0].tolist()[: options.windows.max_multipliers])
     growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)

@@ -1,10 +1,10 @@
-"""The steady motion that a simulation comes to: after how many periods it repeats, or how far it ranges.
+"""The steady motion that a simulation reaches: the number of periods after which it repeats, or its range.
 
-A motion repeats if Newton's method on the closure of so many periods finds a stable motion beside the
-simulated one; of several the nearest, as one of a period may be stable beside one of two. One that does not,
-and whose amplitudes neither grow nor decay any more, is quasi-periodic or irregular. That is judged over
-windows of many cycles: what grows or decays does so from each window to the next, where an intermittent
-motion has bursts in some.
+A motion repeats after a number of periods if Newton's method on their closure finds a stable motion close to
+the simulated one. Of several the nearest counts: one of one period and one of two may both be stable. A
+motion that does not repeat, and whose amplitudes neither grow nor decay any more, is quasi-periodic or
+irregular. This is judged over windows of many cycles: growth or decay continues from each window to the next,
+while an intermittent motion has bursts in some.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ class SteadyMotion(NamedTuple):
     periods: int  # after which it repeats; 0 if it is quasi-periodic or irregular
     state: State  # at its start
     states: tuple[str, ...]  # of each contact over the periods, or over the last cycle
-    measure: Measure  # over the periods, or over the cycles that were looked at
-    least: FloatArray  # (dof,) amplitude of a cycle
-    greatest: FloatArray  # (dof,)
+    measure: Measure  # over the periods, or over the examined cycles
+    least: FloatArray  # (dof,) least amplitude of a cycle
+    greatest: FloatArray  # (dof,) greatest amplitude of a cycle
     shares: FloatArray  # (contact, 3) of the time in stick, in slip, open
-    multipliers: npt.NDArray[np.complex128]  # Floquet's over the periods; none of periods 0
-    error: float  # by which it fails to repeat, relative to the motion; nan of periods 0
+    multipliers: npt.NDArray[np.complex128]  # Floquet multipliers over the periods; empty for periods 0
+    error: float  # closure error, relative to the motion; nan for periods 0
     contact_loads: FloatArray  # (contact, 4) as of `contact_loads`
 
 
 def steady(
     system: EquationsOfMotion, state: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> SteadyMotion | State:
-    """The steady motion that a simulation from a state comes to; without any, the state at its end.
+    """The steady motion that a simulation from a state reaches; without one, the state at its end.
 
     poll is called after every cycle.
 
@@ -79,13 +79,13 @@ def steady(
 
 
 def _distance(one: State, other: State) -> float:
-    """Greatest difference of two states, relative to the displacements and to the velocities."""
+    """Greatest difference of two states, relative to the displacements and the velocities."""
     pairs = ((one.q, other.q), (one.velocity, other.velocity))
     return max(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-300)) for a, b in pairs)
 
 
 def _candidates(ends: Sequence[State], options: ShootingOptions = SHOOTING) -> list[int]:
-    """Numbers of periods after which the motion may repeat, by the states at the ends of its last cycles."""
+    """Numbers of periods after which the motion may repeat, from the states at the ends of cycles."""
     past = np.array([np.concatenate((end.q, end.velocity)) for end in ends])
     size = np.maximum(np.abs(past).max(axis=0), 1e-300)
     apart = np.abs((past[-1] - past[-2::-1]) / size).max(axis=1)
@@ -100,14 +100,14 @@ def _candidates(ends: Sequence[State], options: ShootingOptions = SHOOTING) -> l
 
 
 def _linear(cycles: Sequence[Cycle]) -> bool:
-    """Whether no contact changes its state: what is left of the start then decays, however slowly."""
+    """Whether no contact changes its state: the transient then decays, however slowly."""
     return all(bool((np.ptp(np.asarray(cycle.segments.states), axis=0) == 0).all()) for cycle in cycles)
 
 
 def _repeating(
     system: EquationsOfMotion, state: State, periods: int, near: float, options: ShootingOptions = SHOOTING
 ) -> SteadyMotion | None:
-    """The stable motion near a state that repeats after so many periods and not before."""
+    """The stable motion near a state that repeats after this number of periods and not earlier; or None."""
     x = np.concatenate((state.q, state.velocity, state.friction))
     shot = _closed(system, x, x, periods, options)
     if shot is None or np.abs((shot.x - x) / shot.scale)[: 2 * system.modes].max() > near:
@@ -120,7 +120,7 @@ def _repeating(
 
 
 def multi_period_motion(shot: Shot) -> SteadyMotion | None:
-    """A motion of several periods, stable or not, as a steady motion; None of one period."""
+    """A motion of several periods, stable or not, as a steady motion; None for one period."""
     return _of_shot(shot) if shot.periods > 1 else None
 
 
@@ -142,9 +142,9 @@ def _closed(
     periods: int,
     options: ShootingOptions = SHOOTING,
 ) -> Shot | None:
-    """The shot of so many periods near x that closes; None without any.
+    """The shot of a number of periods near x that closes; None without one.
 
-    Contacts that never slip rest where they do in member.
+    Contacts that never slip keep the rest positions of the state member.
     """
     try:
         found = converged(Shot(system, x, resting_at(system, member), periods), options=options)
@@ -154,7 +154,7 @@ def _closed(
 
 
 def _shorter(shot: Shot, options: ShootingOptions = SHOOTING) -> Shot | None:
-    """The motion over fewer periods, if it repeats before; else None."""
+    """The motion over fewer periods, if it repeats earlier; else None."""
     for k in range(1, shot.periods):
         if shot.periods % k == 0:
             part = Shot(shot.system, shot.x, periods=k)
@@ -164,10 +164,10 @@ def _shorter(shot: Shot, options: ShootingOptions = SHOOTING) -> Shot | None:
 
 
 def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions = SHOOTING) -> Shot | None:
-    """The motion of twice the periods of another that a simulated state at x is leaving by turns.
+    """The motion of doubled period near an unstable one that the simulated state x leaves alternately.
 
-    Just beyond a flip the simulation leaves so slowly that Newton's method goes back; from further off on the
-    same way it does not.
+    Just beyond a flip the simulation leaves so slowly that Newton's method returns to the unstable motion.
+    From farther away in the same direction it does not.
     """
     if periods != 2 * once.periods or once.multipliers[0].real >= -1.0:
         return None
@@ -186,7 +186,7 @@ def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions =
 def _ranging(windows: Sequence[list[Cycle]], options: ShootingOptions = SHOOTING) -> SteadyMotion | None:
     """The motion over windows of cycles that do not repeat; None if its amplitudes grow or decay.
 
-    If they do over all windows, it is that over the last one alone, judged by its halves.
+    If they grow or decay over all windows, only the last window counts, judged by its halves.
     """
     measures = [[measure(cycle) for cycle in window] for window in windows]
     amplitudes = [np.array([one.amplitude for one in window]) for window in measures]
@@ -221,7 +221,7 @@ def grows_or_decays(windows: Sequence[FloatArray], options: ShootingOptions) -> 
 
 
 def combined_measure(measures: Sequence[Measure]) -> Measure:
-    """Measures of successive cycles as of one motion: its extremes, its mean, its fundamental.
+    """Combine the measures of successive cycles of one motion: extremes, mean and fundamental.
 
     >>> import numpy as np
     >>> one, other = (Measure(*np.full((6, 1), x)) for x in (1.0, 3.0))
@@ -236,7 +236,7 @@ def combined_measure(measures: Sequence[Measure]) -> Measure:
 
 
 def state_fractions(cycles: Sequence[Cycle]) -> FloatArray:
-    """Parts of the time that each contact sticks, slips and is open: (contact, 3)."""
+    """Fractions (contact, 3) of the time in which each contact sticks, slips and is open."""
     total = np.zeros((len(cycles[0].system.contacts), 4))
     for cycle in cycles:
         lasts = np.diff(np.append(np.asarray(cycle.segments.start), cycle.duration))

@@ -1,4 +1,4 @@
-"""The curves of periodic solutions of a scene over its frequencies."""
+"""Continuation of all curves of periodic solutions of a scene over its frequency range."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ Progress = Callable[[float, str], None]
 
 @dataclass
 class Branch:
-    """Periodic solutions along one curve, with the way in which it ended."""
+    """Periodic solutions along one curve, and how it ended."""
 
     orbits: list[OrbitRecord] = field(default_factory=list)  # in the order along the curve
     status: Status = Status.COMPLETE
-    periods: int = 0  # of the motion that were computed
+    periods: int = 0  # number of periods computed
 
     @property
     def folds(self) -> list[OrbitRecord]:
@@ -61,27 +61,27 @@ def trace_orbits(
 ) -> Branch:
     """Follow the periodic solutions of a scene over its frequency range, stable or not.
 
-    Pseudo-arclength continuation of the exact motion: the same points as `periodic` finds, in order, through
-    folds and through the corners at which regimes begin.
+    This is pseudo-arclength continuation of the exact motion, through folds and through corners at which
+    regimes begin. Its points are solutions that `periodic` finds.
 
     Parameters
     ----------
     scene : Scene
         Its `frequency_range` is traced.
     max_step : float, optional
-        Longest step along the curve, relative to the range and to the size of the motion; by default the
-        scene's.
+        Longest step along the curve, relative to the range and to the size of the motion; the scene's by
+        default.
     start : Orbit, optional
-        Where to start, at an end of the range; at its lower end, from rest, by default.
+        Start at an end of the range; by default from rest at its lower end.
     progress : optional
-        Called now and then with the fraction of the range that is covered and a text.
+        Called regularly with the covered fraction of the range and a text.
     options : ShootingOptions, optional
         Tolerances and limits.
 
     Raises
     ------
     SimulationError
-        If no periodic solution is found to start from.
+        If no periodic solution is found as a start.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def trace_orbits(
 
 
 class Explored(NamedTuple):
-    """All branches of a scene, and how many of them have a mirror image that is not among them."""
+    """All branches of a scene, a sentence on missing ones, and the number of mirror images left out."""
 
     paths: list[Path]
     missing: str
@@ -119,12 +119,11 @@ def explore(
     most: float = np.inf,
     uncertain: UncertainFrequencies | None = None,
 ) -> Explored:
-    """All branches of a scene as paths, and a sentence on what is missing, else ''.
+    """Find and follow all branches of a scene; return them with a sentence on what is missing, else ''.
 
-    uncertain takes the frequencies of the balance that leads to them.
-
-    That is why there is no solution at an end of the range, and why the search for further branches was given
-    up: what leads to them may take so many seconds of processor time.
+    The sentence says why an end of the range has no solution, and why the search for further branches was
+    given up. The search for their starts may take at most `most` seconds of processor time. uncertain
+    receives the uncertain frequencies of the balance that gives starts.
     """
     scene = problem.scene
     found, missed, sought, apart = find_initial_orbits(problem, poll)
@@ -146,7 +145,7 @@ def explore(
     if not bounded.given_up:
         paths = search.with_motions(paths, orbits_in_unstable_ranges(problem, paths, poll))
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
-    if not bounded.given_up:  # else that is said
+    if not bounded.given_up:  # else this is the reason given
         lost = [
             omega for omega, height in search.unreached if not _reaches_height(problem, paths, omega, height)
         ]
@@ -160,7 +159,7 @@ def explore(
 
 
 def _by_cause(reasons: Sequence[str]) -> list[str]:
-    """Reasons with the same cause behind a colon merged into one.
+    """Merge reasons with the same cause after the colon.
 
     >>> _by_cause(["none at 1 Hz: no damping", "none at 2 Hz: no damping", "none at 3 Hz"])
     ['none at 1 Hz and none at 2 Hz: no damping', 'none at 3 Hz']
@@ -173,7 +172,7 @@ def _by_cause(reasons: Sequence[str]) -> list[str]:
 
 
 def _reaches_height(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
-    """Whether a path has motions as high as the balance beside a frequency [rad/s]."""
+    """Whether a path has motions as high as the balance near a frequency [rad/s]."""
     for path in paths:
         near = path.z[np.abs(path.parameter / omega - 1.0) < problem.options.balance.accuracy]
         if any(height_of(problem, z) >= problem.options.start.min_height * height for z in near):
@@ -185,8 +184,9 @@ def _reaches_height(problem: OrbitProblem, paths: Sequence[Path], omega: float, 
 class _BranchSearch:
     """Search for further branches of a problem.
 
-    unreached: frequencies [rad/s] and amplitudes of the balance, from where it led to no motion as high.
-    images: two mirror images at each branch point at which a branch of unsymmetric motions leaves.
+    unreached: frequencies [rad/s] and amplitudes of points of the balance from which no motion as high was
+    found. images: the two mirror images at each branch point from which a branch of unsymmetric motions
+    leaves.
     """
 
     problem: OrbitProblem
@@ -197,10 +197,11 @@ class _BranchSearch:
     images: list[Sequence[FloatArray]] = field(default_factory=list)
 
     def with_others(self, paths: tuple[Path, ...], apart: bool) -> tuple[Path, ...]:
-        """Paths with those that the converged balance and the level of the forces lead to.
+        """Add the paths found from the converged balance and from continuation in the force level.
 
-        The level is not followed where each end and peak of that balance leads to a motion as high. What led
-        to none is added to `unreached`, see `BalanceOrbits`. apart as of `converged_balance`.
+        The latter is skipped if a motion as high was found from each end and peak of the balance. Points of
+        the balance without such a motion are added to `unreached`, see `BalanceOrbits`. apart is that of
+        `converged_balance`.
         """
         problem, bounded, scene = self.problem, self.bounded, self.problem.scene
         high = True
@@ -231,8 +232,8 @@ class _BranchSearch:
         return paths
 
     def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:
-        """Paths with those through motions that none of them passes, unless too many break off."""
-        for z in motions:  # what is passed already is known without being followed again
+        """Add the paths through motions that no path passes, unless too many paths break off."""
+        for z in motions:  # no path is followed through a motion that is passed already
             if self.too_many_broken(paths):
                 break
             if not is_known(paths, [z], self.problem):
@@ -240,7 +241,7 @@ class _BranchSearch:
         return paths
 
     def _with_branches_through(self, paths: tuple[Path, ...], z: FloatArray) -> tuple[Path, ...]:
-        """Paths with the branch through a motion, unless they have it already."""
+        """Add the branch through a motion, unless it is among the paths."""
         problem, more = self.problem, self.branches([z], known=paths).paths[len(paths) :]
         fresh = (one for one in more if not is_known(paths, distinct_motions(one, problem.options), problem))
         return (*paths, *fresh)
@@ -248,7 +249,7 @@ class _BranchSearch:
     def with_branching(
         self, paths: tuple[Path, ...], options: BranchingOptions = BRANCHING
     ) -> tuple[Path, ...]:
-        """Paths with those that leave them at branch points, unless too many break off."""
+        """Add the paths that leave at branch points, unless too many paths break off."""
         problem = self.problem
 
         def points(fresh: Sequence[Path]) -> Iterator[BranchPoint]:
@@ -265,10 +266,10 @@ class _BranchSearch:
     def _with_branches_at(
         self, paths: tuple[Path, ...], starts: Sequence[FloatArray], options: BranchingOptions
     ) -> tuple[Path, ...]:
-        """Paths with the branches through starts at a branch point, unless they have them already.
+        """Add the branches through starts at a branch point, unless they are among the paths.
 
-        So near another path Newton's method leads to that. Two starts with the same amplitudes are taken for
-        images: elsewhere amplitudes change to either side by opposite amounts.
+        So close to another path, Newton's method may lead to that one. Two starts with the same amplitudes
+        count as mirror images: otherwise amplitudes change by opposite amounts on the two sides.
         """
         problem = self.problem
         if not self._are_images(starts, options):
@@ -282,14 +283,16 @@ class _BranchSearch:
         return (*paths, *(part for one in new for part in self._new_parts(one, paths)))
 
     def without_images(self, paths: Sequence[Path]) -> tuple[list[Path], int]:
-        """Paths with one of two that are mirror images, and half of one that is its own; and how many images
-        are left out."""
+        """Leave out mirror images; return the remaining paths and the number of images left out.
+
+        Of two images one remains, and of a path that is its own image one half.
+        """
         kept, mirrored = dict(enumerate(paths)), 0
         for starts in self.images:
             one, other = (
                 next((k for k, path in kept.items() if contains(path, z, self.problem)), None) for z in starts
             )
-            if one is None or other is None:  # it was left out
+            if one is None or other is None:  # already left out
                 continue
             half = symmetric_half(kept[one]) if one == other else kept[one]
             mirrored += half is not kept[one] or one != other
@@ -299,7 +302,7 @@ class _BranchSearch:
         return list(kept.values()), mirrored
 
     def _new_parts(self, path: Path, paths: Sequence[Path]) -> list[Path]:
-        """The parts of a path between its branch points that no other path has, joined where they meet."""
+        """The parts of a path, between branch points, that no other path has; adjacent ones are joined."""
         ends = [0, *(i + 1 for i in sign_changes(path.orientation)), len(path.z)]
         middles = [(first + end) // 2 for first, end in pairwise(ends)]
         new = [not any(contains(one, path.z[i], self.problem) for one in paths) for i in middles]
@@ -315,7 +318,7 @@ class _BranchSearch:
         ]
 
     def _are_images(self, starts: Sequence[FloatArray], options: BranchingOptions) -> bool:
-        """Whether there are two starts, with the same amplitudes."""
+        """Whether there are two starts with the same amplitudes."""
         amplitudes = [shot.amplitude for z in starts if (shot := self.problem.shot(z)) is not None]
         if len(amplitudes) < 2:
             return False
@@ -323,22 +326,23 @@ class _BranchSearch:
         return bool(off <= options.motion_tolerance * np.max(amplitudes))
 
     def too_many_broken(self, paths: Sequence[Path]) -> bool:
-        """Whether so many paths have come to no end that no more are looked for."""
+        """Whether so many paths have broken off that no more are sought."""
         count = sum(not path.status.is_whole for path in paths)
         return count >= self.problem.options.search.max_broken
 
 
 def is_known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
-    """Whether most of some motions are passed by a path.
+    """Whether paths pass the majority of some motions.
 
-    At a branch point those of another branch are, too; and one next to a fold may not be found.
+    A single motion does not decide: at a branch point another branch passes it, and next to a fold it may not
+    be found.
     """
     known = sum(any(passes(path, z, problem) for path in paths) for z in motions)
     return 2 * known > len(motions)
 
 
 def distinct_motions(path: Path, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
-    """Motions of a path far from one another: at a fold one may not be found on another path that has it."""
+    """Motions of a path at equal intervals of points, for `is_known`."""
     chosen = np.linspace(0.0, len(path.z) - 1.0, options.search.compared_motions)
     return list(path.z[chosen.astype(np.intp)]) if len(path.z) else []
 
@@ -350,7 +354,7 @@ def branch_of(problem: OrbitProblem, path: Path) -> Branch:
 
 
 def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
-    """Reasons why the curve of some paths is not complete, else ''."""
+    """Reasons why the curve of some paths is incomplete, else ''."""
     broken = [path for path in paths if not path.status.is_whole]
     reasons = dict.fromkeys(
         f"stopped at {frequency_text(scene, path.parameter[-1])}: {path.status.value}" for path in broken
@@ -360,7 +364,7 @@ def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
 
 
 def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
-    """Where a curve was stopped, in words, and how often it turned back: with light damping, very often."""
+    """Text on where a curve was stopped and on its number of folds, which is great with light damping."""
     if not paths:
         return "the start"
     folds = sum(path.where(Mark.FOLD).size for path in paths)
@@ -376,10 +380,10 @@ def frequency_text(scene: Scene, omega: float) -> str:
 def orbits_in_unstable_ranges(
     problem: OrbitProblem, paths: Sequence[Path], poll: Poll
 ) -> Iterator[FloatArray]:
-    """The stable motions (unknown + 1,) that simulations from rest come to in the widest stretches of the
-    range in which every motion of some paths is unstable.
+    """Yield stable motions (unknown + 1,) from simulations from rest where all motions of paths are unstable.
 
-    A structure with a mode that nothing damps comes to none.
+    The frequencies are the middles of the widest such stretches of the range. Nothing is simulated if a mode
+    is undamped.
     """
     scene = problem.scene
     if not (scene.modal.damping > 0.0).all():
@@ -390,7 +394,7 @@ def orbits_in_unstable_ranges(
             orbit = approached(EquationsOfMotion(scene, 0.5 * (low + high)), poll, problem.options)
             if orbit.stable:
                 yield first_point(problem, orbit, poll)
-        except SimulationError:  # it does not become periodic, or is not determined
+        except SimulationError:  # the motion does not become periodic, or is not determined
             continue
 
 

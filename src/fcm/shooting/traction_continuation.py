@@ -1,4 +1,4 @@
-"""A way through the family of motions over the residual friction of contacts that always stick."""
+"""Continuation in the family of motions over the residual friction of contacts that always stick."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcm.time_domain.errors import SimulationError
 
 
 class TractionPath:
-    """The family in one direction, until every contact that is pushed is at its limit, or others stick."""
+    """The family in one direction, until all pushed contacts are at their limits, or other contacts stick."""
 
     def __init__(
         self,
@@ -28,8 +28,8 @@ class TractionPath:
         self.options = options
         self.system, self.last, self.contacts, self.ended = begun.system, begun, contacts, False
         self.poll = poll
-        self.beyond: Shot | None = None  # the motion just beyond the end, where others stick
-        self.tried = 0  # motions that were looked for
+        self.beyond: Shot | None = None  # the motion just beyond the end, where other contacts stick
+        self.tried = 0  # number of motions tried
         self.room = self._limit_distances(begun)
         self.most_room = self.room.sum(axis=1)  # the greatest so far
         self.push = np.zeros(len(self.system.contacts))
@@ -37,10 +37,10 @@ class TractionPath:
         self.far = self.options.family.max_distance * float(
             max(self.most_room.max(), np.abs(residual_of(begun)).max())
         )
-        self.slope: FloatArray | None = None  # of x by the share of the push
+        self.slope: FloatArray | None = None  # derivative of x by the share of the push
 
     def shots(self, tries: int) -> Iterator[Shot]:
-        """The motions on the way, the last one at the limits, as far as so many trials lead."""
+        """Yield the motions along the direction, the last one at the limits, with at most this many tries."""
         share = longest = 1.0
         most = self.options.family.max_factor
         while share > self.options.family.min_step * longest and not self.ended and self.tried < tries:
@@ -58,9 +58,9 @@ class TractionPath:
         self.ended |= self.beyond is not None
 
     def _growth(self, new: Shot) -> float:
-        """Ratio of the next step to the last one.
+        """Ratio of the next step to the last one, from the change of the distances to the limits.
 
-        Most of a step moves the structure where that is softer than the contact.
+        Where the structure is softer than a contact, a step mostly moves the structure.
         """
         before, self.room = self.room, self._limit_distances(new)
         self.most_room = np.maximum(self.most_room, before.sum(axis=1))
@@ -68,12 +68,15 @@ class TractionPath:
         return 1.0 / (self.options.family.steps * max(float(used.max()), self.options.family.zero_distance))
 
     def _limit_distances(self, shot: Shot) -> FloatArray:
-        """Distances of each contact's force from its limits, (contact, 2)."""
+        """Distances (contact, 2) of each contact's friction force from its two limits."""
         found = limit_distances(self.system, shot.segments, self.contacts)
         return np.array([(found[j][0].value, found[j][1].value) for j in self.contacts])
 
     def _next_motion(self, share: float) -> Shot | None:
-        """The motion when the contacts are stressed by one more step; None without any."""
+        """The motion after a further step of the residual friction; None if it is not found.
+
+        It is also None if other contacts stick in it; `beyond` is then this motion.
+        """
         guess = None if self.slope is None else self.last.x + share * self.slope
         new = with_traction(
             self.last, -(residual_of(self.last) + share * self.push), guess, self.poll, self.options
@@ -91,11 +94,11 @@ def with_traction(
     poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> Shot | None:
-    """The motion near another whose contacts rest where they would have the friction forces k_u w."""
+    """The motion near another whose sticking contacts have the slip motions w = force / k_u; or None."""
     system, x = shot.system, shot.x.copy() if guess is None else guess
     change = -(force + residual_of(shot))
     for choice in shot.chosen:
-        if guess is None and not choice.limited:  # else it may be sent further beyond
+        if guess is None and not choice.limited:  # a limited one might be moved farther beyond its limit
             x[system.f.start + choice.contact] += change[choice.contact]
     w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
     try:
@@ -114,18 +117,18 @@ def with_traction(
 def midpoint(
     one: Shot, other: Shot, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Shot | None:
-    """The motion with the mean of the residual friction of two that are near to one another."""
+    """The motion with the mean residual friction of two motions that are close to each other."""
     return with_traction(
         one, -0.5 * (residual_of(one) + residual_of(other)), 0.5 * (one.x + other.x), poll, options
     )
 
 
 def sticking_contacts(shot: Shot) -> list[int]:
-    """The contacts that stick all through a motion."""
+    """The contacts that stick throughout a motion."""
     return always_stuck(shot.system, shot.segments)
 
 
 def residual_of(shot: Shot) -> FloatArray:
-    """The friction forces that are left when the displacement is taken away, -k_u w: (contact,)."""
+    """The residual friction forces -k_u w (contact,), which remain at zero displacement."""
     force: FloatArray = -shot.system.k_u * resting_at(shot.system, shot.x)
     return force

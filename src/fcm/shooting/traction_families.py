@@ -1,11 +1,11 @@
-"""The family of periodic motions of a scene with contacts that always stick, over their residual friction.
+"""The family of periodic motions of a scene over the residual friction of contacts that always stick.
 
-The slider of such a contact may rest anywhere between its limits, and every place gives a steady motion. The
-family is followed from the motion that is chosen to the limits of one contact after the other, in both
-directions, and of all together. Where the other contacts do not feel it, the amplitudes stay the same; where
-one begins to slip, or to stick, the family goes on from there with those that stick then.
+The slider of such a contact may rest anywhere between its limits, and every position gives a steady motion.
+The family is followed from a given motion to the limits of each single contact, in both directions, and of
+all contacts together. Where other contacts are not affected, the amplitudes stay the same. Where a contact
+begins to slip, or to stick, the family continues from there with the contacts that then stick.
 
-Of a stable motion the extent is that of the stable members, which a structure shows; of another that of all.
+For a stable motion the extent is that of the stable members, which a structure can show; else that of all.
 """
 
 from __future__ import annotations
@@ -35,17 +35,21 @@ from fcm.units import spoken
 
 
 class Family(Frozen):
-    """The range of the periodic motions at one frequency over the residual friction of stuck contacts."""
+    """The range of periodic motions at one frequency over the residual friction of stuck contacts.
 
-    contacts: tuple[int, ...]  # that always stick
-    friction: FloatArray  # (contact, 2) least and greatest friction force k_u w from which they are reached
-    least: FloatArray  # (dof,) amplitude, half the peak-to-peak, of the stable members if it is sought from
-    greatest: FloatArray  # (dof,) one, else of all
-    complete: bool  # whether every way was followed to its end
+    Amplitudes are half the peak-to-peak. They are those of the stable members if the given motion is stable,
+    else of all members.
+    """
+
+    contacts: tuple[int, ...]  # contacts that always stick
+    friction: FloatArray  # (contact, 2) least and greatest residual friction force -k_u w of the members
+    least: FloatArray  # (dof,) least amplitude
+    greatest: FloatArray  # (dof,) greatest amplitude
+    complete: bool  # whether every direction was followed to its end
 
     @property
     def spread(self) -> FloatArray:
-        """Range of each amplitude in the family, relative to its greatest value: (dof,)."""
+        """Range (dof,) of each amplitude in the family, relative to its greatest value."""
         size = np.where(self.greatest > 0.0, self.greatest, 1.0)
         return (self.greatest - self.least) / size
 
@@ -64,13 +68,13 @@ def family(
     ----------
     scene : Scene
     frequency : float
-        Of the external forces [rad/s].
+        Frequency of the external forces [rad/s].
     state : State
-        Of a periodic motion at the forces' angle 0.
+        State of a periodic motion at the forces' angle 0.
     periods : int
-        Of the force, after which it repeats.
+        Periods of the force after which it repeats.
     poll : callable, optional
-        Called now and then; raises what ends the search.
+        Called regularly; raises an exception to end the search.
 
     Raises
     ------
@@ -113,7 +117,7 @@ def family(
 def members(
     begun: Shot, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> tuple[list[Shot], bool]:
-    """Motions of the family up to its ends, and whether these were reached on every way."""
+    """Motions of the family up to its ends, and whether the ends were reached in every direction."""
     shots, waiting, seen, complete = [begun], [begun], list[_VisitedTractions](), True
     left = options.family.max_motions
     while waiting:
@@ -138,7 +142,7 @@ def members(
 
 
 class _VisitedTractions:
-    """The residual friction of motions already followed with the same contacts that stick."""
+    """The range of residual friction of motions already followed with the same sticking contacts."""
 
     def __init__(self, contacts: list[int], residual: FloatArray, options: ShootingOptions) -> None:
         self.options = options
@@ -146,9 +150,9 @@ class _VisitedTractions:
         self.low, self.high = residual[:, contacts].min(axis=0), residual[:, contacts].max(axis=0)
 
     def contains(self, contacts: list[int], shot: Shot) -> bool:
-        """Whether a motion lies within the range visited; another part may be beyond a gap.
+        """Whether a motion lies within the visited range.
 
-        In that other contacts stick.
+        Another part of the family may lie beyond a gap in which other contacts stick.
         """
         if contacts != self.contacts:
             return False
@@ -158,9 +162,9 @@ class _VisitedTractions:
 
 
 def _refined(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
-    """Further motions beside those, within a line, at which an amplitude is greatest or least.
+    """Further motions next to those of a line at which an amplitude is greatest or least.
 
-    Where it is so at an end, it may be more so beside that.
+    An extreme at an end of the line may have a more extreme motion next to it.
     """
     amplitude = np.array([shot.amplitude for shot in line])
     flat = np.ptp(amplitude, axis=0) <= options.family.amplitude_tolerance * amplitude.max(axis=0)
@@ -179,16 +183,16 @@ def _refined(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) 
 
 
 class _MidpointCache:
-    """Motions between two others, each computed once: several amplitudes are often extreme together."""
+    """Cache of motions between two others: several amplitudes often have their extremes together."""
 
     def __init__(self, poll: Poll, options: ShootingOptions) -> None:
         self.poll, self.options = poll, options
         self.known: dict[tuple[int, int], tuple[Shot, Shot, Shot | None]] = {}
 
     def of(self, one: Shot, other: Shot) -> Shot | None:
-        """The motion between two; None where it is not found."""
+        """The motion between two others; None if it is not found."""
         key = min(id(one), id(other)), max(id(one), id(other))
-        if key not in self.known:  # which keeps both, and with them their numbers
+        if key not in self.known:  # the cache keeps both alive, so that their ids stay unique
             self.known[key] = one, other, midpoint(one, other, self.poll, self.options)
         return self.known[key][2]
 
@@ -198,7 +202,7 @@ class _MidpointCache:
 
 
 def _last_stable(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
-    """Motions ever nearer to where, within a line, stability is lost: the last stable ones."""
+    """The last stable motions next to each loss of stability within a line, by bisection."""
     added = list[Shot]()
     for pair in pairwise(line):
         if _stable(pair[0], options) == _stable(pair[1], options):
@@ -218,7 +222,7 @@ def _stable(shot: Shot, options: ShootingOptions = SHOOTING) -> bool:
 
 
 def _extreme_near(near: list[Shot], sense: float, dof: int, middles: _MidpointCache) -> None:
-    """Look ever nearer to the greatest, or least, amplitude of a degree of freedom among three motions."""
+    """Refine the greatest (sense 1) or least (-1) amplitude of a degree of freedom among three motions."""
     for _ in range(middles.options.family.halvings_to_extreme):
         one, other = middles.of(near[0], near[1]), middles.of(near[1], near[2])
         if one is None or other is None:
@@ -229,7 +233,7 @@ def _extreme_near(near: list[Shot], sense: float, dof: int, middles: _MidpointCa
 
 
 def _directions(count: int, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
-    """Directions in which the family is followed, either way: each contact alone, and all together."""
+    """Directions in which the family is followed, both ways: each contact alone, and all together."""
     alone = list(np.eye(count))
     if count == 1:
         return alone
@@ -241,7 +245,7 @@ def _directions(count: int, options: ShootingOptions = SHOOTING) -> list[FloatAr
 def member_at_start(
     shot: Shot, wanted: FloatArray, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Shot | None:
-    """The member that a scene chooses of the family that a motion belongs to, in as many steps as it takes.
+    """The member of a motion's family with the residual friction of the scene's start; None if not reached.
 
     Parameters
     ----------

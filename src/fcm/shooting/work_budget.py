@@ -1,4 +1,4 @@
-"""Time limit of the search for what leads to further branches."""
+"""Time limit of the search for starts of further branches."""
 
 from __future__ import annotations
 
@@ -20,25 +20,26 @@ Found = TypeVar("Found")
 
 @dataclass
 class UncertainFrequencies:
-    """Frequencies [rad/s] at which the balance that exact motions begin near may lack branches.
+    """Frequencies [rad/s] at which the balance that gives starts of exact motions may lack branches.
 
-    levels: where the level of the forces was not followed to its end; folds: from where its folds were not.
+    levels: where the curve in the level of the forces was not followed to its end; folds: where its folds
+    were not.
     """
 
     levels: list[float] = field(default_factory=list)
     folds: list[float] = field(default_factory=list)
 
     def replace_with(self, found: Traced) -> None:
-        """Take the uncertain frequencies of a traced balance, in the place of others."""
+        """Replace the frequencies by those of a traced balance."""
         self.levels[:] = [one.omega for one in found.found if not one.complete]
         self.folds[:] = found.folds_lost
 
 
 class BranchBudget:
-    """Limit of the processor time of the search for what leads to further branches.
+    """Limit of the processor time of the search for starts of further branches.
 
-    outside : called now and then, all the while; `poll` is to be called while it is sought.
-    given_up : why there may be more branches than those, empty if all was sought.
+    outside : poll that is always called; `poll` is to be called during the search.
+    given_up : reasons why branches may be missing, empty if the search is complete.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class BranchBudget:
         self._end, self._left = np.inf, most
 
     def poll(self) -> None:
-        """Raise `WorkLimitError` when the search has taken its time."""
+        """Raise `WorkLimitError` if the search has used up its time."""
         from fcm.harmonic_balance.work_budget import WorkLimitError
 
         self.outside()
@@ -64,7 +65,7 @@ class BranchBudget:
             self._ask = time.monotonic() + self.options.search.poll_interval
 
     def each(self, finds: Iterator[Found]) -> Iterator[Found]:
-        """Results one after the other; what is done with them in between takes nothing of their time."""
+        """Yield the results of a search; only the search itself uses up its time, not the caller."""
         from fcm.harmonic_balance.work_budget import WorkLimitError
 
         while True:
@@ -81,7 +82,7 @@ class BranchBudget:
             yield found
 
     def share(self, count: int) -> float:
-        """An equal share [s] of the time that is left, for the next of so many searches."""
+        """Start the next of count searches, with an equal share [s] of the remaining time; return it."""
         found = self._left / count
         self._end = self._begin + found
         return found
