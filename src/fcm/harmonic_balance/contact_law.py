@@ -284,8 +284,8 @@ class SingleHarmonicLaw(Law):
     def evaluate_margins(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Fill the margins of a contact; all are forces.
 
-        They are the greatest and the least normal load over the cycle; the distance below the slip limit
-        (25); and, where the contact never slips, the two distances of the mean friction from its limits.
+        They are the greatest and the least normal load over the cycle, and the distance below the slip limit
+        (25). Where the contact never slips, the distances of the mean friction from its two limits follow.
         """
         self.limits(x, first, hypot(x[first + 4], x[first + 5]))
         return 0

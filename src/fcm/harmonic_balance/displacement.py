@@ -23,8 +23,8 @@ class Extremes:
 
     Input: re, im (harmonic, dof) of X, and d_re, d_im of its rate. parts (4 * harmonic, dof) holds all four.
 
-    Output: amplitude (dof,) is half the peak-to-peak displacement, |X| with one harmonic; growth (dof,) is
-    its rate; angles (2, dof) are those of the greatest and the least displacement, with several harmonics.
+    Output: amplitude (dof,) is half the peak-to-peak displacement, |X| with one harmonic. growth (dof,) is
+    its rate. angles (2, dof) are those of the greatest and the least displacement, with several harmonics.
     """
 
     def __init__(

@@ -2,7 +2,7 @@
 
 A contact force is the stiffness times a difference of displacements, which has one rounding error. Relative
 to the force that the structure bears, this is k |G| rounding errors. At a change from stick to slip no curve
-can be followed with an error above some 1e-9. A far softer contact is already nearly rigid: the effect of its
+can be followed with an error above some 1e-9. A far softer contact is already nearly rigid. The effect of its
 compliance falls at least as the inverse root of the stiffness, as for a mass that bounces on it. A resonance
 or a bounce of the structure magnifies this effect.
 """

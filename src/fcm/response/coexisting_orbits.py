@@ -1,8 +1,8 @@
 """Stable motions at the visited frequencies that neither sweep reaches.
 
 A sweep follows one motion at a time. So the two sweeps reach at most two of several stable motions at a
-frequency, and one if there is a single frequency. Guesses for others are all solutions of the balance: those
-that continuation in the force level reaches from rest, and those of its branches over the scene's range.
+frequency, and one if there is a single frequency. Guesses for others are the solutions of the balance that
+continuation in the force level reaches from rest, and those on its branches over the scene's range.
 Further guesses are the motions in which contacts stick as the scene starts, and the state of rest.
 """
 

@@ -1,7 +1,7 @@
 """``--only peaks``: peaks, folds and jumps of exact curves, located near those of the balance.
 
-If the two do not correspond one to one, or one harmonic is far from the motion, the whole curve is followed
-and its other points are left out.
+If the two do not correspond one to one, or one harmonic is far from the motion, the whole curve is followed.
+Its other points are then left out.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def trace(
         Relative accuracy of peaks and folds that chooses the harmonics instead. The default is the scene's,
         or 1e-2 if no harmonics are given.
     options : ResponseOptions, optional
-        Tolerances and limits; the tolerance in `reduction` decides what is left out, `sweep` if points are.
+        Tolerances and limits; `reduction.tolerance` decides on modes left out, `sweep.peaks_only` on points.
 
     Raises
     ------

@@ -19,8 +19,8 @@ def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.b
     """Mask of the points at which a contact never slips and its residual friction may affect another.
 
     states (point, contact). The other contact changes its state within the cycle, or its load depends on the
-    residual friction, so that it may slip, open or close with a different one. A single contact sticks in the
-    same motion for every residual friction with which it sticks at all.
+    residual friction. With different residual friction it may slip, open or close. A single contact sticks in
+    the same motion for every residual friction with which it sticks at all.
 
     >>> import fcm
     >>> from dataclasses import replace

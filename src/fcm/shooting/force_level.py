@@ -1,10 +1,10 @@
 """Exact motions found by continuation in the level of the forces, from rest.
 
-The level is the parameter at the frequencies that a balance uses for this (`branches.force_level`). The curve
-goes from nearly 0, where the motion is linear, to well beyond the last crossing of level 1 by the balance of
-a few harmonics. Every crossing of level 1 is an exact motion. Curves are also followed, in both directions,
-from known motions that this curve does not pass, or does not reach because it stalls. Where a curve turns
-back below level 1, several motions may exist at other frequencies (`level_folds`).
+The level is the parameter at the frequencies that a balance uses for this (`branches.force_level`). Each
+curve goes from nearly 0, where the motion is linear, to well beyond the last crossing of level 1 by the
+balance of a few harmonics. Every crossing of level 1 is an exact motion. Curves are also followed, in both
+directions, from known motions that this curve does not pass, or does not reach because it stalls. Where a
+curve turns back below level 1, several motions may exist at other frequencies (`level_folds`).
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def harmonic_state(
     friction = np.zeros(len(scene.contacts))
     for j, contact in enumerate(scene.contacts):
         along, across = contact.tangential, contact.normal
-        start = sum(contact.slider)  # of a contact on a line there is one, or none
+        start = sum(contact.slider)  # at most one entry for a contact on a line
         at = float(along @ average) - start, float(across @ average)
         pair, means, friction[j] = _forces(contact, along @ x, across @ x, *at)
         wave = wave - system.tangential[j] * pair[0] - system.normal[j] * pair[1]

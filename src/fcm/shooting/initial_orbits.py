@@ -46,8 +46,8 @@ def find_initial_orbits(problem: OrbitProblem, poll: Poll = never_interrupt) -> 
 
     At both ends of the range, and at the resonances inside, the guesses are all solutions of the balance and
     motions in which contacts stick as the scene starts. Without a stable motion at an end, the motion from
-    rest is simulated there. If nothing is found at all, frequencies across the range are tried: first
-    solutions of the balance of one harmonic, then motions with more damping that is taken away.
+    rest is simulated there. If nothing is found at all, frequencies across the range are tried, first with
+    solutions of the balance of one harmonic. Last, the damping is raised and taken away in steps.
 
     poll is called regularly.
     """

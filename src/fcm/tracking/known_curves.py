@@ -1,7 +1,7 @@
 """Test whether a known curve of special points passes a point, so that no curve is followed twice.
 
-Near a turn of the number, or a cusp, parts of a curve come close to each other and to other curves, so that
-distances do not decide. Instead the curve is computed in the plane through the point that is normal to the
+Near a turn of the number, or a cusp, parts of a curve come close to each other and to other curves. Distances
+do not decide there. Instead the curve is computed in the plane through the point that is normal to the
 nearest chord of the curve.
 """
 
