@@ -96,7 +96,7 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     """States of each contact over a cycle (point, contact), such as "SPEN", and its loads.
 
     A contact without friction is closed, "E", open, "S", or both in turn, "SE". The loads (point, contact, 4)
-    are the greatest normal force, the greatest friction force, the slip distance, and the energy that
+    are the greatest normal force, the greatest friction force, the slip path, and the energy that
     friction dissipates. loop is that of `loops`.
     """
     words, harmonics = [], system.harmonics
@@ -128,7 +128,7 @@ def _solved_contacts(
     """Yield each contact with the states of its cycle (point, piece); fill contact_loads.
 
     contact_loads is (contact, point, 4). The array of states is overwritten for the next contact. A contact
-    without friction has no slider: its slip distance is 0.
+    without friction has no slider: its slip path is 0.
     """
     laws, z = system.exact_laws(system.harmonics), np.ascontiguousarray(z)
     most = max((law.state.shape[0] for law in laws), default=0)

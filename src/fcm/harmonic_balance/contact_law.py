@@ -78,7 +78,7 @@ class Law(ContactParameters):
     pieces, state (piece,)
         By `cycle`: the sequence of states, 0 stick, 1 slip, -1 slip the other way, 2 separation.
     contact_loads (4,)
-        By `cycle`: greatest normal force, greatest friction force, slip distance, and the energy that
+        By `cycle`: greatest normal force, greatest friction force, slip path, and the energy that
         friction dissipates.
     """
 

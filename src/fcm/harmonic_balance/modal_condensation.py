@@ -177,7 +177,7 @@ class CondensedSystem:
         self.modes = min(max(modes, 1), self.ranking.size)
         self.equations.choose_modes(np.sort(self.ranking[: self.modes]))
 
-    @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
+    @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has diverged
     def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
         """Factor the system closed by a row (unknown + 1,); return the sign of its determinant, or 0.
 

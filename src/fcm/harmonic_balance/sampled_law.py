@@ -23,7 +23,7 @@ class SampledLaw(Law):
     """Forces in the harmonics `outputs` of a motion with other harmonics, and their tangent.
 
     There are as many margins as in the other contacts, all marked as absent: it is unknown where the law is
-    not smooth. The contact loads are sampled; the slip distance is unknown and counts as 0.
+    not smooth. The contact loads are sampled; the slip path is unknown and counts as 0.
     """
 
     def __init__(

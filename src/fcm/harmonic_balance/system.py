@@ -66,7 +66,7 @@ class System(Frozen):
     coefficients: CoefficientLaw = field(init=False)  # the table's, or the closed form's
     port_responses: dict[float, ComplexArray] = field(
         init=False, default_factory=dict
-    )  # see `linear_contacts`
+    )  # see `fcm.branches.linear_limits`
     cache: dict[object, object] = field(init=False, default_factory=dict)  # results on its contacts' states
     work: WorkCount = field(init=False, default_factory=WorkCount, compare=False)
 

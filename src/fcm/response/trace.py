@@ -274,7 +274,7 @@ def _is_isolated(path: Path) -> bool:
 
 
 def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatArray:
-    """The contact loads (point, contact, 4), with NaN for the slip distance of laws of one's own."""
+    """The contact loads (point, contact, 4), with NaN for the slip path of laws of one's own."""
     own = [i for i, one in enumerate(scene.contacts) if one.law is not None]
     if own:
         contact_loads = contact_loads.copy()
