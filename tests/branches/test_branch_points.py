@@ -178,8 +178,8 @@ def test_a_closed_branch_is_reached_along_the_branch_of_few_harmonics():
 @pytest.mark.slow
 @pytest.mark.parametrize("force", [1.5, 3.0])
 def test_a_sweep_goes_on_along_the_branch_that_begins_where_its_own_loses_stability(fcm, tmp_path, force):
-    """With 3.0 the branch is followed through the branch point, where its frequency turns; with 1.5 it ends as
-    its amplitude still is off by 2e-6."""
+    """With 3.0 the branch is followed through the branch point, where its frequency turns. With 1.5 it ends
+    where its amplitude is still off by 2e-6."""
     text = (Path(__file__).parent / "scenes/stops_and_second_harmonic.toml").read_text(encoding="utf-8")
     scene = tmp_path / "scene.toml"
     scene.write_text(text.replace("amplitude = 3.0", f"amplitude = {force}"), encoding="utf-8")
