@@ -408,3 +408,10 @@ def test_resonances_are_said_to_be_of_the_numbers_before_a_fit(written):
     assert said in called("plot", "modes", written()).err
     plain = called("plot", "modes", written(fit="")).err
     assert "first resonances with all contacts open" in plain and "before the fit" not in plain
+
+
+@pytest.mark.parametrize(("second", "asked"), [("0.9,1", True), ("0.9,1.01", False)])
+def test_points_that_are_there_twice_are_asked_about(written, second, asked):
+    """A measurement at the same frequency is one of its own, unless all its numbers are the same."""
+    notes = load_scene(written(points=f"frequency,amplitude\n0.9,1\n1.1,2\n{second}\n")).notes
+    assert any("fit: a.csv has 1 of its 3 points again" in str(note) for note in notes) == asked

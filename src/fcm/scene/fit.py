@@ -186,6 +186,10 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
     used = weight > 0.0
     columns = {key: value[used] for key, value in columns.items()}
     scaled, amplitude, weight, levels = scaled[used], amplitude[used], weight[used], levels[used]
+    again = scaled.size - len(set(zip(scaled.tolist(), levels.tolist(), amplitude.tolist(), strict=True)))
+    if again:
+        asked = f"has {again} of its {scaled.size} points again. Each counts as a measurement of its own, so"
+        scene.noted.append(Question(f"fit: {name} {asked} that standard errors are too small. Is it meant?"))
     return Measured(
         name, dof, scaled, amplitude, weight, levels, columns.get("phase"),
         columns.get("damping"), quantity, int(mode), **errors,
