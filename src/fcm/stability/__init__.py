@@ -1,6 +1,6 @@
 """Stability of periodic motions, balanced or exact: monodromy, Floquet multipliers, bifurcations.
 
-A motion is known here by its `StateSequence`: which contact changes its state when, and into which. From one
-the `Monodromy` follows; its eigenvalues are the multipliers; where these leave the unit circle along a branch
-is a bifurcation.
+A `StateSequence` represents a motion: it lists the changes of the contacts' states over a period. The
+`Monodromy` follows from it, and its eigenvalues are the Floquet multipliers. A bifurcation is a point of a
+branch at which multipliers leave the unit circle.
 """

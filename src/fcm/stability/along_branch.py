@@ -1,6 +1,6 @@
-"""Classifications along a path: of points, by their numbers, and of places between these.
+"""Classifications of the points of a path, and of places between them.
 
-A place between is the number of the point that it follows, and the part of the way to the next.
+A place is a float: the number of the point before it, plus the fraction of the way to the next point.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from fcm.stability.quasi_static_modes import quasi_static_modes
 from fcm.stability.spaced_points import path_lengths
 
 Mask = npt.NDArray[np.bool_]
-EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
+EITHER = (0.0, 1.0)  # the finer motion alone is enough, whether it is stable or not
 
 
 class PathClassification:
-    """Classifications of the points of a path, of places between them, and how many were computed.
+    """Classifications of points of a path and of places between them, and the number of evaluations.
 
-    without_neighbour (point,): beside which no solution with more harmonics is near. to_confirm (point,): of
-    which it is enough that the finer motion says that they are stable. rotation (point,) [rad]: by how much
-    multipliers that are not small have turned up to each point, about.
+    without_neighbour (point,) marks points that have no solution with more harmonics near them. to_confirm
+    (point,) marks points that the finer motion alone may classify as stable. rotation (point,) [rad] is the
+    approximate angle by which multipliers that are not small have turned up to each point.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class PathClassification:
         self.to_confirm = np.zeros(len(path.z), dtype=np.bool_) if to_confirm is None else to_confirm
         self._classified: dict[float, Classification] = {}
         self.between: dict[float, InsertedPoint] = {}
-        self._places: list[float] = []  # with a classification, in order
+        self._places: list[float] = []  # those with a classification, in order
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)), self.options)
         self.fold = (path.mark & Mark.FOLD) != 0
         self.rotation = _rotation(system, path, self.options)
@@ -65,7 +65,7 @@ class PathClassification:
     def length(self) -> FloatArray:
         """Length along the path up to each point (point,).
 
-        It is asked for only where a window may be hidden.
+        It is computed only if a window may be hidden.
         """
         return path_lengths(self.path.z)
 
@@ -79,7 +79,7 @@ class PathClassification:
         return self._classified[i]
 
     def classify_points(self, points: Sequence[int], sufficient: Sequence[float] = ()) -> None:
-        """Classify several points and keep the results; `sufficient` as of `Multipliers.classify`."""
+        """Classify several points and keep the results; `sufficient` as in `Multipliers.classify`."""
         new = [i for i in points if i not in self._classified]
         to_confirm = [i for i in new if self.to_confirm[i]]
         for some, accepted in (
@@ -101,12 +101,12 @@ class PathClassification:
         return classified
 
     def classify(self, z: FloatArray, sufficient: Sequence[float] = ()) -> Classification:
-        """The classification of a solution, not kept; `sufficient` as of `Multipliers.classify`."""
+        """Classify a solution without keeping the result; `sufficient` as in `Multipliers.classify`."""
         self.evaluations += 1
         return self.multipliers.classify(z, sufficient=sufficient)
 
     def confirmed(self, i: int, stable: float) -> bool:
-        """Whether a point is as stable as told (1 or 0) with the further harmonics balanced, too."""
+        """Whether a point keeps the given stability (1 or 0) when the further harmonics are balanced, too."""
         known = self._classified.get(i)
         if known is not None and known.rebalanced:
             return known.stable == stable
@@ -114,17 +114,17 @@ class PathClassification:
         return self.multipliers.confirms(self.path.z[i], stable)
 
     def unconfirmed(self, stable: FloatArray, first: int, last: int) -> list[int]:
-        """The points from first to last that alone are told, between two that are not, and not confirmed."""
+        """The unconfirmed points between first and last that are known and have two unknown neighbours."""
         told = ~np.isnan(stable[first : last + 1])
         lone = first + 1 + (told[1:-1] & ~told[:-2] & ~told[2:]).nonzero()[0]
         return [i for i in lone.tolist() if not self.confirmed(i, stable[i])]
 
     def places_between(self, first: int, last: int) -> list[float]:
-        """The places from one point to another of which there is a classification, in order."""
+        """The places from one point to another that have a classification, in order."""
         return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]
 
     def same_on_both_sides(self, a: float) -> bool:
-        """Whether the known classifications nearest to the place a, before and after, are the same."""
+        """Whether the nearest known classifications before and after the place a are the same."""
         k = bisect_left(self._places, a)
         before = next((t for t in reversed(self._places[: k + 1]) if self._is_known(t)), None)
         after = next((t for t in self._places[k + 1 :] if self._is_known(t)), None)
@@ -140,9 +140,9 @@ class PathClassification:
         return self._classified[t].growth > 0.0
 
     def sufficient_between(self, *places: float) -> Sequence[float]:
-        """The `sufficient` of `Multipliers.classify` for finding where growth changes sign between places.
+        """The `sufficient` of `Multipliers.classify` for locating a sign change of the growth between places.
 
-        EITHER, if the finer motion alone says the same of these as their classifications.
+        It is EITHER if the finer motion alone has the known sign of the growth at all of these, else empty.
         """
         for t in places:
             fine = self.classify(self._z(t), EITHER)
@@ -162,13 +162,13 @@ class PathClassification:
         return self._multiplier_sample[t]
 
     def meeting_angle(self, t: float) -> float:
-        """Angle [rad] by which multipliers at a place have to turn until two of them meet."""
+        """Least angle [rad] by which multipliers at a place have to turn until two of them meet."""
         if t not in self._meeting_angles:
             self._meeting_angles[t] = meeting_angle(self._classified[t], self.options)
         return self._meeting_angles[t]
 
     def rotation_between(self, a: float, b: float) -> float:
-        """Angle [rad] by which multipliers turn, about, between points around two places."""
+        """Approximate angle [rad] by which multipliers turn between the points that enclose two places."""
         return float(self.rotation[math.ceil(b)] - self.rotation[int(a)])
 
     def curve(self, k: int) -> Segment:
@@ -176,7 +176,7 @@ class PathClassification:
         return Segment(self._system.reset_balance(), self.path, k)
 
     def find(self, length: float, sufficient: Sequence[float] = ()) -> float | None:
-        """The place at a length, if it is found between two points; it has a classification then."""
+        """Find and classify the place at a length; None if it is not found between two points."""
         k = int(np.searchsorted(self.length, length)) - 1
         t = k + float((length - self.length[k]) / (self.length[k + 1] - self.length[k]))
         curve = self.curve(k)
@@ -188,8 +188,10 @@ class PathClassification:
 
 
 def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY) -> FloatArray:
-    """The rotation of `PathClassification`; 0 where there are so many multipliers that two are always about
-    to meet."""
+    """The rotation of `PathClassification`: the phase of the fastest mode that is not damped out.
+
+    It is 0 if there are so many multipliers that two are always about to meet.
+    """
     linear, omega = system.linear, path.parameter
     near = ~quasi_static_modes(
         linear.natural,

@@ -1,12 +1,12 @@
-r"""Functions that tell where stability may change and change back between two places of a curve.
+r"""Test functions that show where stability may change and change back between two places of a curve.
 
-The growth of a disturbance is no guide there: a pair of multipliers l keeps its size until it meets another,
-or the real axis, and leaves at once. But multipliers leave where these products vanish, which vary smoothly
-along the curve whatever the multipliers do,
+The growth is no guide there: a pair of multipliers l keeps its size until it meets another pair or the real
+axis, and then leaves the unit circle at once. These products vary smoothly along the curve, and vanish where
+multipliers leave the unit circle:
 
-    prod_i (1 + l_i)   at a flip,        prod_{i<j} (1 - l_i l_j)   where a pair leaves,
+    prod_i (1 + l_i)   at a flip,        prod_{i<j} (1 - l_i l_j)   where a pair leaves.
 
-so that the parabola through three places tells where the least value is, and whether it may be below zero.
+The parabola through three places predicts the least value of a product, and whether it may be below zero.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fcm.model.scene import FloatArray
 from fcm.stability.classification import Classification
 from fcm.stability.options import STABILITY, StabilityOptions
 
-MIN_LOGARITHM = 1e-300  # a product, or a length
+MIN_LOGARITHM = 1e-300  # least value of a product, or of a length
 
 
 class MultiplierSample(NamedTuple):
@@ -39,9 +39,9 @@ class MultiplierSample(NamedTuple):
 def multiplier_sample(
     length: float, classified: Classification, options: StabilityOptions = STABILITY
 ) -> MultiplierSample:
-    """The sample of a place with its classification.
+    """The sample of a place with a classification.
 
-    The products are computed where it is stable: otherwise they are of no use.
+    The products are computed only if it is stable; otherwise their logarithms are 0, and not used.
     """
     if classified.stable != 1.0:
         return MultiplierSample(length, classified.stable, classified.growth, 0.0, 0.0)
@@ -67,16 +67,16 @@ def predicted_minimum(
     divided: int = 0,
     options: StabilityOptions = STABILITY,
 ) -> float | None:
-    """Length at which a product is foretold to be so small that stability may have changed; None if nowhere.
+    """Predict the length at which a test function is so small that stability may change; None if nowhere.
 
     Parameters
     ----------
     low, high : MultiplierSample
-        Between which it is looked for; both stable or both not.
+        Ends of the interval; both stable or both not.
     places : sequence of MultiplierSample
-        These and their neighbours in order, three or four.
+        The ends and their neighbours in order, three or four.
     divided : int
-        Times that the way between places was.
+        How often the interval between two points has been divided.
     """
     windows = options.windows
     near, most, at = windows.min_distance * (high.length - low.length), 0.0, None
@@ -100,7 +100,7 @@ def predicted_minimum(
 
 
 def _positive(three: Sequence[MultiplierSample]) -> list[list[float]]:
-    """Functions along the curve that are positive while stability stays what it is, of any unit."""
+    """Values of the test functions at three places: positive while stability is unchanged, in any unit."""
     if three[0].stable == 0.0:
         return [[one.growth for one in three]]
     return [_relative([one.flip for one in three]), _relative([one.pair for one in three])]
@@ -128,7 +128,7 @@ def _parabola_minimum(s: list[float], f: list[float]) -> tuple[float, float]:
 def products(
     values: npt.NDArray[np.complex128], options: StabilityOptions = STABILITY
 ) -> tuple[FloatArray, FloatArray]:
-    """The logarithms of both products, (place,) each, of multipliers (place, n); 0 is none.
+    """The logarithms of both products, (place,) each, of multipliers (place, n); 0 stands for no multiplier.
 
     >>> [each.round(2).tolist() for each in products(np.array([[-0.9, 0.9j, -0.9j]]))]
     [[-1.71], [-1.16]]
@@ -144,13 +144,16 @@ def products(
 def predicted_minima(
     s: FloatArray, f: FloatArray, logarithms: bool, options: StabilityOptions = STABILITY
 ) -> tuple[npt.NDArray[np.bool_], ...]:
-    """Whether `predicted_minimum` finds a place by any three in a row of the values f at lengths s, all
-    alike: between the first two of them, and between the last two; (place - 2,) each."""
+    """Whether `predicted_minimum` finds a place by any three consecutive values f at lengths s.
+
+    All places are stable, or all are not. Returns masks (place - 2,): for a place between the first two of
+    the three values, and for one between the last two.
+    """
     three = np.array([f[:-2], f[1:-1], f[2:]])
     if logarithms:
         three = np.exp(three - three.max(axis=0))
     width = np.diff(s)
-    with np.errstate(over="ignore", invalid="ignore"):  # by points at one place, which foretell nothing
+    with np.errstate(over="ignore", invalid="ignore"):  # coincident points, which predict nothing
         slope = np.diff(three, axis=0) / np.maximum((width[:-1], width[1:]), MIN_LOGARITHM)
         bend = (slope[1] - slope[0]) / np.maximum(s[2:] - s[:-2], MIN_LOGARITHM)
         up = bend > 0.0

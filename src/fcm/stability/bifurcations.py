@@ -1,9 +1,9 @@
 """Stability along a curve: it changes at folds, and where a flip or a pair crosses the unit circle.
 
-Between two folds the number of real multipliers above +1 is even or odd throughout, as the sign of the
-balance's determinant says. Where it is odd nothing needs to be calculated. Where it is even the others
-decide, at enough points to see that the growth keeps its sign; and where a change of it may hide between
-neighbours, between these (`windows`).
+Between two folds the number of real multipliers above +1 keeps its parity, which the sign of the balance's
+determinant gives. Where it is odd, the motion is unstable, and nothing is computed. Where it is even, the
+other multipliers decide. They are computed at enough points to see that the growth keeps its sign. Where a
+change of stability may hide between neighbours, places between them are classified, too (`windows`).
 """
 
 from __future__ import annotations
@@ -60,12 +60,13 @@ def stability(
 ) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
-    A fold counts to the stable side, a crossing to neither. What is stable with the balanced harmonics and
-    not with the next ones that their forces make, or the other way round, is nan; and so is what is
-    beyond (point,), too far from the motion, and that the determinant allows to be stable. Of what is
-    without_neighbour (point,) it is known that no solution with more harmonics is near: there a doubt remains
-    one. What is to_confirm (point,) is not believed to be stable unless further harmonics, balanced, confirm
-    it (see `fcm.stability.confirmation`): that the finer motion says so is enough here.
+    A fold counts to the stable side, a crossing to neither. A point is nan if the balanced harmonics and the
+    finer motion, which has the next harmonics that their forces make, disagree.
+
+    beyond (point,) marks points too far from the motion: nan where the determinant allows stability.
+    without_neighbour (point,) marks points that have no solution with more harmonics near them; a doubtful
+    classification there stays unknown. to_confirm (point,) marks points that further balanced harmonics must
+    confirm as stable later (see `fcm.stability.confirmation`); here the finer motion alone is enough.
     """
     none = np.zeros(path.z.shape[0], dtype=np.bool_)
     known = PathClassification(
@@ -102,7 +103,7 @@ class _BifurcationSearch:
             places = self.classified.places_between(first, last)
             at = np.array([int(t) for t in places if t == int(t)])
             known = np.array([self.classified[i].stable for i in at.tolist()])
-            # points between two that were looked at have neighbours that agree
+            # a point that was not classified takes the result of the nearest that was: its neighbours agree
             stable[first : last + 1] = known[_nearest_index(at, first, last)]
             stable[self.classified.unconfirmed(stable, first, last)] = math.nan
             found = list(self._crossings(places))
@@ -115,7 +116,7 @@ class _BifurcationSearch:
         )
 
     def _is_even(self) -> npt.NDArray[np.bool_]:
-        """Whether the number of real multipliers above 1 is even, folds included on that side."""
+        """Whether the number of real multipliers above 1 is even; folds count as even."""
         even: npt.NDArray[np.bool_] = (self.path.parity > 0.0) | self.classified.fold
         return even
 
@@ -125,14 +126,14 @@ class _BifurcationSearch:
         passed = np.floor((angle - angle[0]) / self.options.sampling.max_phase)
         some = self.spaced.nodes(first, last, self.step_span)
         nodes = {*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()}
-        if self.many:  # of a fold no doubt is told: its neighbour is looked at, too
+        if self.many:  # at a fold no doubt is reported: its neighbour is classified, too
             neighbours = (i + way for i, way in ((first, 1), (last, -1)) if self.classified.fold[i])
             nodes |= {i for i in neighbours if first < i < last}
         self.classified.classify_points(sorted(nodes))
         self._refine_between(list(itertools.pairwise(sorted(nodes))))
 
     def _search_windows(self, first: int, last: int) -> None:
-        """Look where a window may be hidden between two places of a run that were looked at."""
+        """Search each interval between classified places of a run for a hidden window."""
         places = self.classified.places_between(first, last)
         for k, (a, b) in enumerate(itertools.pairwise(places)):
             self._bisect(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
@@ -140,7 +141,7 @@ class _BifurcationSearch:
     def _bisect(
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> None:
-        """Divide the way between two places as long as what both and their neighbours tell is in doubt."""
+        """Divide the interval between two places as long as a window may be hidden in it."""
         t = (
             self._uncertain_place(before, ends, after, divided)
             if divided < self.options.windows.max_divisions
@@ -159,8 +160,7 @@ class _BifurcationSearch:
     def _uncertain_place(
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> float | None:
-        """A place between two, with its classification, at which stability may be another; None if there is
-        none."""
+        """Find and classify a place between two at which stability may differ; None if there is none."""
         one, other = self.classified[ends[0]], self.classified[ends[1]]
         if (
             one.is_linear
@@ -180,11 +180,14 @@ class _BifurcationSearch:
         length = predicted_minimum(
             low, high, [seen(t) for t in alike if not classified[t].is_linear], divided, self.options
         )
-        # a place like its ends is no window, whatever the balanced harmonics say of it
+        # no window if the finer motion classifies it like the ends, whatever the balanced harmonics say
         return None if length is None else self.classified.find(length, sufficient=(one.stable,))
 
     def _window_edge(self, a: float, b: float) -> float | None:
-        """A place between one that is known and one that is not: this may be the edge of a window."""
+        """Find and classify the middle between a known and an unknown place, a possible edge of a window.
+
+        None if there is no reason to look there, or it is not found.
+        """
         classified = self.classified
         apart = self.options.windows.edge_distance < b - a <= 1.0
         if classified.grows(a) == classified.grows(b) or not apart or not classified.same_on_both_sides(a):
@@ -194,7 +197,7 @@ class _BifurcationSearch:
         )
 
     def _may_meet(self, a: float, b: float) -> bool:
-        """Whether two multipliers may meet between two places of a stable way."""
+        """Whether two multipliers may meet between two stable places."""
         nearest = self.classified.meeting_angle(a) + self.classified.meeting_angle(b)
         return (
             nearest
@@ -203,18 +206,17 @@ class _BifurcationSearch:
         )
 
     def _inserted_points(self, stable: FloatArray) -> Iterator[InsertedPoint]:
-        """Places between points that are stable where both neighbours are not, or the other way round."""
+        """Yield places whose known stability differs from that of both neighbouring points."""
         for t, one in self.classified.between.items():
             before, after = stable[int(t) : int(t) + 2].tolist()
             if before == after != one.stable and not math.isnan(one.stable):
                 yield one
 
     def _refine_between(self, ways: list[tuple[int, int]]) -> None:
-        """Look between pairs of points that were looked at until neither the classification nor a change of
-        its sign can hide there.
+        """Bisect between classified points until no change of stability or of the growth's sign can hide.
 
-        Of many contacts, what the finer motion says between two stable points is enough where that is the
-        same: both are confirmed, and it shows whether anything has changed between them.
+        With many contacts, the finer motion alone is enough between two stable points if it is stable, too:
+        both ends are confirmed, and it shows whether anything has changed between them.
         """
         seen = self.classified
         while ways:
@@ -230,16 +232,21 @@ class _BifurcationSearch:
             ways = [half for a, middle, b in bent for half in ((a, middle), (middle, b))]
 
     def _may_differ(self, a: int, b: int) -> bool:
-        """Whether anything between two points may be otherwise than at both; with many contacts nothing
-        is known between two of which it is not."""
+        """Whether a point between two classified ones may differ from both.
+
+        With many contacts, all points between two unknown ones count as unknown.
+        """
         one, other = self.classified[a], self.classified[b]
         if self.many and math.isnan(one.stable) and math.isnan(other.stable):
             return False
         return not (one.is_linear and other.is_linear)
 
     def _crossings(self, places: list[float]) -> Iterator[MultiplierCrossing]:
-        """The crossings, where the growth changes sign between places that are known, and what is unknown
-        between them."""
+        """Yield the crossings between consecutive places of known stability.
+
+        The growth has to change its sign once, within one step. Places of unknown stability between them
+        count if their growth is known.
+        """
         known = [t for t in places if not math.isnan(self.classified[t].growth)]
         if len({self.classified.grows(t) for t in known}) < 2:
             return
@@ -253,14 +260,14 @@ class _BifurcationSearch:
                     yield found
 
     def _confirmed_after(self, stable: FloatArray, way: range) -> Iterator[int]:
-        """The points from a crossing on until further harmonics, balanced, confirm one: they may move it."""
+        """Yield points after a crossing until further balanced harmonics, which may move it, confirm one."""
         for i in way:
             if stable[i] != stable[way[0]] or self.classified.confirmed(i, stable[i]):
                 return
             yield i
 
     def _crossing(self, a: float, b: float) -> MultiplierCrossing | None:
-        """The crossing, where the growth changes sign between two places."""
+        """Locate the crossing where the growth changes sign between two places; None if it is not found."""
         first, found, sufficient = int(a), None, self.classified.sufficient_between(a, b)
         curve = self.classified.curve(first)
         before, after = (
@@ -294,5 +301,5 @@ class _BifurcationSearch:
 
 
 def _nearest_index(at: IntArray, first: int, last: int) -> IntArray:
-    """Index in at of the number nearest to each one from first to last; at holds both."""
+    """Index of the element of at nearest to each number from first to last; at contains both ends."""
     return np.rint(np.interp(np.arange(first, last + 1), at, np.arange(at.size))).astype(np.intp)

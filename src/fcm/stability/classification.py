@@ -15,20 +15,20 @@ class Bifurcation(Enum):
 
     PERIOD_DOUBLING = "period doubling"  # one at -1
     NEIMARK_SACKER = "Neimark-Sacker"  # a complex pair
-    REAL = "multiplier +1"  # one at +1 beside a fold: of a motion smooth only on one side of the balance's
+    REAL = "multiplier +1"  # one at +1 beside a fold, where the motion is smooth on one side only
 
 
 class Classification(NamedTuple):
     """Stability of one solution, by its multipliers."""
 
     stable: float  # 1, 0, or nan where it is unknown
-    growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
-    kind: Bifurcation  # of what grows most
+    growth: float  # logarithm of the factor by which a disturbance grows in a period, other than at a fold
+    kind: Bifurcation  # of the multiplier that grows most
     angle_to_flip: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
     is_linear: bool = False  # no contact slips or opens
-    held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
+    held: int = 0  # contacts that never slip, but whose slider an extreme of its limit holds
     values: tuple[complex, ...] = ()  # the multipliers
-    rebalanced: bool = False  # of the motion with further harmonics balanced
+    rebalanced: bool = False  # whether it is that of the motion with further harmonics balanced
 
 
 LINEAR = Classification(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, is_linear=True)
@@ -36,10 +36,10 @@ UNKNOWN = Classification(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
 
 
 class MultiplierSpectrum:
-    """Multipliers of a solution, sorted by how stability is lost through them; logarithms of their sizes.
+    """Multipliers of a solution, grouped by the way in which stability is lost through them.
 
-    nearest: of the real multiplier above 0 that is nearest to 1, nan if there is none; odd: whether the
-    number of those above 1 is odd.
+    Their sizes are logarithms. nearest: size of the positive real multiplier nearest to 1, nan if there is
+    none. odd: whether the number of real multipliers above 1 is odd.
     """
 
     values: tuple[complex, ...]
@@ -84,9 +84,9 @@ class MultiplierSpectrum:
             self.real = max(self.real, size)
 
     def classify(self, without_nearest: bool = False) -> Classification:
-        """The classification by all multipliers but the real ones between 0 and 1.
+        """Classify by all multipliers except the real ones between 0 and 1.
 
-        without_nearest: whether the one nearest to 1 is left out, too.
+        without_nearest: whether the positive real one nearest to 1 is left out, too.
         """
         most = self.real_but_nearest if without_nearest else self.real
         kind = self.kind
@@ -98,7 +98,7 @@ class MultiplierSpectrum:
 
 
 def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
-    """The bifurcation by which an unstable motion has lost its stability, if that was not at a fold.
+    """The bifurcation by which an unstable motion lost its stability, if that was not at a fold.
 
     >>> bifurcation_of([-1.1, 0.3 + 0.2j, 0.3 - 0.2j]).value
     'period doubling'
@@ -107,7 +107,7 @@ def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
 
 
 def meeting_angle(classified: Classification, options: StabilityOptions = STABILITY) -> float:
-    """Angle [rad] that multipliers which are not small have to turn at least until two of them meet."""
+    """Least angle [rad] by which multipliers that are not small have to turn until two of them meet."""
     angles: list[float] = []
     for value in classified.values:
         angle = abs(math.atan2(value.imag, value.real))
@@ -126,10 +126,11 @@ def classify_even(
     at_fold: bool = False,
     options: StabilityOptions = STABILITY,
 ) -> Classification:
-    """Classification of two approximations to a spectrum whose number of real multipliers above 1 is even.
+    """Classify by two approximations to a spectrum that has an even number of real multipliers above 1.
 
-    Where it is odd, the nearest to 1 is on the wrong side, if it is shifted enough from one to the other. At
-    a fold (at_fold) that one does not count.
+    If an approximation has an odd number, the one nearest to 1 is taken to be on the wrong side, and left
+    out. UNKNOWN if both have, and it is too far from 1 for its shift from one to the other. At a fold
+    (at_fold) that multiplier is always left out. stable is nan if the approximations disagree.
     """
     if fine.odd and plain.odd and not at_fold:
         off = abs(fine.nearest)
@@ -152,12 +153,12 @@ def is_uncertain(
     meetings: bool = True,
     options: StabilityOptions = STABILITY,
 ) -> bool:
-    """Whether a classification may change once the motion changes further, as it did from plain to fine.
+    """Whether a classification may change if the motion changes further, as it did from plain to fine.
 
-    That is so where nothing is told; of a decay that is less than its change; and of a growth that is less
-    than some times that. So it is (meetings) where a pair turns so fast that it may meet at -1, where one
-    multiplier leaves by a flip. And so it is where all decays but for a multiplier, plain or fine, that is
-    taken to be far on the wrong side of 1.
+    True if the classification is unknown, if a decay is less than the change of the growth, or if a growth is
+    less than `times` that change. With meetings, a stable one is also uncertain if a pair turns so fast that
+    it may meet at -1, where one multiplier leaves by a flip. A stable one is uncertain, too, if a left-out
+    multiplier, plain or fine, is far on the wrong side of 1.
     """
     if math.isnan(found.stable):
         return True
@@ -178,7 +179,7 @@ def is_uncertain(
 def flip_function(values: Sequence[complex]) -> float:
     """A smooth function of the multipliers that changes its sign where one passes -1.
 
-    It is less than 0 while none has, however it comes there.
+    It is negative while none has passed, and does not depend on the way to -1.
 
     >>> flip_function([0.5 + 0.5j, 0.5 - 0.5j]), flip_function([-1.5, -0.5])
     (-2.5, 0.25)
@@ -196,16 +197,15 @@ def growth_is_linear(
     many: bool,
     options: StabilityOptions = STABILITY,
 ) -> bool:
-    """Whether three classifications agree, with growths so nearly on a line that none between has another
-    sign.
+    """Whether three classifications agree, and their growths are close enough to a straight line.
 
-    Of many contacts one begins to slip everywhere, and of their many multipliers one is near to a flip: there
-    that is no reason to look more closely.
+    Then no growth between them has another sign. With many contacts, one begins to slip in every interval,
+    and one of the many multipliers is always near a flip: neither is then a reason to look more closely.
     """
     stable, growth = (one.stable, middle.stable, other.stable), (one.growth, middle.growth, other.growth)
     if not stable[0] == stable[1] == stable[2]:
         return math.isnan(stable[0]) and math.isnan(stable[1]) and math.isnan(stable[2])
-    # what is unstable is no less so by a flip besides
+    # a further flip does not matter to an unstable motion
     if (
         not many
         and stable[0] == 1.0
@@ -225,9 +225,9 @@ def growth_is_linear(
 def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
     """Distance of a pair of multipliers from -1, and the logarithm of its size; nan if all are small.
 
-    The distance is the pair's sum over its size, plus 2. It is about the square of the angle that is left
-    until both meet; where it is negative, minus that of the logarithm by which they have parted along the
-    axis. It changes evenly where they meet.
+    The distance is the pair's sum over its size, plus 2; it is smooth where both meet. Before they meet, it
+    is about the square of the angle that is left. After that, it is about minus the square of the logarithm
+    by which they have parted along the axis.
     """
     pairs = [
         value
@@ -245,7 +245,7 @@ def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILI
 
 
 def flip_angle(classified: Classification, options: StabilityOptions = STABILITY) -> float:
-    """Angle [rad] from the negative real axis to the nearest pair that is not small; 0 once one is there."""
+    """Angle [rad] from the negative real axis to the nearest pair that is not small; 0 once one is on it."""
     met = classified.kind is Bifurcation.PERIOD_DOUBLING and classified.growth > math.log(
         options.classification.small_multiplier
     )
@@ -253,12 +253,12 @@ def flip_angle(classified: Classification, options: StabilityOptions = STABILITY
 
 
 def combine_one_sided(pushed: Classification, resting: Classification) -> Classification:
-    """The classification of a motion whose slider, just held by its limit, follows that while it is pushed
-    and rests while not.
+    """Classify a motion whose slider, just held by its limit, follows that if pushed, and rests if not.
 
-    What grows at rest grows with a little less residual friction, too. What grows only while it is pushed is
-    pushed on if it keeps its sign, as through a real multiplier above 1. A flip and a pair change it: then
-    it decays at rest before it is pushed again, and neither says which of both wins.
+    If the resting motion is not stable, it decides: it is also that with a little less residual friction. If
+    only the pushed motion is unstable, a real multiplier above 1 keeps the sign of the disturbance and goes
+    on pushing: unstable. A flip or a pair changes the sign, so that the disturbance decays at rest before the
+    next push: unknown.
     """
     if resting.stable != 1.0:
         return resting

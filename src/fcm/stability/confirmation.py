@@ -1,13 +1,12 @@
-"""Whether motions that nothing else vouches for are stable with further harmonics balanced, too.
+"""Confirm stable solutions of unknown or large error by balancing further harmonics.
 
-A solution is called stable by the multipliers of a motion that errs by what its harmonics leave out. Where
-the pair of the curve does not tell how much that is, or it is much, the motion with further harmonics is
-balanced itself, at the same frequency. If that is near, stable, and hardly another by the harmonics beyond
-those, the solution is what it is taken for.
+The multipliers that classify a solution as stable err by what its harmonics leave out. If the embedded pair
+does not estimate this error, or it is large, the further harmonics are balanced, too, at the same frequency.
+The solution is confirmed if that motion is near and stable, and harmonics beyond those hardly change it.
 
-Where the error is known and great, the motion with further harmonics is far, and no Newton method leads there
-from the solution. But what told the error does, a motion with more harmonics at that frequency; or the curve
-of these motions, from beside the solutions next to it.
+If the error is known and large, that motion is too far for Newton's method from the solution. The corrector
+then starts from the motion with more harmonics at that frequency, by which the error was estimated. Otherwise
+it follows the curve of such motions, from the one at a neighbouring solution.
 """
 
 from __future__ import annotations
@@ -35,8 +34,8 @@ Mask = npt.NDArray[np.bool_]
 class Confirmation(Frozen):
     """Points that are confirmed as stable with further harmonics.
 
-    stable (point,): whether there is a stable motion with further harmonics near it. limited: whether there
-    would have been more to look at than the most points of many contacts.
+    stable (point,): whether a stable motion with further harmonics is near. limited: whether the evaluations
+    allowed with many contacts did not suffice.
     """
 
     stable: Mask
@@ -59,16 +58,17 @@ def confirmed_stable(
     z : (point, unknown + 1)
         Points of a curve of its balance, in order, found stable.
     to_confirm : (point,) bool
-        Those to be confirmed.
+        Points to be confirmed.
     far : (point,) bool, optional
-        Those, to be confirmed or not, at whose frequency the same branch has a motion with more harmonics.
-        Where none is found from the solution, it is sought along the branch from the points beside them.
+        Points, to be confirmed or not, at whose frequency the same branch has a motion with more harmonics.
+        If Newton's method does not find it from the solution, it is sought along the branch from neighbours.
     options : StabilityOptions, optional
-        Of a row of points some are confirmed, `ConfirmationOptions.point_interval` apart, or of many contacts
-        its ends. Between two of these the middle follows, until all three agree and their growths lie on a
-        line; then so do the points between them. None is confirmed where a contact has a law of its own.
+        In a run of points, the confirmed nodes are `ConfirmationOptions.point_interval` apart, or with many
+        contacts only its ends. The middle between two nodes is confirmed next, until all three agree and
+        their growths lie on a line; the points between them then take that result. No point is confirmed if
+        a contact has a law of its own.
     motions : KnownMotions, optional
-        Of the same branch with more harmonics, from which those of the far points are sought first.
+        Motions of the same branch with more harmonics, from which the far points are sought first.
     """
     found = np.zeros(len(z), dtype=np.bool_)
     far = np.zeros_like(to_confirm) if far is None else far
@@ -106,13 +106,15 @@ class ConfirmedPoints:
         self.system, self.work, self.z, self.motions = system, system.work, z, motions
         self.spaced = SpacedPoints(z, self.many)
         self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
-        self.known = dict[int, tuple[Classification, FloatArray | None]]()  # classifications, and of what
+        self.known = dict[int, tuple[Classification, FloatArray | None]]()  # with the classified motions
         self.evaluations_left = options.confirmation.max_fraction_of_many * len(z) if self.many else math.inf
         self.limited = False  # whether more were asked for
 
     def nodes(self, first: int, last: int) -> list[int]:
-        """Points from one to another that are looked at first; of many contacts, as a look takes long, the
-        ends alone, as what is between them tells whether there is need of more."""
+        """The points from first to last that are confirmed first: with many contacts only the ends.
+
+        An evaluation of many contacts takes long, and the middle shows whether more are needed.
+        """
         if self.many:
             return sorted({first, last})
         return self.spaced.nodes(first, last, self.options.confirmation.point_interval)
@@ -122,12 +124,11 @@ class ConfirmedPoints:
         return self.at(i).stable == 1.0
 
     def is_far(self, i: int) -> bool:
-        """Whether no motion with further harmonics that tells is found from a point."""
+        """Whether no conclusive motion with further harmonics is found from a point."""
         return math.isnan(self.at(i).growth)
 
     def at(self, i: int) -> Classification:
-        """The classification of the motion with further harmonics; unknown where there are no evaluations
-        left."""
+        """The classification of the motion with further harmonics; UNKNOWN if no evaluations are left."""
         if i not in self.known:
             if not self._may_look():
                 return UNKNOWN
@@ -135,9 +136,9 @@ class ConfirmedPoints:
         return self.known[i][0]
 
     def _classify(self, i: int) -> Classification:
-        """The classification of a point with further harmonics.
+        """Classify the motion with further harmonics at a point.
 
-        It is that of the motion to which the one known at its frequency leads, or else the point itself.
+        Newton's method starts from the motion known at its frequency, or else from the point itself.
         """
         z = self.z[i]
         motion = (
@@ -150,7 +151,7 @@ class ConfirmedPoints:
         return self.multipliers.confirmation(z)
 
     def _may_look(self) -> bool:
-        """Whether another evaluation is left; if so it is taken."""
+        """Whether another evaluation is left; if so, count it as used."""
         self.limited |= self.evaluations_left < 1.0
         if self.limited:
             return False
@@ -159,9 +160,9 @@ class ConfirmedPoints:
         return True
 
     def _poll(self) -> None:
-        """Poll for an interruption, with many contacts: a look takes long.
+        """Poll for an interruption if there are many contacts, whose evaluations take long.
 
-        Multipliers of few may be those of another curve then.
+        With few contacts other curves share the workspace, and might change it during the poll.
         """
         if self.many:
             self.work.poll()
@@ -179,12 +180,10 @@ class ConfirmedPoints:
             self.between(middle, b, found)
 
     def along(self, near: int, last: int, found: Mask) -> None:
-        """Fill found (point,) up to the last point, as far as a motion leads that confirms the one near.
+        """Fill found (point,) towards the last point, by following the motion that confirms the point near.
 
-        If that does not, the next point away from there is tried.
-
-        The frequency changes one way from there to the last point. The way to the next is shortened until the
-        motion is found, and lengthened then.
+        If near is not confirmed, points farther away from last are tried. The motion is followed only up to
+        where the frequency turns back. A step is halved until the motion is found, and then doubled.
         """
         options, way = self.options.confirmation, 1 if last >= near else -1
         at = next((i for i in self._away(near, -way) if self.confirms(i)), None)
@@ -203,7 +202,7 @@ class ConfirmedPoints:
                 step = max(abs(ahead - at) // 2, 1)
 
     def _away(self, near: int, way: int) -> list[int]:
-        """Points from one on, each farther than the one before, up to where the frequency turns back."""
+        """The point near and others at growing distances from it, up to where the frequency turns back."""
         if not 0 <= near < len(self.z):
             return []
         steps = (0, *(2**k for k in range(self.options.confirmation.point_interval.bit_length())))
@@ -211,7 +210,7 @@ class ConfirmedPoints:
         return [near + way * step for step in steps if step <= most]
 
     def _before_turn(self, at: int, last: int) -> int:
-        """The last point, or the one before that at which the frequency turns back on the way to it."""
+        """The last point, or the point on the way to it at which the frequency turns back."""
         way = 1 if last >= at else -1
         change = np.sign(np.diff(self.z[at : last + way if last + way >= 0 else None : way, -1]))
         turns = np.flatnonzero(change != change[0]) if change.size else change

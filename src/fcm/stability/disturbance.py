@@ -1,19 +1,19 @@
 """Propagation of small disturbances of a periodic motion from one event to the next.
 
-Between two events no contact changes its state, and the disturbances of the modal coordinates, their rates by
-the angle and the places of the sliders obey
+Between two events no contact changes its state. The disturbances of the modal coordinates q, of their rates
+by the angle theta = omega t, and of the sliders' places w then obey
 
     (q, q', w)' = (q', image w - K q - D q', 0)
 
-with constant coefficients: they are carried by the exponential of that system.
+with constant coefficients. The exponential of this system propagates them.
 
-K is the stiffness of the modes, of mass 1, in the angle theta = omega t, with contacts of which each sticks,
-slips or is open (`Stiffness`). w are the places where the sliders that stick have come to rest. Of many modes
-that system is decomposed by its eigenvalues. In time, not in angle, it does not depend on the frequency,
+K is the stiffness of the modes, of mass 1, with contacts that stick, slip or are open (`Stiffness`). w are
+the places where sticking sliders have come to rest. With many modes, the system is decomposed by its
+eigenvalues. By time instead of angle it does not depend on the frequency,
 
     q' = v,    v' = -K q - D v + B w,
 
-so that is done once for each state that comes up again, for all that is followed of a curve (`Propagator`).
+so that each state that recurs along a curve is decomposed only once (`Propagator`).
 """
 
 from __future__ import annotations
@@ -38,10 +38,11 @@ else:
 class Stiffness:
     """Stiffness of a structure with its contacts in given states, as disturbances see it.
 
-    `at` a frequency, `assemble` states of the contacts; `make` then K (mode, mode), image (mode, contact).
+    `at` takes a frequency, and `assemble` states of the contacts; `make` then fills K (mode, mode) and image
+    (mode, contact).
 
-    damping (mode,) is the diagonal of D; rate bounds how fast the motion turns, per radian. Modes that follow
-    without delay are given by their flexibility (port, port), with contacts in series.
+    damping (mode,) is the diagonal of D. rate bounds how fast the motion turns, per radian. Modes that follow
+    without delay are given by their flexibility (port, port), in series with the contacts.
     """
 
     def __init__(
@@ -81,7 +82,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def assemble(self, state: cython.int[::1], key: bytes) -> cython.int:
-        """Set the states of the contacts, known by a key; K, image and rate are made when they are needed."""
+        """Set the states of the contacts, with their key; `make` fills K, image and rate when needed."""
         self.made = False
         if not self.soft:
             self.contacts_alone(state)
@@ -98,7 +99,7 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def make(self) -> cython.int:
-        """Fills K, image and rate, unless they are made already."""
+        """Fill K, image and rate, unless that is done already."""
         if not self.made:
             self.condense()
             self.modal()
@@ -128,11 +129,9 @@ class Stiffness:
                 self.S[2 * c, 2 * c + 1] = -self.contact[c, 0] * self.contact[c, 2]
 
     def softened(self) -> tuple[FloatArray, ...]:
-        """The matrices S, B, and displacements of the ports by modes and by places of sliders.
+        """S and B in series with the flexibility C, and displacements of the ports by modes and by sliders.
 
-        The displacements are (mode, port) and (port, contact).
-
-        In series with the flexibility C: d = P q - C (S d - B w) = T P q + W w.
+        The displacements are (mode, port) and (port, contact): d = P q - C (S d - B w) = T P q + W w.
         """
         S, B, C = np.asarray(self.S), np.asarray(self.B), self.flexibility
         T = np.linalg.inv(np.eye(S.shape[0]) + C @ S)
@@ -164,9 +163,10 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(check=False)
     def modal(self) -> cython.void:
-        """Fill K, and the rate from two bounds of its eigenvalues.
+        """Fill K, and the rate by the lower of two bounds of its eigenvalues.
 
-        They are the greatest sum of a row; and that of a mode alone, with the norm of what the contacts add.
+        One bound is the greatest sum of a row. The other is the greatest eigenvalue of a mode alone, plus the
+        norm of what the contacts add.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -220,10 +220,11 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @cython.cclass
 class EigenExpansion:
-    """A disturbance as the sum of those that grow by exp(value time), one value of each pair.
+    """Expansion of a disturbance in parts that grow by exp(value time), one for each complex pair.
 
-    values (value,); real and imaginary parts side by side of share (2 values, 2 modes) of (q, v), and of
-    driven (2 values, contact) of the places, None where no contact sticks; back (2 modes, 2 values).
+    values (value,) are the eigenvalues. share (2 values, 2 modes) maps (q, v) to the parts. driven (2 values,
+    contact) maps the places w to the parts that they drive; None if no contact sticks. back (2 modes, 2
+    values) maps the parts to (q, v). Real and imaginary parts alternate.
     """
 
     def __init__(
@@ -236,7 +237,7 @@ class EigenExpansion:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def carry(self, time: cython.double, omega: cython.double, X: FloatArray) -> cython.int:
-        """Replace the rows (q, dq / dangle) of X, above those of w, by what they are after a time."""
+        """Propagate the rows (q, dq / dangle) of X, above those of w, through a time."""
         rows: cython.double[:, :] = X
         m: cython.Py_ssize_t = self.modes
         i: cython.Py_ssize_t
@@ -258,11 +259,10 @@ class EigenExpansion:
     def grow(
         self, time: cython.double, part: cython.double[:, ::1], drive: cython.double[:, ::1]
     ) -> cython.void:
-        """Replace the parts (2 values, column) by what they are after a time.
+        """Propagate the parts (2 values, column) through a time.
 
-        drive: the parts that the places drive, or None.
-
-        What is driven grows by (exp(value time) - 1) / value, of no value by the time.
+        drive: the parts that the places drive, or None. They grow by (exp(value time) - 1) / value, or by the
+        time if the value is 0.
         """
         i: cython.Py_ssize_t
         re: cython.double
@@ -282,7 +282,7 @@ class EigenExpansion:
 class Propagator:
     """Propagation through states of the contacts by their eigenvalues.
 
-    States are known by keys; each is seen once before it is decomposed.
+    A state is identified by a key, and decomposed when it comes up for the second time.
     """
 
     def __init__(self, options: PropagationOptions = STABILITY.propagation) -> None:
@@ -298,9 +298,10 @@ class Propagator:
         system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
         X: FloatArray,
     ) -> bool:
-        """Carry the rows (q, dq / dangle) of X, above those of w, through an angle; false if it cannot yet.
+        """Propagate the rows (q, dq / dangle) of X, above those of w, through an angle.
 
-        system makes K, D (mode,) and B of derivatives by the angle.
+        False, with X unchanged, if the state is not decomposed. system returns K, D (mode,) and B of the
+        equations by the angle.
         """
         parts = self._parts(key, omega, system)
         if parts is None:
@@ -328,7 +329,7 @@ class Propagator:
 
 
 def _decomposed(A: FloatArray, B: FloatArray, max_condition: float) -> EigenExpansion | None:
-    """The eigenvalue expansion of a system; None where the eigenvectors are nearly dependent."""
+    """The eigenvalue expansion of a system; None if the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
         unit = np.repeat([1.0, np.abs(values).max()], len(A) // 2)[:, None]  # of places and velocities
@@ -345,7 +346,7 @@ def _decomposed(A: FloatArray, B: FloatArray, max_condition: float) -> EigenExpa
 
 
 def _real(rows: ComplexArray) -> FloatArray:
-    """(value, n) as (2 values, n): real and imaginary parts side by side."""
+    """Complex rows (value, n) as real ones (2 values, n): real and imaginary parts alternate."""
     return np.stack((rows.real, rows.imag), axis=1).reshape(2 * len(rows), -1)
 
 
@@ -359,7 +360,7 @@ def add_complex_product(
     times: cython.double,
     times_im: cython.double,
 ) -> cython.void:
-    """Add (times + i times_im) (by_re + i by_im) to re + i im, which it may be."""
+    """Add (times + i times_im) (by_re + i by_im) to re + i im; both may be the same arrays."""
     k: cython.Py_ssize_t
     one: cython.double
     other: cython.double
@@ -374,11 +375,10 @@ ORDER = cython.declare(cython.int, 10)  # of the series of the exponential: 0.25
 
 @cython.cclass
 class Disturbances:
-    """Disturbances of a motion on their way through the states of its contacts.
+    """Disturbances of a motion, propagated through the states of its contacts.
 
-    X: of (q, q', w) by rows, one disturbance in each of the first 2 modes + `memories` columns.
-
-    state are those of the contacts, of which `stiffness` has been assembled.
+    X has the rows (q, q', w), and a disturbance in each of its first 2 modes + `memories` columns. state
+    (contact,) are the states for which `stiffness` has been assembled.
     """
 
     def __init__(self, stiffness: Stiffness, propagator: Propagator) -> None:
@@ -405,10 +405,10 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate(self, length: cython.double) -> cython.int:
-        """Propagate X by the exponential, by the state's eigenvalues, or by a series in steps.
+        """Propagate X by the matrix exponential, by the state's eigenvalues, or by a series in steps.
 
-        Steps are so short that the terms of the series do not grow large; there are too many where a mode is
-        far stiffer than the others.
+        Steps are so short that the terms of the series do not grow large. If a mode is far stiffer than the
+        others, there would be too many steps, and the exponential is squared instead.
         """
         if self.size <= self.few:
             return self.propagate_by_squaring(length)
@@ -430,7 +430,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate_by_squaring(self, length: cython.double) -> cython.int:
-        """Propagate X by the exponential for the rows (q, q'), squared from a short angle."""
+        """Propagate X by the exponential for the rows (q, q'), squared up from a short angle."""
         m: cython.Py_ssize_t = self.modes
         n: cython.Py_ssize_t = self.size
         i: cython.Py_ssize_t
@@ -459,7 +459,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(check=False)
     def fill_system(self, length: cython.double) -> cython.void:
-        """Fill A with the system times a length."""
+        """Fill A with the system's matrix times a length."""
         m: cython.Py_ssize_t = self.modes
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -571,7 +571,7 @@ class Disturbances:
     @cython.cfunc
     @cython.exceptval(check=False)
     def add_sliders(self, columns: cython.Py_ssize_t) -> cython.void:
-        """Add to work the part of the sliders, image w."""
+        """Subtract from work the part of the sliders, image w."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t

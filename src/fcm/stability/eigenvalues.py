@@ -1,7 +1,7 @@
-"""Eigenvalues of real matrices, by LAPACK.
+"""Eigenvalues of real matrices, by LAPACK through numpy.
 
-Through numpy, which every run has loaded: scipy's interface for Cython saves ten microseconds a matrix, and
-takes longer to be imported than all the matrices of a usual run.
+Every run has loaded numpy. Scipy's interface for Cython saves ten microseconds a matrix, but its import takes
+longer than all the matrices of a usual run.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from fcm.model.scene import FloatArray
 
 
 def eigenvalues(matrices: Sequence[FloatArray]) -> list[list[complex] | None]:
-    """The eigenvalues of each matrix (n, n), pairs side by side; None where a number is not finite, or they
-    are not found.
+    """The eigenvalues of each matrix (n, n), or None if it has a number that is not finite, or LAPACK fails.
 
-    LAPACK balances a matrix, so that units of rows and columns do not matter. It is called once for all of
-    the same size: around a small matrix numpy's own work takes longer than LAPACK's.
+    Complex pairs are side by side. LAPACK balances a matrix, so that units of rows and columns do not matter.
+    It is called once for all matrices of the same size: numpy's own work takes longer than LAPACK's on a
+    small matrix.
 
     >>> eigenvalues([np.array([[2.0, 1.0], [0.0, 3.0]]), np.array([[np.nan]])])
     [[(2+0j), (3+0j)], None]
@@ -31,7 +31,7 @@ def eigenvalues(matrices: Sequence[FloatArray]) -> list[list[complex] | None]:
         every = np.array([matrices[k] for k in numbers]) if len(numbers) > 1 else matrices[numbers[0]][None]
         try:
             values = np.linalg.eigvals(every).astype(np.complex128).tolist()
-        except np.linalg.LinAlgError:  # of one: the others have theirs
+        except np.linalg.LinAlgError:  # one failed: compute the others one by one
             if len(numbers) > 1:
                 values = [eigenvalues([one])[0] for one in every]
             else:

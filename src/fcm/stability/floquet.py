@@ -1,4 +1,4 @@
-"""Floquet multipliers of any solution of a system, from the workspace that was used last."""
+"""Floquet multipliers of any solution of a system; the last workspace is used again."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def multipliers_of(
 ) -> Multipliers | HillMultipliers:
     """The workspace that computes the multipliers of a system's solutions.
 
-    The system may be a structure or a sector of a ring. The last workspace is used again if it is small, and
-    the contacts alone differ, as in a sweep. Where a contact has a law of its own it is by Hill's method.
+    The system may be a structure or a sector of a ring. The last workspace is used again if it is small and
+    only the contacts differ, as in a sweep. If a contact has a law of its own, Hill's method is used.
     """
     if system.own_laws:
         return HillMultipliers(system, options)
@@ -67,15 +67,15 @@ def multipliers(system: System, z: FloatArray, options: StabilityOptions = STABI
     Returns
     -------
     (multiplier,) complex array
-        By how much small disturbances of the motion grow within one period: of the modal displacements and
-        velocities, and of what the contacts that stick at its beginning remember. Contacts that never slip
-        remember for ever, which is not listed. Empty where a number is not finite.
+        Factors by which small disturbances of the motion grow within one period. Disturbed are the modal
+        displacements and velocities, and the memory of contacts that stick when the period begins. Contacts
+        that never slip keep their memory, which is not listed. Empty if a number is not finite.
 
     Notes
     -----
-    Of a structure with more than 24 modes those whose frequency is above 6 times the excitation and 1.5 times
-    the highest harmonic of the balance follow the contacts without delay, and have none; their share of
-    the flexibility is then wrong by (omega_disturbance / omega_mode)^2.
+    In a structure with more than 24 modes, some follow the contacts without delay, and have no multipliers:
+    those above 6 times the excitation and 1.5 times the highest harmonic of the balance. Their share of the
+    flexibility is then wrong by (omega_disturbance / omega_mode)^2.
 
     Examples
     --------

@@ -1,18 +1,17 @@
-r"""Stability by Hill's method: where the sequence of a contact's states is not known.
+r"""Stability by Hill's method, for contacts whose sequence of states is not known.
 
 A disturbance exp(s t) p(t) of a periodic motion is balanced with the harmonics of the motion itself. The
-modes are of mass 1, with shapes P on the ports. D is the derivative by time of means, cosines and sines, and
-T that of the contacts' forces by the motion:
+modes are of mass 1, with shapes P on the ports. D is the time derivative of means, cosines and sines, and T
+is the derivative of the contacts' forces by the motion:
 
-    ((s + D)^2 + 2 zeta_i w_i (s + D) + w_i^2) q_i + P_i T P^T q = 0,
+    ((s + D)^2 + 2 zeta_i w_i (s + D) + w_i^2) q_i + P_i T P^T q = 0.
 
-an eigenvalue problem for s, of twice as many exponents as modes times unknowns of each. Each exponent comes
-several times, moved by i k omega; the one whose p(t) lies most evenly about its mean has lost least by the
-harmonics left out (Lazarus and Thomas, Comptes Rendus Mecanique 338, 2010). Multipliers are
-exp(2 pi s / omega).
+This is an eigenvalue problem with 2 modes * unknowns of each mode exponents s. Each exponent comes several
+times, shifted by i k omega. The copy whose p(t) lies most evenly about its mean has lost least by truncation
+(Lazarus and Thomas, Comptes Rendus Mecanique 338, 2010). The multipliers are exp(2 pi s / omega).
 
-T is the derivative for periodic motions. Of a law with memory, such as friction, it is exact for disturbances
-that neither grow nor decay, and errs for those that do within a period.
+T is the derivative for periodic motions. For a law with memory, such as friction, it is exact for
+disturbances that neither grow nor decay, and approximate for all others.
 """
 
 from __future__ import annotations
@@ -32,16 +31,16 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class UnchangedMotion:
-    """The motion of the balance itself, in the place of an enriched one: nothing is added to it."""
+    """Stands for an enriched motion, but adds nothing to that of the balance."""
 
     shift = 0.0
 
     def at(self, z: FloatArray) -> None:
-        """Take a point z (unknown + 1,): nothing is to be done."""
+        """Take a point z (unknown + 1,) and do nothing."""
 
 
 class HillMultipliers:
-    """Computes multipliers of a system's solutions by Hill's method; a workspace, as `Multipliers` is."""
+    """A workspace that computes multipliers by Hill's method, with the interface of `Multipliers`."""
 
     def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
         self.options = options
@@ -55,13 +54,13 @@ class HillMultipliers:
         for j, h in enumerate(self.harmonics):
             a = 1 + 2 * j
             self.at_fold[a, a + 1], self.at_fold[a + 1, a] = -h, h
-        # where the unknowns of a port are among those of the balance, means first
+        # indices of each port's unknowns among those of the balance, means first
         waves = np.stack((self.wide.waves_at, self.wide.waves_at + 1), axis=1).reshape(-1, self.wide.ports)
         self.place = np.vstack((self.wide.mean_at, waves)).T  # (port, each)
         self.modes, self.each = modes, each
 
     def of(self, z: FloatArray) -> list[complex] | None:
-        """Multipliers at z (unknown + 1,), twice as many as modes; None where they are not finite."""
+        """Multipliers at z (unknown + 1,), twice as many as modes; None if the stiffness is not finite."""
         from scipy.linalg import eig  # its import takes longer than most curves
 
         omega, stiffness = float(z[-1]), self._stiffness(z)
@@ -80,14 +79,14 @@ class HillMultipliers:
         found, again = list[complex](), list[complex]()
         for k in np.argsort(np.abs(off), kind="stable").tolist():
             value = complex(np.exp(2.0 * np.pi / omega * exponents[k]))
-            # of a pair at -1 both signs of the imaginary part are the same multiplier
+            # the pair shifted to -1: both signs of the imaginary part give the same multiplier
             same = any(abs(value - one) < self.options.hill.multiplier_tolerance * abs(one) for one in found)
             twice = same and abs(off[k]) > self.options.hill.min_offset
             (again if twice else found).append(value)
         return [*found, *again][: 2 * self.modes]
 
     def _off_centre(self, vectors: ComplexArray) -> FloatArray:
-        """Mean harmonic of each disturbance (mode unknown, exponent), by the squares: (exponent,)."""
+        """Mean harmonic (exponent,) of the disturbances (mode unknown, exponent), weighted by squares."""
         parts = vectors.reshape(self.modes, self.each, -1)
         ahead, behind = parts[:, 1::2] + 1j * parts[:, 2::2], parts[:, 1::2] - 1j * parts[:, 2::2]
         up, down = (np.sum(np.abs(0.5 * one) ** 2, axis=0) for one in (ahead, behind))
@@ -117,8 +116,7 @@ class HillMultipliers:
         sufficient: Sequence[float] = (),
         without_neighbour: bool = False,
     ) -> Classification:
-        """The classification of a solution with an even number of real multipliers above 1, or of a fold
-        (at_fold)."""
+        """Classify a solution with an even number of real multipliers above 1, or a fold (at_fold)."""
         values = self.of(z)
         if values is None:
             return UNKNOWN
@@ -136,5 +134,5 @@ class HillMultipliers:
         return [self.classify(*one) for one in zip(z, at_fold, strict=True)]
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
-        """Whether further harmonics say the same of a solution: none are balanced."""
+        """Whether further harmonics confirm the stability of a solution: always, as none are balanced."""
         return True

@@ -1,4 +1,4 @@
-"""Points put between those of a path: where stability changes, and within a window between two points."""
+"""Points inserted into a path: where stability changes, and within a window between two points."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from fcm.stability.classification import Bifurcation
 
 
 class InsertedPoint(Frozen):
-    """A point of the curve between two of the path, within a window in which stability is another."""
+    """A point of the curve between two of the path, within a window in which stability differs from both."""
 
-    place: float  # the point of the path that it follows, and the part of the way to the next
+    place: float  # number of the point of the path before it, plus the fraction of the way to the next
     z: FloatArray  # (unknown + 1,)
     direction: FloatArray  # (unknown + 1,) along the curve
     orientation: float
@@ -25,7 +25,7 @@ class InsertedPoint(Frozen):
 
     @property
     def after(self) -> int:
-        """The point of the path that it follows."""
+        """Number of the point of the path before it."""
         return int(self.place)
 
     @property
@@ -40,9 +40,9 @@ class InsertedPoint(Frozen):
 
 
 class MultiplierCrossing(InsertedPoint):
-    """A point of the curve at which stability changes without a fold; whether it is stable itself is unknown.
+    """A point of the curve at which stability changes without a fold; its own stability is unknown.
 
-    A disturbance neither grows nor dies out there, but for the effect of more harmonics."""
+    A disturbance neither grows nor decays there, apart from the effect of more harmonics."""
 
     stable: float = math.nan
     kind: Bifurcation = Bifurcation.NEIMARK_SACKER
@@ -54,7 +54,7 @@ class MultiplierCrossing(InsertedPoint):
 
 
 def with_points(path: Path, inserted: Sequence[InsertedPoint]) -> Path:
-    """The path with points between its own, in order."""
+    """The path with inserted points, in order."""
     if not inserted:
         return path
     at = np.array([one.after for one in inserted]) + 1

@@ -16,8 +16,10 @@ class KnownMotions(Frozen):
     pieces: tuple[FloatArray, ...]
 
     def interpolate(self, system: System, z: FloatArray) -> FloatArray | None:
-        """The motion (unknown + 1,) at the frequency of a solution of a system, between two that are known;
-        of several the nearest, None if there is none."""
+        """Interpolate the motion (unknown + 1,) at the frequency of a solution z of a system.
+
+        If there are several, it is the one nearest to z; None if there is none.
+        """
         here, near = self._with_harmonics(system, z), list[FloatArray]()
         for piece in self.pieces:
             off = piece[:, -1] - z[-1]

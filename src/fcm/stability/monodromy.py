@@ -1,7 +1,7 @@
-r"""The monodromy matrix: what one period makes of a small disturbance of a periodic motion.
+r"""The monodromy matrix, which maps a small disturbance of a periodic motion to that after one period.
 
-Of a motion whose contacts' states are known over the period, a disturbance obeys linear equations with
-coefficients that are constant between the events. With modes of mass 1 and shapes P_u, P_v at the contacts,
+If the contacts' states over the period are known, a disturbance obeys linear equations whose coefficients are
+constant between events. With modes of mass 1 and shapes P_u, P_v at the contacts,
 
     q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i = - sum over the contacts (P_u df + P_v dn)
 
@@ -10,44 +10,44 @@ coefficients that are constant between the events. With modes of mass 1 and shap
     separation  df = dn = 0
 
 The forces are continuous, so q and q' do not jump at events. The instants of events matter only where they
-decide what the slider remembers. At the end of a slip dw = du -+ mu k_v dv / k_u, as the limit is at its
-extreme. At a closing w = u where the load vanishes, so dw = du - u' dv / v'.
+decide what the slider remembers. At the end of a slip the limit is at its extreme, so
+dw = du -+ mu k_v dv / k_u. At a closing w = u where the load vanishes, so dw = du - u' dv / v'.
 
-In a ring of n sectors whose motion repeats after no fewer, after 2 pi / n each sector does what the one j
-sectors ahead did before. So the disturbances of a travelling wave after that time, counted from j sectors
-behind, obey the same equations again. The n-th power of that map is the monodromy matrix, so that
-it takes an n-th of the time (`RingMonodromy`).
+In a ring, let the motion repeat after n sectors and no fewer. After the angle 2 pi / n each sector repeats
+what the one j sectors ahead did before. With the sectors counted from j behind, the disturbances of the
+travelling wave then obey the same equations again. The n-th power of that map is the monodromy matrix, so
+only an n-th of the period is followed (`RingMonodromy`).
 
-With many contacts (`ManyMonodromy`) the events of a period are many, and each changes the state of one
-contact alone. So what the contacts add to the modes is not put together anew for every state, but changed by
-a matrix of rank two. The modes far above the excitation, f, follow without delay: they are a flexibility
+With many contacts (`ManyMonodromy`) a period has many events, and each changes the state of one contact. The
+contacts' part of the matrices is therefore not assembled anew for every state, but updated by a matrix of
+rank two. The modes far above the excitation, f, follow without delay: they are a flexibility
 S = P_f^T W_f^-2 P_f between the ports. With modes of mass 1, shapes P on the ports and the contacts'
-stiffness D (port, port) of a state, the displacements d of the ports under forces phi = k_u w of the sliders
-that rest are
+stiffness D (port, port) of a state, the displacements d of the ports under forces phi = k_u w of the resting
+sliders are
 
     q'' + C q' + K q = V phi,   d = U q + G phi,
     U = (1 + S D)^-1 P^T,   G = (1 + S D)^-1 S,   V = P (1 + D S)^-1,   K = W^2 + P D U
 
-Where a contact changes its stiffness by s (2, 2) between its two ports, c, they change (Sherman, Morrison,
-Woodbury), with e = (1 + s G_cc)^-1 s, by
+If a contact's stiffness changes by s (2, 2) between its two ports, c, then G, U, V and K change (Sherman,
+Morrison, Woodbury), with e = (1 + s G_cc)^-1 s, by
 
     -G_c e G^c,    -G_c e U^c,    -V_c e G^c,    V_c e U^c
 
-with _c the columns and ^c the rows of its ports: together they are one matrix [[-K, V], [U, G]], which
-changes by a product of its columns and rows. What the sliders push the modes with, V phi, changes along V_c
-alone, too. Contacts that keep their state through the period are no ports. All is told from the state where
-every contact sticks, which is put together once.
+where _c are the columns and ^c the rows of its ports. Together they are one matrix [[-K, V], [U, G]], which
+changes by a product of its columns and rows. The sliders' force on the modes, V phi, changes only along V_c,
+too. Contacts that keep their state through the period have no ports. The updates start from the state where
+every contact sticks, which is assembled once.
 
-Where the modes that follow are fewer than these ports, they take their place (`by_modes`). Then, with
+If there are fewer far modes than these ports, they replace the ports (`by_modes`). Then, with
 K_ab = W_ab^2 + P_a D P_b^T, B = K_ff^-1 and p_f = P_f phi,
 
     d = P^T q + P_f^T q_f,   q_f = B (p_f - K_fm q)
     [[-K, V], [U, G]] = [[-(K_mm - K_mf B K_fm), -K_mf B], [-B K_fm, B]]
 
-and the rows and columns of a contact's ports, by which it changes, are its shapes on both.
+and the contact's shapes on the modes m and f give the rows and columns by which that matrix changes.
 
-The period begins after the event at which the fewest sliders remember where they rest: so many disturbances
-less are to be followed.
+The period begins after the event at which the fewest sliders rest, so that the fewest disturbances are
+followed.
 """
 
 from __future__ import annotations
@@ -77,17 +77,16 @@ else:
     from fcm.stability.state_sequence import StateSequence
 
 
-LANES = 8  # columns beside one another in the widest registers; arrays have a multiple of them
+LANES = 8  # numbers in the widest registers; arrays have a multiple of as many columns
 
 
 @cython.cclass
 class Monodromy(Disturbances):
     """Monodromy of few contacts on a line.
 
-    `follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
-
-    Velocities are by the angle. Followed is the motion that the sequence is of, from the event that is number
-    `first` of its order on. memory (contact,): whether a slider's place is a disturbance then.
+    After `follow`, `matrix` is the derivative of (q, q', w) after a period by that before. Velocities are by
+    the angle. The period begins before event number `first` of the sequence's order. memory (contact,):
+    whether a slider's place is a disturbance there.
     """
 
     def __init__(
@@ -123,7 +122,7 @@ class Monodromy(Disturbances):
         return 0
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """The monodromy matrix, (2 modes + memories, the same).
+        """The monodromy matrix, square, of 2 modes + memories rows.
 
         Only contacts that stick when the period begins have a memory.
         """
@@ -147,7 +146,7 @@ class Monodromy(Disturbances):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def begin(self) -> cython.int:
-        """Set the disturbances to be followed, and the states before the first event."""
+        """Set the initial disturbances, and the states before the first event."""
         s: StateSequence = self.sequence
         i: cython.int
         j: cython.int
@@ -192,13 +191,13 @@ class Monodromy(Disturbances):
 
 
 class BySeries(Propagator):
-    """A propagator that carries nothing, so that the series is used.
+    """A propagator that never propagates, so that the series is used instead.
 
-    Through the short angles of a part of a period it takes less time.
+    The series is faster through the short angles of a part of a period.
     """
 
     def through(self, *_: object) -> bool:
-        """Whether the disturbances were carried: never."""
+        """Whether the disturbances were propagated: never."""
         return False
 
 
@@ -206,8 +205,8 @@ class BySeries(Propagator):
 class RingMonodromy(Monodromy):
     """Monodromy of the contacts of all sectors of a ring, see `Monodromy`.
 
-    part is the angle that is followed; renumber (mode, mode) renumbers the sectors in modal coordinates, and
-    source (contact,) is the contact whose slider has the place of each afterwards.
+    part is the angle that is followed. renumber (mode, mode) renumbers the sectors in modal coordinates.
+    source (contact,) is the contact whose slider takes the place of each contact's after the renumbering.
     """
 
     def __init__(
@@ -250,7 +249,7 @@ class RingMonodromy(Monodromy):
     @cython.cfunc
     @cython.exceptval(check=False)
     def widest(self) -> cython.void:
-        """Let the period begin in the middle of the widest gap between events: none is at its ends."""
+        """Start the period in the middle of the widest gap between events, so that none is at its ends."""
         s: StateSequence = self.sequence
         i: cython.int
         widest: cython.double = -1.0
@@ -264,7 +263,7 @@ class RingMonodromy(Monodromy):
                 widest, self.first, self.start = gap, i, before + 0.5 * gap
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """The monodromy matrix, (2 modes + memories, the same).
+        """The matrix of the followed part of a period, square, of 2 modes + memories rows.
 
         Only contacts that stick at the start have a memory.
         """
@@ -299,9 +298,8 @@ def add_products(
 class ManyMonodromy:
     """Monodromy of many contacts on a line.
 
-    `follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
-
-    Velocities are by the angle; of the places w those that are remembered when the period begins.
+    After `follow`, `matrix` is the derivative of (q, q', w) after a period by that before. Velocities are by
+    the angle. w are the places of moving contacts that stick when the period begins.
 
     Parameters
     ----------
@@ -334,7 +332,7 @@ class ManyMonodromy:
         self.allocate(2 * self.modes, 0)
 
     def with_springs(self) -> npt.NDArray[np.float64]:
-        """The matrix [[-K, V], [U, G]] of modes, tangential and normal ports, where all contacts stick."""
+        """The matrix [[-K, V], [U, G]] of modes, tangential ports and normal ports, if all contacts stick."""
         order, m = _by_direction(np.arange(self.contacts)), self.modes
         k_u, k_v = np.asarray(self.contact).T[1:3]
         springs, P = np.concatenate((k_u, k_v)), self.shapes[:, order]
@@ -345,7 +343,7 @@ class ManyMonodromy:
         return np.block([[-K, found[:, :m].T], [found]])
 
     def allocate(self, columns: int, moving: int) -> None:
-        """Allocate arrays for numbers of disturbances, and of contacts that move."""
+        """Allocate arrays for numbers of disturbances (columns) and of contacts that move."""
         self.columns, self.moving, wide = columns, moving, -(-columns // LANES) * LANES
         self.by_modes = self.soft and len(self.following) < moving
         self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, wide))
@@ -383,16 +381,16 @@ class ManyMonodromy:
             if length > 0.0:
                 self.find_rate()
                 self.propagate(length)
-        # the event after which the period began ends it
+        # the period ends with the event after which it began
         return self.apply_event(s.order[self.first])
 
     def matrix(self) -> npt.NDArray[np.float64]:
-        """The monodromy matrix, (2 modes + memories, the same)."""
+        """The monodromy matrix, square, of 2 modes + memories rows."""
         w = np.asarray(self.w)[self.remembering]
         return np.vstack((np.asarray(self.q), np.asarray(self.v), w))[:, : self.columns]
 
     def begin(self) -> None:
-        """Set the disturbances, the states and the matrices at the begin of the period."""
+        """Set the disturbances, the states and the matrices at the beginning of the period."""
         s = self.sequence
         order, whose = np.asarray(s.order)[: s.events], np.asarray(s.whose)[: s.events]
         into = np.asarray(s.into)[: s.events]
@@ -443,9 +441,8 @@ class ManyMonodromy:
     def assemble(self, state: npt.NDArray[np.intc], moving: npt.NDArray[np.intp]) -> None:
         """Assemble all matrices for states of the contacts.
 
-        Stiffnesses are over omega^2: all is by the angle.
-
-        lower is [U, G], and upper V, of the ports of moving contacts, or of the modes that follow.
+        Derivatives are by the angle, so stiffnesses are divided by omega^2. lower is [U, G], and upper is V,
+        for the ports of moving contacts, or for the far modes (`by_modes`).
         """
         unit, m, n = 1.0 / self.omega**2, self.modes, self.contacts
         mu, k_u, k_v = np.asarray(self.contact).T[:3]
@@ -570,8 +567,11 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def find_products(self, one: cython.Py_ssize_t) -> cython.int:
-        """left, the columns of V and G, and right, the rows of U and G, of the two ports of a moving contact;
-        its displacements, from port less followed, with followed, -G phi, by the modes that follow."""
+        """Fill left, right, port and followed for the two ports of a moving contact.
+
+        left are columns of V and G, and right are rows of U and G. Displacements are port - followed, with
+        port = U q and followed = -G phi, the part of the far modes.
+        """
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         r: cython.Py_ssize_t
@@ -608,7 +608,7 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(check=False)
     def flexibility(self, r: cython.Py_ssize_t, at: cython.Py_ssize_t) -> cython.double:
-        """Flexibility G between a port whose rows were found, and the one at a place."""
+        """Flexibility G between port r of the last `find_products` and the port with index at."""
         i: cython.Py_ssize_t
         found: cython.double = 0.0
         if not self.soft:
@@ -622,7 +622,7 @@ class ManyMonodromy:
     @cython.cfunc
     @cython.exceptval(check=False)
     def find_rate(self) -> cython.void:
-        """Bound the rate at which the motion turns."""
+        """Compute the rate, which bounds how fast the motion turns."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         rows: cython.double = 0.0
@@ -640,7 +640,7 @@ class ManyMonodromy:
     def propagate(self, length: cython.double) -> cython.void:
         """Propagate the disturbances through an angle by a series in steps.
 
-        They are so short that the terms of the series do not grow large.
+        Steps are so short that the terms of the series do not grow large.
         """
         i: cython.int
         steps: cython.int = cython.cast(cython.int, ceil(self.rate * length / self.step_radians))
@@ -684,7 +684,7 @@ class ManyMonodromy:
 @cython.cfunc
 @cython.exceptval(check=False)
 def _side(state: cython.int) -> cython.double:
-    """Sign with which the load adds to the friction force: 0 without slip."""
+    """Sign of the load's part in the friction force, 0 without slip."""
     return 1.0 if state == POSITIVE else -1.0 if state == NEGATIVE else 0.0
 
 

@@ -1,14 +1,17 @@
 r"""Floquet multipliers of a balanced solution, and the classification of its stability by them.
 
-The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
-motion. Its motion is the `EnrichedMotion` one; that of the harmonics balanced alone tells how sure the
-classification is. Where it is uncertain, as of light impacts, whose multipliers change severalfold where
-amplitudes change by a hundredth, the further harmonics are balanced too (`Rebalancing`). That motion tells if
-those beyond add little to it. Where no contact changes its state the motion is linear, and stable. That an
-extreme of its limit holds a slider is no matter then: with a little less residual friction the slider rests,
-in the same motion. Neither is quite a periodic solution of the structure, so that a real multiplier passes +1
-beside the fold of the curve of solutions. The parity of the balance's determinant is, in the limit of many
-harmonics, that of the number of real multipliers above +1, and changes exactly at the folds: it decides.
+The growth of a small disturbance over a period, slow or fast, is an eigenvalue of the `Monodromy` of the
+motion. The monodromy is that of the finer motion (`EnrichedMotion`); that of the balanced harmonics alone
+shows how certain the classification is. If it is uncertain, the further harmonics are balanced, too
+(`Rebalancing`). That motion decides if harmonics beyond its own add little to it. Light impacts need this:
+their multipliers change severalfold if amplitudes change by a hundredth.
+
+If no contact changes its state, the motion is linear and stable. This holds, too, where an extreme of its
+limit holds a slider: with a little less residual friction the slider rests in the same motion.
+
+Neither motion is exactly a periodic solution of the structure, so that a real multiplier passes +1 beside the
+fold of the curve. The parity of the balance's determinant changes exactly at the folds. In the limit of many
+harmonics it is that of the number of real multipliers above +1. Therefore it decides on that number.
 """
 
 from __future__ import annotations
@@ -46,17 +49,17 @@ if TYPE_CHECKING:
 
 
 class VariationalProblem(NamedTuple):
-    """The states of a balanced motion, and the monodromy that follows its disturbances through them."""
+    """The states of a balanced motion, and the monodromy that propagates its disturbances through them."""
 
     states: BalancedSequence | PlanarSequence
     monodromy: Monodromy | ManyMonodromy | PlanarMonodromy
 
 
 class _MotionSample(NamedTuple):
-    """A solution z, its finer motion x, and the monodromy matrix of that.
+    """A solution z, its finer motion x, and the monodromy matrix of x.
 
-    Whether it is a fold, and without_neighbour; shift: how much the finer motion adds; held: contacts of that
-    which are held, see `Classification`.
+    at_fold and without_neighbour are as in `Multipliers.classify`. shift: how much the finer motion adds.
+    held: number of contacts held in x, see `Classification`.
     """
 
     z: FloatArray
@@ -79,7 +82,7 @@ class Multipliers:
         self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
         law = [[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]
-        self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # all look at it
+        self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # shared by all
         harmonics = [int(h) for h in system.harmonics]
         spectrum = system.options.spectrum
         finer = enriched_harmonics(harmonics, spectrum)
@@ -115,7 +118,7 @@ class Multipliers:
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
         for law, c in zip(self.finer.laws, system.scene.contacts, strict=True):
             law.set_parameters(c.mu, c.k_u, c.k_v, c.n_0)
-        if not np.array_equal(self.contact[:, :3], known):  # what is known of the states is of others
+        if not np.array_equal(self.contact[:, :3], known):  # the kept matrices are of other contacts
             self.fine, self.plain = self._followed()
 
     def _followed(self) -> list[VariationalProblem]:
@@ -134,7 +137,7 @@ class Multipliers:
         return [VariationalProblem(one, PlanarMonodromy(modes, one, self._poll)) for one in planar]
 
     def _poll(self) -> None:
-        self.system.work.poll()  # of now, which may be another later
+        self.system.work.poll()  # of the present system: `take` may change it
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """Multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
@@ -156,12 +159,11 @@ class Multipliers:
         sufficient: Sequence[float] = (),
         without_neighbour: bool = False,
     ) -> Classification:
-        """The classification of a solution with an even number of real multipliers above 1, or of a fold
-        (at_fold).
+        """Classify a solution with an even number of real multipliers above 1, or a fold (at_fold).
 
-        Where the finer motion says what is `sufficient`, stable (1) or unstable (0), it is not confirmed by
-        that of the balanced harmonics. Of a solution that is without_neighbour none with further harmonics is
-        near.
+        If the stability of the finer motion, 1 or 0, is in `sufficient`, the balanced harmonics need not
+        confirm it. without_neighbour: whether no solution with further harmonics is near, so that none is
+        sought.
         """
         return self.classify_all((z,), (at_fold,), (without_neighbour,), sufficient)[0]
 
@@ -174,7 +176,7 @@ class Multipliers:
     ) -> list[Classification]:
         """Classifications of several solutions (unknown + 1,), as `classify` gives them.
 
-        LAPACK is called once for as many as can be held.
+        LAPACK is called once for up to `StructureOptions.max_entries` matrix entries.
         """
         found, count = list[Classification](), 0
         while count < len(z):
@@ -190,13 +192,13 @@ class Multipliers:
     def _sample(
         self, z: FloatArray, at_fold: bool, without_neighbour: bool
     ) -> _MotionSample | Classification:
-        """A sample of a solution and its finer motion; its classification where that needs no multipliers."""
+        """The sample of a solution and its finer motion; a classification if that needs no multipliers."""
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
         if self.finer.shift < self.options.confirmation.min_addition:
             if not self.find_states(plain, z):
                 return UNKNOWN
-            if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
+            if plain.moving == 0:  # nor does any contact move in the finer motion, which is the same
                 return LINEAR._replace(held=plain.held) if plain.held else LINEAR
         x = np.array(self.finer.x)
         if not self.find_states(fine, x):
@@ -211,7 +213,7 @@ class Multipliers:
     def _classify_samples(
         self, samples: Sequence[_MotionSample | Classification], sufficient: Sequence[float]
     ) -> list[Classification]:
-        """Classifications of samples, confirmed by the balanced harmonics where that may matter."""
+        """Classifications of samples; the balanced harmonics confirm them where that may matter."""
         seen = [one for one in samples if isinstance(one, _MotionSample)]
         fine = dict(zip(map(id, seen), self._spectra([one.matrix for one in seen]), strict=True))
         known, left = dict[int, Classification](), list[_MotionSample]()
@@ -233,7 +235,7 @@ class Multipliers:
     def _from_finer(
         self, one: _MotionSample, fine: MultiplierSpectrum | None, sufficient: Sequence[float]
     ) -> Classification | None:
-        """The classification by the finer motion alone; None where that is to be confirmed."""
+        """The classification by the finer motion alone; None if that has to be confirmed."""
         if fine is None:
             return UNKNOWN
         finer, options = fine.classify(one.at_fold), self.options.confirmation
@@ -250,10 +252,10 @@ class Multipliers:
     def _of_both(
         self, one: _MotionSample, fine: MultiplierSpectrum | None, plain: MultiplierSpectrum | None
     ) -> Classification:
-        """The classification by the finer motion and that of the balanced harmonics.
+        """Classify by the finer motion and by that of the balanced harmonics.
 
-        What the one does not confirm, or only just, is that of a motion with the further harmonics balanced
-        too, which may be the last.
+        If they disagree, or agree only just, the motion with the further harmonics balanced decides instead.
+        With `last` none is balanced: the classification is then unknown.
         """
         if fine is None or plain is None:
             return UNKNOWN
@@ -282,10 +284,7 @@ class Multipliers:
         times: float,
         one: _MotionSample,
     ) -> bool:
-        """Whether a classification may change; not by a pair that decays where it meets at -1.
-
-        Otherwise as `is_uncertain`.
-        """
+        """Whether a classification `is_uncertain`, other than by a pair that decays where it meets at -1."""
         if not is_uncertain(found, fine, plain, times, options=self.options):
             return False
         return is_uncertain(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
@@ -293,10 +292,10 @@ class Multipliers:
         )
 
     def _pair_decays_at_flip(self, values: Sequence[complex], one: _MotionSample) -> bool:
-        """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
+        """Whether the pair nearest to -1, among values of the finer motion, decays where it meets there.
 
-        The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
-        changing contacts drive it.
+        The same motion is evaluated at frequencies at which the pair comes to -1. How far the pair parts
+        there shows how strongly the changing contacts drive it.
         """
         self.find_states(self.fine.states, one.x)
         at, seen, omega = [0.0], [flip_distance(values, self.options)], float(one.z[-1])
@@ -323,8 +322,10 @@ class Multipliers:
         return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting_decay)
 
     def _rebalanced(self, z: FloatArray, x: FloatArray, persistent: bool) -> Classification | None:
-        """The classification with the harmonics of the finer motion x balanced; None where there is no
-        solution near, or it lacks as much itself."""
+        """Classify with the harmonics of the finer motion x balanced.
+
+        None if no solution is near, or harmonics beyond these add too much to it.
+        """
         refined, multipliers = self._further()
         self.refined_solution = there = refined.rebalance(z, x, persistent)
         if there is None:
@@ -333,7 +334,7 @@ class Multipliers:
         return None if found is None else found._replace(rebalanced=True)
 
     def _further(self) -> tuple[Rebalancing, Multipliers]:
-        """The balance with the harmonics of the finer motion, and the multipliers of that."""
+        """The balance with the harmonics of the finer motion, and the multipliers of its solutions."""
         if self.further is None:
             refined = Rebalancing(
                 self.system, enriched_harmonics([int(h) for h in self.system.harmonics]), self.options
@@ -346,7 +347,7 @@ class Multipliers:
         return refined, multipliers
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
-        """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too."""
+        """Whether a solution keeps the given stability (1 or 0) with the further harmonics balanced, too."""
         self.finer.at(z)
         if self.finer.shift == 0.0:  # it has none
             return True
@@ -354,8 +355,10 @@ class Multipliers:
         return found is not None and found.stable == stable
 
     def confirmation(self, z: FloatArray) -> Classification:
-        """The classification of a solution with the further harmonics balanced, too: unknown where there is
-        none near, or those beyond them add much to it."""
+        """Classify a solution with the further harmonics balanced, too.
+
+        UNKNOWN if no such motion is near, or harmonics beyond these add too much to it.
+        """
         self.finer.at(z)
         self.refined_solution = None
         if self.finer.shift == 0.0:  # it has none
@@ -365,9 +368,9 @@ class Multipliers:
     def continued(
         self, z: FloatArray, motion: FloatArray, harmonics: tuple[int, ...] | None = None
     ) -> Classification:
-        """The classification of the motion to which another one with further harmonics leads.
+        """Classify the motion with further harmonics to which Newton's method leads from a known one.
 
-        harmonics: those of that motion, if they are others.
+        harmonics: those of the known motion, if they differ.
         """
         refined, multipliers = self._further()
         if harmonics is not None:
@@ -376,11 +379,11 @@ class Multipliers:
         return UNKNOWN if there is None else self._classify_if_sufficient(multipliers, there) or UNKNOWN
 
     def _classify_if_sufficient(self, multipliers: Multipliers, z: FloatArray) -> Classification | None:
-        """The classification of a motion with further harmonics; None where none tells.
+        """The classification of a motion with further harmonics; None if it is not accurate enough to tell.
 
-        Where the harmonics beyond its own add more than `max_addition` to it, it errs as much as what it is
-        to confirm. Then it is that of a motion with these balanced, too, unless many contacts slide in a
-        plane: there one look takes as long as tens of points of the curve.
+        If harmonics beyond its own add more than `max_addition`, it errs as much as the motion that it should
+        confirm. Then those are balanced, too, unless many contacts slide in a plane: there one evaluation
+        takes as long as tens of points of the curve.
         """
         multipliers.finer.at(z)
         if multipliers.finer.shift <= self.options.confirmation.max_addition:
@@ -392,7 +395,7 @@ class Multipliers:
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion whose states were found last."""
-        # that of many contacts takes long; what looks at few is shared, and what is polled may look with it
+        # many contacts take long; the workspace of few is shared, and the poll may run code that uses it
         if self.contacts >= self.options.structure.many_contacts:
             self.system.work.poll()
         followed.monodromy.follow(omega)
@@ -406,7 +409,7 @@ class Multipliers:
         return None if found is None else self._without_neutral(found)
 
     def _spectra(self, matrices: Sequence[FloatArray | None]) -> list[MultiplierSpectrum | None]:
-        """Spectra of monodromy matrices; None for each that is not known."""
+        """Spectra of monodromy matrices; None for each that is None, or has no finite eigenvalues."""
         known = iter(eigenvalues([one for one in matrices if one is not None]))
         each = (None if one is None else next(known) for one in matrices)
         return [
@@ -415,7 +418,7 @@ class Multipliers:
         ]
 
     def _without_neutral(self, found: list[complex]) -> list[complex]:
-        """Multipliers of a period without those of rigid-body modes that nothing holds."""
+        """Multipliers of a period, without those of unconstrained rigid-body modes."""
         values = self.of_period(found)
         for _ in range(2 * self.has_rigid_body_modes):
             nearest = min(values, key=_distance_from_one)
@@ -424,7 +427,7 @@ class Multipliers:
         return values
 
     def _with_sliders_at_rest(self, one: _MotionSample) -> Classification:
-        """The classification with the sliders at rest that an extreme of a limit holds."""
+        """Classify with those sliders at rest that an extreme of their limit holds."""
         states = self.fine.states
         states.yielding = False
         self.find_states(states, one.x)
@@ -457,7 +460,7 @@ def _many_contacts(
     states: Sequence[BalancedSequence],
     options: StabilityOptions,
 ) -> list[VariationalProblem]:
-    """Variational problems of many contacts: each change of one contact's state is followed on its own."""
+    """Variational problems of many contacts: each change of one contact's state updates the matrices."""
     linear, near = system.linear, ~far
     following = combined(
         linear.ports[far], linear.natural[far], contact[:, 1:3].ravel(), options.structure.min_yield

@@ -45,7 +45,7 @@ class StructureOptions(Frozen):
     many_modes : int
         Number of modes above which those far above the excitation are taken to follow without delay.
     many_contacts : int
-        Number of contacts on a line from which on each change of one contact's state is followed on its own.
+        Number of contacts on a line from which on each change of one contact's state updates the matrices.
     above_excitation, above_harmonics : float
         Frequency of a mode above which it is far, relative to the excitation, and relative to its highest
         harmonic; the larger limit holds.
@@ -57,8 +57,7 @@ class StructureOptions(Frozen):
     max_cached : int
         Number of disturbances up to which the last workspace is used again.
     max_entries : int
-        Number of matrix entries from which on no further point is added to those whose eigenvalues are found
-        together.
+        Number of matrix entries from which on no further point is added to one call of LAPACK.
     max_disturbances : int
         Most disturbances of the sectors of a ring. With more a point takes seconds, and stability is reported
         as unknown.
@@ -83,12 +82,13 @@ class ConfirmationOptions(Frozen):
     safe_decay : float
         Decay in a period, as a logarithm, that truncation hardly turns into growth: it needs no confirmation.
     decay_ratio : float
-        Decay in a period relative to what further harmonics add to the displacements, which needs no
-        confirmation: light impacts turn as much of it into growth. The larger limit holds.
+        Decay in a period, relative to what further harmonics add to the displacements, that needs no
+        confirmation: light impacts may turn a smaller decay into growth. The larger limit holds.
     growth_ratio : float
         Growth in a period, relative to what further harmonics add, up to which truncation may have made it.
     min_addition : float
-        Addition of further harmonics, relative to the displacements, below which a motion may have none.
+        Addition of further harmonics, relative to the displacements, below which it is neglected if no
+        contact slips or opens.
     frequency_step : float
         First relative change of the frequency that shows how fast a pair of multipliers turns towards -1.
     max_frequency_change : float
@@ -100,19 +100,19 @@ class ConfirmationOptions(Frozen):
     meeting_decay : float
         Decay in a period, as a logarithm, that the pair needs where it meets, to stay stable.
     tolerance : float
-        Error of a solution of many contacts with more harmonics, relative to the way to it.
+        Error of a solution of many contacts with more harmonics, relative to its distance from the start.
     max_change : float
         Distance of a solution with more harmonics, relative to its size, above which it is another one.
     homotopy_parts : tuple of float
-        Parts of the further harmonics' equations, in turn, where all at once are too much.
+        Parts of the further harmonics' equations in a homotopy, used where all at once do not converge.
     max_unknowns : int
-        Number of further unknowns from which on these parts are not tried.
+        Number of unknowns from which on this homotopy is not tried.
     point_interval : int
-        Number of points from one that is confirmed to the next, where contacts are few. The middle between
-        them is confirmed, too, and more where the growth does not lie on a line.
+        Number of points from one confirmed point to the next, with few contacts. The middle between them is
+        confirmed, too, and more where the growth does not lie on a line.
     max_fraction_of_many : float
-        Number of confirmed points of a curve of many contacts, relative to all its points, at most. The
-        others are not confirmed.
+        Most confirmed points of a curve of many contacts, relative to all its points. The others are not
+        confirmed.
     max_addition : float
         Addition of the harmonics beyond the further ones, relative to the displacements, up to which a motion
         confirms.
@@ -144,25 +144,24 @@ class WindowOptions(Frozen):
     margin : float
         Error of a predicted minimum, relative to the differences between the three values that predict it.
     margin_reduction : float
-        Factor on that margin for each division of the way, as differences fall by squares and errors by
-        cubes.
+        Factor on that margin for each division of an interval: differences fall with its square, errors with
+        its cube.
     max_multipliers : int
-        Number of multipliers above which no window is looked for: two are then always about to meet.
+        Number of multipliers above which no window is sought: two are then always about to meet.
     min_size : float
         Size of a multiplier up to which it is left out.
     min_length : float
-        Length of a way, relative to the size of the solution, below which it is not divided.
+        Length of an interval, relative to the size of the solution, below which it is not divided.
     min_distance : float
-        Distance of a new place from the two around it, relative to theirs, at least; a window may begin
+        Least distance of a new place from the two around it, relative to their distance; a window may begin
         nearer to one of them.
     max_divisions : int
-        Most divisions of a way between two points.
+        Most divisions of the interval between two places.
     edge_distance : float
-        Distance of two places, relative to the step, up to which no edge of a window is looked for between
-        them.
+        Distance of two places, relative to the step, up to which no edge of a window is sought between them.
     angle_factor, angle_margin : float
-        Angle by which two multipliers may come nearer to one another: this factor on the angle by which
-        multipliers turn, plus this margin [rad].
+        The angle by which two multipliers may approach one another is angle_factor times the angle by which
+        multipliers turn, plus angle_margin [rad].
     """
 
     margin: float = 0.1
@@ -178,7 +177,7 @@ class WindowOptions(Frozen):
 
 
 class SamplingOptions(Frozen):
-    """Options on which points of a path are looked at, and where stability changes between them.
+    """Options on which points of a path are classified, and on locating changes of stability between them.
 
     Attributes
     ----------
@@ -202,10 +201,10 @@ class SamplingOptions(Frozen):
     tolerance : float
         Error of the place of a crossing, relative to the step.
     tolerance_many_contacts : float
-        The same with many contacts, of which each look takes as long as tens of points of the curve.
+        The same error with many contacts, where one evaluation takes as long as tens of points of the curve.
     confirmed_tolerance : float
-        Error of the place of a crossing, relative to the step, where classifications are confirmed and the
-        growth jumps, as it may from one motion to a finer one.
+        The same error where classifications have to be confirmed, so that the growth may jump from one motion
+        to a finer one.
     growth_tolerance : float
         Size of the growth below which a crossing is found.
     max_evaluations : int
@@ -230,7 +229,7 @@ class SamplingOptions(Frozen):
 
 
 class HillOptions(Frozen):
-    """Hill's method, which stands for the monodromy matrix where contacts have laws of one's own.
+    """Options of Hill's method, which replaces the monodromy matrix if contacts have laws of their own.
 
     Attributes
     ----------
@@ -245,16 +244,16 @@ class HillOptions(Frozen):
 
 
 class PlanarStabilityOptions(Frozen):
-    """Options on how disturbances of contacts in a plane are followed.
+    """Options on how disturbances of contacts in a plane are propagated.
 
     Attributes
     ----------
     stages : tuple of int
-        Numbers of Radau points that a step may have, in rising order. A step has what reaches the next event
-        at the least cost.
+        Numbers of Radau points that a step may have, ascending. A step takes the number that reaches the next
+        event at the least cost.
     tolerance : float
         Last Legendre coefficient of the velocities over a step, relative to the size of a disturbance, up to
-        which the step is accepted. Multipliers err by about a twentieth of it.
+        which the step is accepted. The error of multipliers is about a twentieth of it.
     coefficient_floor : float
         Least value taken for that coefficient, relative to the last but one: it may vanish by chance.
     end_factor : float
@@ -266,14 +265,14 @@ class PlanarStabilityOptions(Frozen):
     max_retry_factor : float
         Greatest ratio of a rejected step's next attempt to it.
     min_step : float
-        [rad] Shortest step; where none as short is accepted, stability is unknown.
+        [rad] Shortest step; stability is unknown if a shorter one would be needed.
     max_disturbances : int
-        Most disturbances that are followed; with more, stability is unknown.
+        Most disturbances; with more, stability is unknown.
     initial_panels : int
-        Number of panels of slip that are recorded for a contact at first.
+        Initial room for panels of slip of a contact.
     event_tolerance : float
-        [rad] Distance of two events up to which they are one, as those of contacts that mirror one another
-        are. Multipliers err by about as much.
+        [rad] Distance of two events up to which they count as one, as with contacts that mirror one another.
+        The error of multipliers is about as large.
     min_gap : float
         [rad] Distance of two events above which a period may begin between them.
     """
@@ -343,4 +342,4 @@ class StabilityOptions(Frozen):
     propagation: PropagationOptions = PropagationOptions()
 
 
-STABILITY = StabilityOptions()  # where nothing else is said
+STABILITY = StabilityOptions()  # the defaults

@@ -1,9 +1,9 @@
-r"""The monodromy matrix of a motion whose contacts slide in a plane: a small disturbance after a period.
+r"""The monodromy matrix of a motion whose contacts slide in a plane.
 
-It is carried from event to event, in steps as long as polynomials resolve its velocities. Their degree is
-that which reaches the next event at the least cost.
+A small disturbance is propagated from event to event, in steps as long as polynomials resolve its velocities.
+Each step takes the degree that reaches the next event at the least cost.
 
-The modes, of mass 1 and with shapes P on the ports, obey as on a line (see `monodromy`)
+As on a line (see `monodromy`), the modes, of mass 1 and with shapes P on the ports, obey
 
     q'' + 2 zeta w q' + w^2 q = - P dF
 
@@ -15,37 +15,36 @@ remembers. With r = mu n / k_u, dr = mu k_v dv / k_u and the direction of slip e
                  r s' = lambda (e_perp . du - s) - (e_perp . u') (e . du - dr)
     separation   df = dn = 0
 
-The equation of s is that of the direction, r alpha' = e_perp . u', linearised. Forces are continuous, so
-events make nothing jump but what is remembered: as slip begins s = e_perp . dw, as it ends dw is put
-together again; at a closing w = u where the load vanishes, so dw = du - u' dv / v' if it sticks. If it slips
-at once nothing is remembered: of all solutions of the equation of s, whose factor r vanishes there, one is
-regular. A slider that never slips stays where it is.
+The equation of s is the linearised equation of the direction, r alpha' = e_perp . u'. Forces are continuous,
+so only the memory jumps at events. When slip begins, s = e_perp . dw. When it ends in stick, the equations of
+slip give both components of dw. At a closing w = u where the load vanishes, so dw = du - u' dv / v' if the
+contact sticks. If it slips at once, nothing is remembered: the factor r of s' vanishes there, and only one
+solution for s is regular. A slider that never slips stays where it is.
 
-The structure with the springs K of all contacts, as if they stuck, is put together once. With S the
-flexibility of the modes far above, and P the shapes of the others,
+The structure with the springs K of all contacts, as if they stuck, is assembled once. With S the flexibility
+of the far modes, and P the shapes of the others,
 
     d = R^-1 P^T q + R^-1 S g,    R = 1 + S K,    q'' + .. + (w^2 + P K R^-1 P^T) q = (R^-1 P^T)^T g
 
-What a contact does otherwise than stick is a force g on it, of which there is none where it sticks all
-through the cycle:
+The force g on a contact accounts for its state; there is none where it sticks all through the cycle:
 
     stick        g = k_u dw
     slip         g = k_u (e . du - dr) e + k_u s e_perp
     separation   g = K d
 
-One that is open is linear as long as it stays so: with T = (K_o^-1 - (R^-1 S)_oo)^-1 of these it is put into
-the structure, until another one opens or closes:
+An open contact is linear while it stays open. With T = (K_o^-1 - (R^-1 S)_oo)^-1 of the open contacts, o, the
+structure includes them until another one opens or closes:
 
     d = (R^-1 P^T + (R^-1 S)_o T (R^-1 P^T)_o) q + (R^-1 S + (R^-1 S)_o T (R^-1 S)_o) g
 
-Between events the equations are collocated at Radau's points, as that of the direction is (see `Panel`). The
-equation of s, with r before s', has no singular point where the load vanishes. What depends on one angle
-alone is found at each point by itself, from (q, s). These are e . du - dr of the contacts that slip, the
-right sides for their s, and the forces on the modes. With these a step of the length h leaves equations for
-p = q' and s at all its points, solved for all disturbances at once. With the rule's matrices A and D, and
-q_0, p_0 and s_0 at the beginning,
+Between events the equations are collocated at Radau points, as the equation of the direction is (see
+`Panel`). With r before s', the equation of s has no singular point where the load vanishes. Quantities that
+depend on one angle alone are eliminated at each point, as functions of (q, s). These are e . du - dr of the
+slipping contacts, the right sides for their s, and the forces on the modes. A step of length h then leaves
+equations for p = q' and s at all its points, which are solved for all disturbances at once. With the rule's
+matrices A and D, and q_0, p_0 and s_0 at the beginning,
 
-    q = q_0 + h A p,    p = p_0 + h A (forces - K q - C p),    r (D s + d s_0) + h lambda s = what s feels
+    q = q_0 + h A p,    p = p_0 + h A (forces - K q - C p),    r (D s + d s_0) + h lambda s = right side for s
 """
 
 from __future__ import annotations
@@ -86,31 +85,31 @@ FloatArray = npt.NDArray[np.float64]
 
 @cython.cclass
 class PlanarSequence:
-    """The states over a period of contacts that slide in a plane, and what disturbances depend on in between.
+    """The states of contacts in a plane over a period, and quantities of the motion for its disturbances.
 
-    That is, at every angle, the direction of slip, the rates of the displacements, and the radius of the
-    disc. `find_events` at a motion finds the cycles of its contacts. The states have the same numbers as
-    those on a line, see `state_sequence`.
+    These are the direction of slip, the rates of the displacements, and the radius of the disc at every
+    angle. `find_events` finds the cycles of a motion's contacts. The states have the same numbers as those on
+    a line, see `state_sequence`.
 
     Parameters
     ----------
     contact : (contact, 4)
         mu, k_u, k_v, n_0.
     harmonics : tuple of int
-        Of the motions; unknowns as of `PlanarContact`.
+        Those of the motions; unknowns as in `PlanarContact`.
 
     Attributes
     ----------
     count (contact,), begin, state (contact, count)
-        How many states each has in a period; the angles [rad] at which they begin, rising, less than a turn
-        from the first; and which they are: STICK, SLIP, SEPARATION, or FREE, closed without friction.
+        Number of states of each contact in a period; the angles [rad] at which they begin, ascending, less
+        than a turn from the first; and the states: STICK, SLIP, SEPARATION, or FREE, closed without friction.
     first (contact + 1,), record (panel, 5 + s)
-        Of its panels of slip, the rows that a contact has; as `Slider.record`.
+        Panels of slip, as in `Slider.record`; contact c has the rows from first[c] to first[c + 1].
     moving, held : int
-        Contacts that slip with friction, or open and close. A slider that never slips stays where it is: none
-        is held by an extreme of its limit, and `yielding` changes nothing.
+        Number of contacts that slip with friction, or open and close; and 0. A slider that never slips stays
+        where it is: no extreme of a limit holds it, and `yielding` has no effect.
     e_x, e_y, x_1, y_1, r, r_1
-        What `direction` and `rates` found: the direction of slip; u_x', u_y', the radius and its derivative.
+        Results of `direction` and `rates`: the direction of slip; u_x', u_y', the radius and its derivative.
     """
 
     def __init__(
@@ -142,7 +141,7 @@ class PlanarSequence:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def find_events(self, x: cython.double[::1]) -> cython.bint:
-        """Find the cycles of the motion x; false where a number is not finite, or one is not found."""
+        """Find the cycles of the motion x; false if a number is not finite, or a cycle is not found."""
         c: cython.int
         self.moving = self.highest = 0
         found: cython.bint = True
@@ -153,7 +152,7 @@ class PlanarSequence:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def look(self, x: cython.double[::1], c: cython.int) -> cython.bint:
-        """Find the cycle of one contact."""
+        """Find the cycle of one contact; false as in `find_events`."""
         i: cython.int
         k: cython.int
         first: cython.Py_ssize_t = c * self.width
@@ -181,7 +180,7 @@ class PlanarSequence:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keep(self, c: cython.int) -> cython.bint:
-        """Keeps the states of contact c without those within rounding, joined, and its panels."""
+        """Keep the panels of contact c, and its states, joined, without those too short to be resolved."""
         i: cython.int
         p: cython.int
         state: cython.int
@@ -225,14 +224,14 @@ class PlanarSequence:
         return self.state[c, i]
 
     def remembers(self, c: cython.int, theta: float) -> cython.int:
-        """How many numbers a contact remembers at an angle: the place of its slider, or its direction."""
+        """How many numbers a contact remembers at an angle: its slider's place (2) or direction (1)."""
         state: cython.int = self.state_at(c, theta)
         if self.count[c] == 1:
             return 1 if state == SLIP else 0
         return 2 if state == STICK else 1 if state == SLIP else 0
 
     def slip_at(self, c: cython.int, angles: cython.double[::1], before: cython.bint = False) -> FloatArray:
-        """(angle, 6) of a contact at angles of its slip: e_x, e_y, x_1, y_1, r_1, r; before as of `panel`."""
+        """Values (angle, 6) of e_x, e_y, x_1, y_1, r_1, r at angles of a slip; before as in `panel`."""
         found = np.zeros((angles.shape[0], 6))
         out: cython.double[:, ::1] = found
         i: cython.Py_ssize_t
@@ -245,7 +244,7 @@ class PlanarSequence:
         return found
 
     def rates(self, c: cython.int, theta: float) -> None:
-        """`x_1`, `y_1`, `r_1`, and `r`, at an angle."""
+        """Set `x_1`, `y_1`, `r_1` and `r` at an angle."""
         k: cython.int
         h: cython.int = 1
         c_1: float = cos(theta)
@@ -267,7 +266,7 @@ class PlanarSequence:
         self.x_1, self.y_1, self.r_1, self.r = x, y, z, r
 
     def panel(self, c: cython.int, theta: float, before: bool) -> cython.int:
-        """The panel of a slip that an angle is in, or at the end of which (before) it is."""
+        """The panel of slip that contains an angle; with before, the one that ends there, if any."""
         p: cython.int = self.first[c + 1] - 1
         first: float = self.record[self.first[c], 0]
         since: float = (theta - first) % TWO_PI
@@ -282,7 +281,7 @@ class PlanarSequence:
         return p
 
     def direction(self, p: cython.int, theta: float) -> None:
-        """`e_x`, `e_y`, of slip at an angle of a panel."""
+        """Set `e_x`, `e_y`, the direction of slip at an angle in panel p."""
         k: cython.int
         since: float = (theta - self.record[p, 0]) % TWO_PI
         if since < 0.0:
@@ -314,10 +313,10 @@ class PlanarSequence:
 
 @cython.cclass
 class PlanarMonodromy:
-    """The monodromy of contacts in a plane: of those that never move nothing is followed.
+    """Monodromy of contacts in a plane; contacts that never move have no disturbances.
 
-    `follow` a sequence of states: `matrix` is then the derivative of (q, q', memory) after a period by that
-    before. Velocities are by the angle.
+    After `follow`, `matrix` is the derivative of (q, q', memory) after a period by that before. Velocities
+    are by the angle.
 
     Parameters
     ----------
@@ -325,17 +324,17 @@ class PlanarMonodromy:
         With three ports for each contact.
     sequence : PlanarSequence
     poll : callable, optional
-        Called at every event, which it may interrupt.
+        Called at every event; it may raise an exception to interrupt.
 
     Attributes
     ----------
     steps
-        How many the last period took.
+        Number of steps of the last period.
     part
-        The angle that is followed, a period.
+        Angle [rad] that is followed: a period.
     state, fresh, held : (contact,)
-        The state of each contact now; whether it has just closed, and slips; and how many numbers it
-        remembers at the beginning of the period.
+        Present state of each contact; whether it has just closed and slips; and how many numbers it remembers
+        at the beginning of the period.
     """
 
     def __init__(self, modes: PortModes, sequence: PlanarSequence, poll: Callable[[], object] = int) -> None:
@@ -357,9 +356,9 @@ class PlanarMonodromy:
         self.arranged, self.part, self.filled = False, TWO_PI, np.zeros((0, 0))
 
     def matrix(self) -> FloatArray:
-        """The monodromy matrix, (2 modes + memories, the same).
+        """The monodromy matrix, square, of 2 modes + memories rows.
 
-        It is nan where there are more disturbances than the options allow.
+        It is (1, 1) and nan if there are too many disturbances, or a step would be too short.
         """
         found: FloatArray = self.filled
         return found
@@ -450,11 +449,11 @@ class PlanarMonodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate(self, theta: cython.double, length: cython.double, opens: cython.bint) -> cython.bint:
-        """Carry the disturbances from an angle on, in steps; false where no step is short enough.
+        """Propagate the disturbances from an angle on, in steps; false if no step is short enough.
 
-        Where a slipping contact opens, s varies as a power of the angle that is left. Where it closes and
-        slips at once, s has one coefficient less. The error of disturbances there is what polynomials leave
-        out of that.
+        Before a slipping contact opens, s varies as a power of the angle that is left. After it closes and
+        slips at once, s has one coefficient less. Polynomials resolve this worse, so the tolerance is lower
+        there (`end_factor`).
         """
         left: cython.double = length
         closed: cython.bint = False
@@ -490,7 +489,7 @@ class PlanarMonodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def cheapest(self, left: cython.double) -> cython.int:
-        """Which number of stages takes an angle at the least cost: as a cube, by its longest step."""
+        """Index of the number of stages that covers an angle at the least cost: steps times stages cubed."""
         i: cython.int
         best: cython.int = 0
         least: cython.double = 0.0
@@ -516,7 +515,7 @@ class PlanarMonodromy:
         m, self.columns = self.modes, columns
         self.q, self.p = np.eye(m, columns), np.eye(m, columns, m)
         self.q_new, self.p_new = np.zeros((2, m, columns))
-        # (contact, number, disturbance), and the forces g (contact, direction, disturbance) of closed ones
+        # memory (contact, number, disturbance), and forces g (contact, direction, disturbance) of closed ones
         memory, g = np.zeros((self.moving.size, 2, columns)), np.zeros((self.moving.size, 3, columns))
         self.remembered = [(k, i) for k, n in enumerate(held.tolist()) for i in range(n)]
         for column, (k, i) in enumerate(self.remembered, 2 * m):
@@ -528,7 +527,7 @@ class PlanarMonodromy:
         return True
 
     def _structure(self, omega: float) -> None:
-        """Put the structure with the springs together, as the moving contacts see it."""
+        """Assemble the structure with the springs of all contacts that are not always open."""
         contact, m = np.asarray(self.sequence.contact), self.modes
         rubs = contact[:, 0] * contact[:, 1] > 0.0
         opened = (np.asarray(self.sequence.count) == 1) & (np.asarray(self.state) == SEPARATION)
@@ -551,7 +550,7 @@ class PlanarMonodromy:
         self.open = np.full(1, -1)  # of no contact yet
 
     def _open(self, contacts: npt.NDArray[np.intp]) -> None:
-        """Put contacts that are open into the structure with the springs of all."""
+        """Include open contacts in the structure that was assembled with the springs of all."""
         self.open, ports = contacts, _ports(contacts)
         seen, soft, K = self.seen_closed, self.soft_closed, self.K_closed
         if ports.size:
@@ -572,7 +571,7 @@ class PlanarMonodromy:
         return np.concatenate((self.q, self.p, kept))
 
     def _arrange(self) -> None:
-        """Sort the contacts that slip, are open, and stick, and prepare what those do to one another."""
+        """Group the contacts by state, and prepare the couplings between them."""
         self.poll()
         state, columns, m = np.asarray(self.state)[self.moving], self.columns, self.modes
         slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
@@ -583,12 +582,12 @@ class PlanarMonodromy:
         self.slips, self.sliders = slips.astype(np.intc), self.moving[slips].astype(np.intc)
         self.ratio, self.stiff = self.ratios[slips], self.k_u[slips]
         slide, rest = _ports(slips), _ports(sticks, 2)
-        # what the memory of those that stick pushes on the modes, and moves the others by
+        # the memory of sticking contacts: its forces on the modes, and displacements of slipping contacts
         still = np.asarray(self.g)[sticks, :2].reshape(rest.size, columns)
         self.held_push = self.push[:, rest] @ still
         moved = self.soft[slide[:, None], rest] @ still
         by = np.concatenate((self.seen[slide], moved), axis=1)
-        # of contacts that slip, by their directions: (direction, contact, what by)
+        # displacements of slipping contacts: (direction, contact, mode or disturbance)
         self.seen_by = by.reshape(n, 3, by.shape[1]).transpose(1, 0, 2).copy()
         k_u = np.asarray(self.stiff)
         soft = self.soft[slide[:, None], slide].reshape(n, 3, n, 3)
@@ -599,7 +598,7 @@ class PlanarMonodromy:
         self.arranged, self.room = True, 0
 
     def _collocate(self) -> None:
-        """Take the rule of a step, and allocate for it."""
+        """Take the collocation rule of a step, and allocate arrays for it."""
         n, m, s, columns = self.slipping, self.modes, self.stages, self.columns
         rule = radau(s)
         self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
@@ -614,7 +613,7 @@ class PlanarMonodromy:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def step(self, theta: cython.double, h: cython.double) -> cython.double:
-        """Take a step from an angle on; its error relative to a disturbance, infinity if singular."""
+        """Take a step from an angle on; return its error relative to a disturbance, 1e300 if singular."""
         if not self.arranged:
             self._arrange()
         if self.room != self.stages:
@@ -632,8 +631,7 @@ class PlanarMonodromy:
         return self.move(h)
 
     def slip(self, theta: float, h: float) -> None:
-        """Fill for the contacts that slip, at the nodes: directions, right sides for s, and how s answers to
-        these."""
+        """Fill the directions of slip, the right sides for s and the matrices of s at the nodes of a step."""
         a: cython.int
         c: cython.int
         i: cython.int
@@ -670,9 +668,10 @@ class PlanarMonodromy:
                 self.relaxing[a, i, i] += self.pressed[i, a]
 
     def at_node(self, i: cython.int) -> cython.bint:
-        """Fill `by` at a node; false where that is singular.
+        """Fill `by` at a node; false if its equations are singular.
 
-        By (q, s, disturbances): e . du - dr of contacts that slip, what s feels, forces on modes.
+        Its rows are e . du - dr of slipping contacts, the right sides for s, and the forces on the modes, by
+        (q, s, disturbances).
         """
         n: cython.int = self.slipping
         m: cython.int = self.modes
@@ -716,7 +715,7 @@ class PlanarMonodromy:
         return condense(by, self.swapped_slips)
 
     def push_modes(self, i: cython.int) -> None:
-        """Add the force -K q on the modes to `by`, and fill `force` at a node, of q_0 and without slip."""
+        """Add the force -K q on the modes to `by` at a node, and fill `force`, the part by q_0 and memory."""
         n: cython.int = self.slipping
         m: cython.int = self.modes
         a: cython.int
@@ -776,7 +775,7 @@ class PlanarMonodromy:
     def equations_of_slip(self, h: float) -> None:
         """Fill the equations of slip in `whole`.
 
-        relaxing s - what s feels of q_0 + h A p and s = what it feels of the rest, and s_0.
+        relaxing s - (right side by h A p and s) = (right side by q_0, disturbances and s_0).
         """
         n: cython.int = self.slipping
         m: cython.int = self.modes
@@ -812,7 +811,7 @@ class PlanarMonodromy:
     def move(self, h: float) -> float:
         """Fill `q_new`, `p_new` at the end of the step; return its error.
 
-        That is the last coefficient of the velocities, relative to the disturbances.
+        The error is the last coefficient of the velocities, relative to the disturbances.
         """
         m: cython.int = self.modes
         s: cython.int = self.stages
@@ -845,7 +844,7 @@ class PlanarMonodromy:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def accept(self) -> cython.int:
-        """Take the end of the step for the present place of the disturbances."""
+        """Advance the disturbances to the end of the step."""
         n: cython.int = self.slipping
         m: cython.int = self.modes
         a: cython.int
@@ -886,7 +885,7 @@ class PlanarMonodromy:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
-        """Let state i of a contact begin, and keep what it remembers of the disturbances."""
+        """Enter state i of a contact, and update what it remembers of the disturbances."""
         sequence, k = self.sequence, int(self.number[c])
         before, now, angle = int(self.state[c]), int(sequence.state[c, i]), float(sequence.begin[c, i])
         self.state[c], self.fresh[c] = now, now == SLIP and before == SEPARATION
@@ -917,9 +916,9 @@ class PlanarMonodromy:
 class RingPlanarMonodromy(PlanarMonodromy):
     """Monodromy of the contacts of all sectors of a ring, in a part of a period; see `PlanarMonodromy`.
 
-    part is the angle that is followed; renumber (mode, mode) renumbers the sectors in the coordinates of
-    modes that are not far, and source (contact,) is the contact whose memory has the place of each
-    afterwards.
+    part is the angle that is followed. renumber (mode, mode) renumbers the sectors in the coordinates of the
+    modes that are not far. source (contact,) is the contact whose memory takes the place of each contact's
+    after the renumbering.
     """
 
     def __init__(
@@ -935,7 +934,7 @@ class RingPlanarMonodromy(PlanarMonodromy):
         self.part, self.renumber, self.source = part, renumber, source
 
     def disturbances(self) -> FloatArray:
-        """The present disturbances, rows (q, q', memory), as the sectors are numbered at the beginning."""
+        """The present disturbances, rows (q, q', memory), with the sectors renumbered as at the beginning."""
         whose = self.number[self.source[self.moving]]
         kept = np.array([self.memory[whose[k], i] for k, i in self.remembered]).reshape(-1, self.columns)
         q, p = self.renumber @ np.asarray(self.q), self.renumber @ np.asarray(self.p)

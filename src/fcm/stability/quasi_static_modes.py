@@ -1,11 +1,11 @@
-r"""Quasi-static modes, which follow contacts without delay, and few combinations that yield beside springs.
+r"""Quasi-static modes, which follow contacts without delay, and their reduction to a few combinations.
 
 With springs k of the contacts' directions, and shapes P on them of modes of mass 1,
 
     k^(1/2) P^T W^-2 P k^(1/2) = V diag(s) V^T.
 
-Under the force that a spring makes of a displacement along V_i k^(-1/2), the structure yields s_i of it. With
-more than a mode for each s_i above a tolerance, the springs would change by no more than the tolerance.
+s_i is the compliance of the structure along V_i k^(-1/2), relative to the springs. One mode is kept for each
+s_i above a tolerance. The modes left out would change the springs by no more than the tolerance.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ class PortModes(NamedTuple):
 
     @property
     def near(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Shapes, natural frequencies and damping of those that move on their own."""
+        """Shapes, natural frequencies and damping of the modes that are not far."""
         return self.shapes[~self.far], self.natural[~self.far], self.damping[~self.far]
 
     @property
     def flexibility(self) -> FloatArray:
-        """Displacements (port, port) of those that follow, under unit forces on the ports."""
+        """Flexibility (port, port) of the far modes: displacements under unit forces on the ports."""
         following: FloatArray = self.shapes[self.far]
         found: FloatArray = (following.T * self.natural[self.far] ** -2.0) @ following
         return found
@@ -49,9 +49,10 @@ def quasi_static_modes(
     planar: bool,
     options: StabilityOptions = STABILITY,
 ) -> npt.NDArray[np.bool_]:
-    """Mask (mode,) of the modes so far above the excitation that they follow without delay: of many modes.
+    """Mask (mode,) of the modes so far above the excitation that they follow without delay.
 
-    With contacts in a plane also of few: steps would have to resolve each of their vibrations.
+    With few modes there are none on a line. With contacts in a plane there are, but farther above: time steps
+    would have to resolve each of their vibrations.
     """
     times = max(options.structure.above_excitation, options.structure.above_harmonics * max(harmonics))
     if natural.size <= options.structure.many_modes:
@@ -61,9 +62,9 @@ def quasi_static_modes(
 
 
 def combined(shapes: FloatArray, natural: FloatArray, springs: FloatArray, tolerance: float) -> FloatArray:
-    """Shapes (mode, direction) of modes of frequency 1 that yield as some of frequencies natural (mode,) do.
+    """Shapes (mode, direction) of fewer modes, of frequency 1, as compliant as those of frequencies natural.
 
-    Directions without a spring (direction,) are left out: nothing acts along them.
+    Directions without a spring (direction,) are left out: no force acts along them.
 
     >>> combined(np.array([[1.0, 0.0], [0.0, 0.1]]), np.array([2.0, 2.0]), np.array([4.0, 4.0]), 0.1)
     array([[0.5, 0. ]])

@@ -1,4 +1,4 @@
-"""A solution of a balance with the harmonics of the finer motion balanced as well, at the same frequency."""
+"""Balances the harmonics of the finer motion of a solution, too, at the same frequency."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class Rebalancing:
-    """Finds the solution of a balance with more harmonics beside one with fewer; a workspace."""
+    """A workspace that finds the solution of a balance with more harmonics near one with fewer."""
 
     def __init__(self, system: System, more: Sequence[int], options: StabilityOptions = STABILITY) -> None:
         self.options = options.confirmation
@@ -34,7 +34,7 @@ class Rebalancing:
             newton.poll = self._poll
         balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
         self.balanced = np.tile(balanced, len(system.scene.contacts))
-        self.last: tuple[FloatArray, FloatArray] | None = None  # of many contacts: z there, what was added
+        self.last: tuple[FloatArray, FloatArray] | None = None  # with many contacts: last z, and its change
 
     def _poll(self) -> None:
         self.fewer.work.poll()  # of now, which may be another later
@@ -49,10 +49,9 @@ class Rebalancing:
     def rebalance(self, z: FloatArray, x: FloatArray, persistent: bool = False) -> FloatArray | None:
         """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
 
-        The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
-        where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself. Of many
-        contacts damped steps are taken first, see `Prolongation`; and before these, close to the
-        last solution, whole ones from where that was beside its own z.
+        The residual of z in its own harmonics is kept, so that the force level of z holds. If Newton's method
+        finds nothing near and persistent is set, a homotopy from z adds the further equations by parts. None
+        if that fails, too. With many contacts see `_of_many`.
         """
         here = self.system.extended(z, self.harmonics)
         self.balance.evaluate_scale(here)
@@ -71,7 +70,7 @@ class Rebalancing:
         return np.array(newton.z) if by_parts and self._by_homotopy(here, lack) else None
 
     def continue_to(self, z: FloatArray, motion: FloatArray) -> FloatArray | None:
-        """The solution of more harmonics for z, from a motion of these near it, or at a frequency near."""
+        """Find the solution with more harmonics at the frequency of z from a motion near it, or None."""
         here = self.system.extended(z, self.harmonics)
         self.balance.evaluate_scale(here)
         self.balance.evaluate_residual(here)
@@ -85,7 +84,7 @@ class Rebalancing:
         return np.array(newton.z) if self._converges(lack, 1.0) else None
 
     def _of_many(self, here: FloatArray, lack: FloatArray) -> FloatArray | None:
-        """The solution with many contacts: beside the last one, by damped steps, or by whole ones."""
+        """Solve with many contacts: from the last solution if near, by damped steps, or by full steps."""
         newton, assumed = self.newton, np.array(self.newton.z)
         if self.last is not None:
             there, added = self.last
@@ -101,17 +100,17 @@ class Rebalancing:
         return np.array(newton.z) if self._converges(lack, 1.0) else None
 
     def _is_near(self, here: FloatArray) -> bool:
-        """Whether the solution found is near enough to be no other motion."""
+        """Whether the solution found is so near to here that it is the same motion."""
         return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.max_change)
 
     def _converges(self, lack: FloatArray, part: float) -> bool:
-        """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
+        """Whether Newton's method converges nearby with a part (0 to 1) of the further equations."""
         self.homotopy.initial_residual[:] = np.where(self.balanced, lack, (1.0 - part) * lack)
         distance = self.options.max_change
         return correct_with_kept_jacobian(self.newton, distance) and self.newton.moved <= distance
 
     def _by_homotopy(self, here: FloatArray, lack: FloatArray) -> bool:
-        """Whether Newton's method leads to a near solution as the further equations are added by parts."""
+        """Whether a homotopy, which adds the further equations by parts, leads to a near solution."""
         self.newton.z[:] = here
         if not all(self._converges(lack, part) for part in self.options.homotopy_parts):
             return False

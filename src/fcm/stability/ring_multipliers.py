@@ -1,10 +1,10 @@
 r"""Floquet multipliers of a wave that travels around a ring of sectors.
 
-The motion repeats after n sectors, n = sectors / gcd(engine_order, sectors). So do the disturbances that are
-considered: with n = sectors these are all. Their growth in the n-th part of a period, seen from the wave, is
-an eigenvalue of `RingMonodromy`, in a plane of `RingPlanarMonodromy`. A real one crosses 1 at a fold of the
-curve of travelling waves. Any other outside the unit circle breaks up the wave, even where it is a real
-multiplier of the whole period.
+The motion repeats after n = sectors / gcd(engine_order, sectors) sectors. Only disturbances that do so, too,
+are considered; with n = sectors these are all. Their growth in 1 / n of a period, in the frame of the wave,
+is an eigenvalue of `RingMonodromy`, or in a plane of `RingPlanarMonodromy`. A real one crosses 1 at a fold of
+the curve of travelling waves. Any other one outside the unit circle breaks up the wave, even if its power for
+the whole period is real.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from fcm.stability.quasi_static_modes import PortModes, quasi_static_modes
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.structure.ring import RingLinear
 
-MAX_NAMED = 8  # diameters in a sentence
+MAX_NAMED = 8  # nodal diameters listed in a message
 
 
 def stability_unknown(system: System, highest: float, options: StabilityOptions = STABILITY) -> str:
@@ -54,7 +54,7 @@ def stability_unknown(system: System, highest: float, options: StabilityOptions 
 
 
 class RingModes(Frozen):
-    """The modes of n sectors, of mass 1, and how they look from j sectors behind."""
+    """The modes of n sectors, of mass 1, and the matrix that renumbers the sectors, from j sectors behind."""
 
     natural: FloatArray  # (mode,)
     damping: FloatArray
@@ -116,7 +116,7 @@ class RingMultipliers(Multipliers):
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion whose states were found last.
 
-        None where modes are missing, or there are too many.
+        None if modes are missing, or there are too many.
         """
         return None if self.unknown else Multipliers._matrix(self, followed, omega)
 
@@ -142,7 +142,7 @@ class RingMultipliers(Multipliers):
     ) -> list[Classification]:
         """Classifications of several solutions, as `Multipliers.classify_all` gives them.
 
-        In an n-th of a period multipliers turn n times less towards -1.
+        The angle to a flip is that of the whole period, n times that of its n-th part.
         """
         found = Multipliers.classify_all(self, z, at_fold, without_neighbour, sufficient)
         n = self.ring.period
@@ -154,12 +154,12 @@ class RingMultipliers(Multipliers):
 
 
 def _phases(ring: Ring, harmonics: list[int]) -> FloatArray:
-    """Phase by which each harmonic of a sector is ahead of that of the one before."""
+    """Phase lead [rad] of each harmonic of a sector over the same harmonic of the sector before."""
     return 2.0 * np.pi / ring.sectors * np.array([ring.waves(h) for h in harmonics])
 
 
 def sector_shifts(ring: Ring) -> int:
-    """Number j of sectors that the wave passes in the n-th part of a period: j engine_order = gcd.
+    """Number j of sectors that the wave passes in 1 / n of a period: j engine_order = gcd, modulo sectors.
 
     >>> none = np.zeros(0)
     >>> ring = Ring(8, 3, none, none, np.zeros((0, 0), complex), none, none)
@@ -172,7 +172,7 @@ def sector_shifts(ring: Ring) -> int:
 
 
 def modes_around(linear: RingLinear, ring: Ring) -> RingModes:
-    """The modes of n sectors, those of a nodal diameter between 0 and n / 2 as cosine and sine."""
+    """The modes of n sectors; those of a nodal diameter other than 0 and sectors / 2 as cosine and sine."""
     n, places = ring.period, _places(ring)
     step = 2.0 * np.pi * ring.diameter[places] / ring.sectors
     second = np.concatenate(([False], np.diff(places) == 0))  # the sine of a pair
@@ -191,7 +191,7 @@ def modes_around(linear: RingLinear, ring: Ring) -> RingModes:
 
 
 def _places(ring: Ring) -> npt.NDArray[np.intp]:
-    """Indices of the ring's modes that disturbances have, twice for those that are cosine and sine."""
+    """Indices of the ring's modes in the disturbances; twice for those with a cosine and a sine."""
     repeats = ring.diameter % (ring.sectors // ring.period) == 0
     single = (ring.diameter == 0) | (2 * ring.diameter == ring.sectors)
     return np.repeat(np.arange(ring.diameter.size), np.where(repeats, np.where(single, 1, 2), 0))

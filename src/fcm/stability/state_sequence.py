@@ -2,8 +2,8 @@
 
 The small disturbances of a motion, balanced or exact, depend on these alone.
 
-Of a balanced motion they come from the located events of its contacts (`BalancedSequence`); of contacts in a
-plane see `planar_monodromy`.
+For a balanced motion, the located events of its contacts give the states (`BalancedSequence`). For contacts
+in a plane see `planar_monodromy`.
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside 
 
 @cython.cclass
 class StateSequence:
-    """Events are changes of a state; number `order[i]` is the i-th of them.
+    """The events over a period, changes of a contact's state; the i-th in time is number `order[i]`.
 
     Attributes
     ----------
     angle, whose, into : (event,)
-        When, which contact, and into which state: those of a `LineCycle`, or FREE.
+        Angle [rad], contact, and new state: one of a `LineCycle`, or FREE.
     along : (event,)
-        Where a slider comes to rest, its place varies as k_u u + along mu k_v v.
+        Where a slider comes to rest, k_u times its place varies as k_u u + along mu k_v v.
     state, remembers : (contact,)
-        Before the first event, and whether the slider's place is one of the disturbances then.
+        State before the first event, and whether the slider's place is a disturbance there.
     """
 
     def __init__(self, contacts: int, most: int) -> None:
-        """Makes a sequence for a number of contacts with room for `most` events."""
+        """Make a sequence for a number of contacts with room for `most` events."""
         self.contacts, self.events = contacts, 0
         self.allocate(most)
         self.state, self.remembers = np.zeros(contacts, dtype=np.intc), np.zeros(contacts, dtype=np.intc)
 
     def allocate(self, most: int) -> None:
-        """Arrays for so many events."""
+        """Allocate arrays for `most` events."""
         self.angle, self.along = np.zeros(most), np.zeros(most)
         self.whose, self.into, self.order = (np.zeros(most, dtype=np.intc) for _ in range(3))
 
@@ -57,7 +57,7 @@ class StateSequence:
     def add_event(
         self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double
     ) -> cython.void:
-        """Adds the event that contact c enters a state at an angle [rad]."""
+        """Add the event that contact c enters a state at an angle [rad]."""
         i: cython.int = self.events
         while angle < 0.0:
             angle += TWO_PI
@@ -69,7 +69,7 @@ class StateSequence:
     @cython.cfunc
     @cython.exceptval(check=False)
     def sort(self) -> cython.void:
-        """`order`: the events by their angles; those of one contact at one angle as they were."""
+        """Fill `order`: the events by their angles; events at the same angle keep their order."""
         i: cython.int
         j: cython.int
         for i in range(self.events):
@@ -82,7 +82,7 @@ class StateSequence:
     @cython.cfunc
     @cython.exceptval(check=False)
     def begin(self) -> cython.void:
-        """The states before the first event: those after the last of each contact."""
+        """Set the states before the first event: those after the last event of each contact."""
         i: cython.int
         c: cython.int
         for i in range(self.events):
@@ -93,22 +93,22 @@ class StateSequence:
 
 @cython.cclass
 class BalancedSequence(StateSequence):
-    """`find_events` at a motion finds its events.
+    """The events of a balanced motion; `find_events` finds them.
 
     Parameters
     ----------
     contact : (contact, 4)
         mu, k_u, k_v, n_0.
     harmonics : list of int
-        Of the motions; unknowns as in `contact_law`.
+        Those of the motions; unknowns as in `contact_law`.
 
     Attributes
     ----------
     moving, held : int
-        Contacts that slip with friction, or open and close; and those that never do, but for an extreme of a
-        limit that holds the slider.
+        Number of contacts that slip with friction, or open and close; and number of those that never do, but
+        whose slider an extreme of its limit holds.
     yielding : bool
-        Whether such a slider follows that limit. It does when it is pushed, and stays where it is when not.
+        Whether a held slider follows its limit, as it does if it is pushed; otherwise it stays at rest.
     """
 
     def __init__(self, contact: npt.NDArray[np.float64], harmonics: list[int]) -> None:
@@ -137,7 +137,7 @@ class BalancedSequence(StateSequence):
     @cython.cfunc
     @cython.exceptval(check=False)
     def contact_cycle(self, x: cython.double[::1], c: cython.int) -> cython.bint:
-        """The events of one contact; the state of one that has none."""
+        """Add the events of one contact, or set its state if it has none; false if its cycle is unknown."""
         p: cython.int
         e: cython.int
         kind: cython.int
@@ -156,7 +156,7 @@ class BalancedSequence(StateSequence):
                     e = self.cycle.event[0]
                     self.add_event(self.cycle.event_angle[e], c, STICK, self.cycle.along(0))
             return True
-        if not rubs and not self.opens():  # it slides to and fro, and nothing changes by that
+        if not rubs and not self.opens():  # it slides without friction: its state never changes
             self.state[c] = FREE
             return True
         self.moving += 1
@@ -170,7 +170,7 @@ class BalancedSequence(StateSequence):
     @cython.cfunc
     @cython.exceptval(check=False)
     def opens(self) -> cython.bint:
-        """Whether the contact that was looked at separates."""
+        """Whether the contact of the last cycle separates."""
         p: cython.int
         found: cython.bint = False
         for p in range(self.cycle.pieces):

@@ -1,4 +1,4 @@
-"""Frequency ranges in which every motion that was found is unstable."""
+"""Frequency ranges in which all motions found are unstable."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ Stretch = tuple[float, float]
 
 
 def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Stretch) -> list[Stretch]:
-    """Stretches within span in which all motions are known to be unstable, or there are none, the widest
-    first.
+    """Stretches within span in which no motion is or may be stable, the widest first.
 
-    parts: of each path its frequencies (point,), and stable (point,): 1 where the motion is, 0 where it is
-    not, NaN where that is not known, so that it may be.
+    parts holds for each path its frequencies (point,), and stable (point,): 1 where the motion is stable, 0
+    where it is not, and NaN where that is unknown, so that it may be.
     """
     stable_ranges = [ends for frequency, stable in parts for ends in _stable_ranges(frequency, stable)]
     reached, found = span[0], []
@@ -29,13 +28,13 @@ def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Str
 
 
 def stretches_of(paths: Sequence[Path], stable: Sequence[FloatArray], span: Stretch) -> list[Stretch]:
-    """Stretches without a stable motion for paths, with stable (path, point); see `unstable_stretches`."""
+    """Stretches without a stable motion of paths with stable (path, point); see `unstable_stretches`."""
     parts = ((path.parameter, one) for path, one in zip(paths, stable, strict=True))
     return unstable_stretches(parts, span)
 
 
 def without_frequencies(stretches: Iterable[Stretch], frequencies: Iterable[float]) -> list[Stretch]:
-    """The stretches in which none of some frequencies lies.
+    """The stretches that contain none of the frequencies.
 
     >>> without_frequencies([(1.0, 2.0), (3.0, 3.5)], [0.5, 1.5])
     [(3.0, 3.5)]
@@ -45,8 +44,7 @@ def without_frequencies(stretches: Iterable[Stretch], frequencies: Iterable[floa
 
 
 def _stable_ranges(frequency: FloatArray, stable: FloatArray) -> Iterator[Stretch]:
-    """The ranges in which a motion may be stable, along each part of a path; a point by itself is no such
-    part."""
+    """Yield the frequency range of each part of a path that may be stable; single points are no parts."""
     may = np.concatenate(([False], stable != 0.0, [False]))
     ends = np.flatnonzero(may[1:] != may[:-1]).tolist()
     for first, end in zip(ends[::2], ends[1::2], strict=True):
