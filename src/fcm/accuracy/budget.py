@@ -11,7 +11,7 @@ from fcm.harmonic_balance.work_budget import WorkCount
 
 @dataclass
 class Budget:
-    """Seconds of work left, counted as in `harmonic_balance.cost_model`; whoever works deducts its own."""
+    """Seconds of work left, counted as in `harmonic_balance.cost_model`; each user deducts its own work."""
 
     seconds: float = PAIR.max_seconds
 
@@ -40,7 +40,7 @@ class Budget:
         return cls(part * min(most, options.max_seconds_elsewhere))
 
     def shares(self, count: int) -> Iterator[Budget]:
-        """Yields one budget after another for `count` users; what one leaves goes to those after it."""
+        """Yield one budget after another for `count` users; what one leaves goes to those after it."""
         for number in range(count):
             share = self.seconds / (count - number)
             one = Budget(share)

@@ -13,17 +13,18 @@ from fcm.model.scene import FloatArray
 def contact_load_errors(
     reference: ReferenceCurve, compared: ComparedQuantities, shift: FloatArray, folds: npt.NDArray[np.intp]
 ) -> tuple[FloatArray, FloatArray]:
-    """Relative errors of contact forces, slip and energy: (point, contact, 4), and of their greatest
-    (contact, 4).
+    """Relative errors of contact forces, slip and energy (point, contact, 4), and of their maxima.
 
-    shift (point, column): differences at the same frequency, in the units of what is compared. At the
-    greatest, where the curve is not at its end, the difference is that of the greatest of both. NaN where the
-    reference has none, or, at folds, two.
+    The errors of the maxima are (contact, 4).
+
+    shift (point, column) is the difference at the same frequency, in the units of the compared quantities. At
+    a maximum inside the curve, the maxima of curve and reference are compared instead. NaN where the
+    reference has no value at that frequency, or, at folds, two.
     """
     columns = slice(reference.amplitude.shape[1], None)
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     error = np.abs(shift[:, columns])
-    # differences may cancel at a frequency, but not what the reference itself is off by
+    # differences may cancel at a frequency, but the error of the reference itself does not
     moved = reference.options.reference_error * _moved(reference, compared, columns)
     error = np.where(reference.linear[:, None], 0.0, np.maximum(error, np.where(np.isnan(moved), 0.0, moved)))
     error[folds] = np.nan
@@ -37,9 +38,9 @@ def contact_load_errors(
 
 
 def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: PairOptions) -> FloatArray:
-    """Changes of the contact loads relative to the loads themselves; `most` is the greatest along the curve.
+    """Changes of the contact loads relative to the loads themselves; `most` is their maximum along the curve.
 
-    The relative change of a load of zero is infinite, unless the change is rounding.
+    The relative change of a zero load is infinite, unless the change is rounding.
     """
     off = np.abs(change)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -47,9 +48,9 @@ def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: Pai
 
 
 def _moved(reference: ReferenceCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
-    """Distance (point, column) from curve to reference, by frequency and by each quantity, in its unit.
+    """Distance (point, column) from curve to reference in frequency and in each quantity, in its unit.
 
-    That of the frequency counts by how steep the curve is, up to a limit.
+    The distance in frequency is multiplied by the slope of the curve, up to a limit.
     """
     own, unit, change = compared.value[:, columns], compared.unit[:, columns], compared.change
     omega, most = reference.path.parameter, reference.options.max_steepness
@@ -65,7 +66,7 @@ def _moved(reference: ReferenceCurve, compared: ComparedQuantities, columns: sli
 def _greatest(reference: ReferenceCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
     """Greatest value (column,) of each quantity on the reference.
 
-    NaN where the greatest may lie on a stretch along which the reference could not be followed.
+    NaN where it may lie on a stretch along which the reference could not be followed.
     """
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     expected = own + unit * compared.change[:, 1:][:, columns]

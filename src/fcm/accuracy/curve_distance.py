@@ -1,9 +1,9 @@
 """Distance of a curve to another, at the same parameter and near the same place along it.
 
-What is known at some points is known of those between, with how far that is off (`PartialInterpolant`). The
-point of the other curve at the same parameter is found along it (`ReferenceCurveData`). The point of a
-reference with more harmonics near a point is found by Newton's method in the normal plane
-(`PointwiseDisplacement`).
+`PartialInterpolant` interpolates values from known points to others, and checks the interpolation.
+`ReferenceCurveData` finds the point of the other curve at the same parameter, along that curve.
+`PointwiseDisplacement` finds the point of a reference with more harmonics near a point, by Newton's method in
+the normal plane.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fcm.accuracy.reference_pieces import CurvePiece
     from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 
-LEAST = cython.declare(cython.double, 1e-300)  # unit of a curve that stays where it is
+LEAST = cython.declare(cython.double, 1e-300)  # unit of a curve without motion
 INFINITY = cython.declare(cython.double, float("inf"))
 
 
@@ -36,7 +36,8 @@ INFINITY = cython.declare(cython.double, float("inf"))
 class PartialInterpolant:
     """`interpolate` fills unknown values (point, column) by cubics through the known points (byte mask).
 
-    place (point,) is how far along the curve each is. The slopes are those of parabolas through neighbours.
+    place (point,) is the length along the curve up to each point. Slopes are those of parabolas through
+    neighbours.
     """
 
     place: cython.double[::1]
@@ -58,7 +59,7 @@ class PartialInterpolant:
         self.number, self.known_points = np.zeros(place.shape[0], dtype=np.intp), 0
 
     def interpolate(self, points: cython.Py_ssize_t[::1], out: cython.double[:, ::1]) -> None:
-        """Interpolated values (point, column) at the given points."""
+        """Fill out with interpolated values (point, column) at the given points."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         first: cython.Py_ssize_t
@@ -74,9 +75,9 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def sort(self) -> cython.void:
-        """Lists the numbers of the known points, without those that nearly coincide with the one before.
+        """List the numbers of the known points, without those that nearly coincide with the one before.
 
-        Between such points the difference is rounding and gives no slope.
+        The difference of such points is rounding, and gives no slope.
         """
         i: cython.Py_ssize_t
         before: cython.Py_ssize_t
@@ -128,7 +129,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def slope(self, k: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.double:
-        """Slope at known point k from the secants on both sides; beside a gap from the one that exists."""
+        """Slope at known point k from the secants on both sides; beside a gap from the only one."""
         one: cython.Py_ssize_t = max(k - 1, 0)
         other: cython.Py_ssize_t = min(k, self.known_points - 2)
         before: cython.double = self.secant(one, j)
@@ -163,12 +164,11 @@ class PartialInterpolant:
         nothing: cython.double,
         out: cython.uchar[::1],
     ) -> None:
-        """Whether values differ from the expected ones by more than `part` of their size and more than
-        `nothing`.
+        """Whether values differ from the expected ones by more than `part` of their size and `nothing`.
 
-        points (3, place): each between two others, all known. Values count by the first, times the weight
-        (point,), or the greatest of the rest. What is missing where it was not expected to be, or the other
-        way round, is off.
+        points (3, place) are the points before, at and after each place, all known. The difference is the
+        greater of the first value's, times the weight (point,), and the greatest of the other values. A value
+        that is unexpectedly missing, or unexpectedly there, differs.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -189,8 +189,7 @@ class PartialInterpolant:
     @cython.cfunc
     @cython.exceptval(check=False)
     def size(self, k: cython.Py_ssize_t, weight: cython.double) -> cython.double:
-        """Greatest magnitude of the values at point k, the first weighted; infinite where they are
-        missing."""
+        """Greatest magnitude of the values at point k, the first weighted; infinite if they are missing."""
         j: cython.Py_ssize_t
         if isnan(self.value[k, 0]):
             return INFINITY
@@ -203,8 +202,10 @@ class PartialInterpolant:
 def arc_lengths(
     z: cython.double[:, ::1], direction: cython.double[:, ::1], range_of: cython.double, out: FloatArray
 ) -> None:
-    """Lengths (point,) along a curve z (point, unknown + 1), in the unit of its directions; the parameter,
-    the last, counts by the width of its range."""
+    """Fill out (point,) with lengths along a curve z (point, unknown + 1), in the unit of its directions.
+
+    The parameter, the last of z, is relative to the width of its range, range_of.
+    """
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     n: cython.Py_ssize_t = z.shape[1] - 1
@@ -229,7 +230,7 @@ def arc_lengths(
 def steepness(
     parameter: cython.double[::1], amplitude: cython.double[:, ::1], most: cython.double, out: FloatArray
 ) -> None:
-    """Greatest relative change of an amplitude over that of the parameter (point,), from 1 up to the most."""
+    """Fill out (point,) with the greatest relative slope of an amplitude by the parameter, from 1 to most."""
     i: cython.Py_ssize_t
     d: cython.Py_ssize_t
     last: cython.Py_ssize_t = parameter.shape[0] - 1
@@ -250,7 +251,7 @@ NAN = cython.declare(cython.double, float("nan"))
 
 @cython.cclass
 class ReferenceCurveData:
-    """The second curve at its points (point,): place along it, its parameter and the parameter's rate."""
+    """The second curve at its points (point,): length along it, parameter, and rate of the parameter."""
 
     place: cython.double[::1]
     parameter: cython.double[::1]
@@ -276,11 +277,10 @@ class ReferenceCurveData:
         slope: cython.double[:, ::1],
         out: cython.double[:, ::1],
     ) -> None:
-        """Interpolates `value` and its rates `slope` on the second curve at given parameters.
+        """Interpolate `value`, with its rates `slope`, on the second curve at given parameters.
 
-        parameter, forward (point,): of the first curve at its points, and the sign of its rate. Results
-        (point, value) in out: NaN where the other curve does not come to that parameter before it turns
-        back.
+        parameter, forward (point,) are the parameter of the first curve at its points, and the sign of its
+        rate. out (point, value) is NaN where the second curve turns back before it comes to that parameter.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -306,10 +306,10 @@ class ReferenceCurveData:
     ) -> FloatArray:
         """Values (place, value) of a piece where this, its curve, passes given parameters `wanted` (place,).
 
-        Of several passings that with a number, counted along the curve from 0; where that is -1 the one whose
-        first values are nearest to target values (place, some of the values), of those with the same
-        parity (place,): that of the curve is its orientation (point,) times the sign of the rate.
-        NaN where there is none.
+        If there are several passings, `number` selects one, counted along the curve from 0. For -1 it is the
+        one whose first values are nearest to target (place, some of the values), among those of the same
+        parity (place,). The parity of the curve is its orientation (point,) times the sign of the rate; 0
+        admits both. NaN where there is no passing.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -358,10 +358,9 @@ class ReferenceCurveData:
     @cython.cfunc
     @cython.exceptval(check=False)
     def find(self, i: cython.Py_ssize_t, wanted: cython.double, forward: cython.double) -> cython.Py_ssize_t:
-        """The piece k to k + 1, reached from point i, on which the parameter equals `wanted`; -1 if there is
-        none.
+        """Find the interval k to k + 1, reached from point i, in which the parameter is `wanted`; -1 if none.
 
-        Beyond its ends the curve goes on as it does there.
+        Beyond its ends the curve continues along its tangents.
         """
         k: cython.Py_ssize_t
         last: cython.Py_ssize_t = self.parameter.shape[0] - 1
@@ -387,14 +386,14 @@ class ReferenceCurveData:
     @cython.cfunc
     @cython.exceptval(check=False)
     def solve(self, k: cython.Py_ssize_t, wanted: cython.double) -> cython.bint:
-        """Sets `at`, the fraction of piece k at which the parameter equals `wanted`, by halving."""
+        """Set `at`, the fraction of interval k at which the parameter is `wanted`, by bisection."""
         length: cython.double = self.place[k + 1] - self.place[k]
         before: cython.double = self.parameter[k]
         after: cython.double = self.parameter[k + 1]
         low: cython.double = 0.0
         high: cython.double = 1.0
         rising: cython.bint = after > before
-        if wanted == before:  # as where the curves are the same
+        if wanted == before:  # as where both curves are the same
             self.at = 0.0
             return True
         for _ in range(self.max_halvings):
@@ -431,8 +430,8 @@ def shifted(
 ) -> FloatArray:
     """Differences (point, column) from the values of a curve to those of another at the same parameter.
 
-    z, direction (point, unknown + 1): the parameter is the last. The change is that from each point to one of
-    the other curve; the differences are in the same unit. NaN as of `ReferenceCurveData.values`.
+    The parameter is the last of z, direction (point, unknown + 1). compared.change leads from each point to
+    one of the other curve; the differences are in the same unit. NaN as in `ReferenceCurveData.values`.
     """
     amplitude: cython.double[:, ::1] = compared.value
     growth: cython.double[:, ::1] = compared.growth
@@ -474,7 +473,7 @@ def slope(
 ) -> cython.double:
     """Rate of change at a point: the difference quotient of its two neighbours.
 
-    Beside a corner the point nearly coincides with a neighbour, so one-sided quotients would be rounding.
+    Beside a corner the point nearly coincides with a neighbour: a one-sided quotient would be rounding.
     """
     before: cython.Py_ssize_t = max(i - 1, 0)
     after: cython.Py_ssize_t = min(i + 1, place.shape[0] - 1)
@@ -490,10 +489,10 @@ def rises(
     tops: cython.Py_ssize_t[::1],
     options: CurveDistanceOptions = CURVE_DISTANCE,
 ) -> FloatArray:
-    """Rise (dof,) of a curve above its tops, between each top and the points next to it.
+    """Rise (dof,) of a displaced curve above its tops, between each top and the points next to it.
 
-    Its amplitudes, with their growth, are moved (point, dof): they follow cubics, what they are moved by
-    straight lines. Nothing is told of what lies between a point and a corner.
+    Between points, the amplitudes follow cubics with their growth, and their displacements moved (point, dof)
+    follow straight lines. Intervals beside a corner are left out.
     """
     amplitude: cython.double[:, ::1] = quantities.amplitude
     growth: cython.double[:, ::1] = quantities.growth
@@ -528,18 +527,18 @@ def rises(
 
 @cython.cclass
 class PointwiseDisplacement:
-    """`find` displaces points of a curve to the curve of the reference's balance, by the prolongation."""
+    """Displaces points of a curve to the reference by the prolongation, see `find`."""
 
     def __init__(self, prolongation: Prolongation) -> None:
         self.prolongation, self.missed = prolongation, 0.0
 
     def find(self, points: cython.Py_ssize_t[::1], curve: ReferenceCurve, most: cython.double) -> None:
-        """Computes the displacements of those given points of a curve that are unknown, and marks them known.
+        """Compute the unknown displacements of given points of a curve, and mark them known.
 
-        The first of its change (point, 1 + dof) is that of the frequency, relative, the others are those of
-        amplitudes in their unit; its reference_unknowns (point, reference's unknown + 1) are the reference
-        there. NaN where Newton's method finds no point of the reference near, and where more than the most
-        evaluations were spent on such points.
+        curve.change (point, 1 + dof) is the relative change of the frequency, then those of the amplitudes in
+        their unit. curve.reference_unknowns (point, reference's unknown + 1) is the reference's solution.
+        Both are NaN where Newton's method finds no point of the reference near. Once failed points have taken
+        more than `most` evaluations, all others are NaN, too.
         """
         z: cython.double[:, ::1] = curve.path.z
         direction: cython.double[:, ::1] = curve.path.direction
@@ -577,7 +576,7 @@ class PointwiseDisplacement:
         reference_unknowns: cython.double[:, ::1],
         known: cython.uchar[::1],
     ) -> cython.int:
-        """Starts the predictor of a point from the nearest point with a known displacement."""
+        """Start the predictor of a point from the nearest point with a known displacement."""
         off: cython.Py_ssize_t
         j: cython.Py_ssize_t
         for off in range(1, known.shape[0]):

@@ -1,10 +1,11 @@
 r"""Error of a harmonic-balance curve, estimated by its embedded pair: curve and reference.
 
-As of an embedded pair of Runge-Kutta formulas the difference of both is the error of the lower,
+As with an embedded pair of Runge-Kutta formulas, the difference of both is the error of the lower one,
 
     e = |a_reference - a| / a
 
-at the same frequency; of a peak it is the difference of the heights, of a fold that of the frequencies.
+at the same frequency. The error of a peak is the difference of the heights, that of a fold the difference of
+the frequencies.
 """
 
 from __future__ import annotations
@@ -43,27 +44,26 @@ Mask = npt.NDArray[np.bool_]
 class PathErrors(Frozen):
     """Relative errors of a path, estimated by the embedded pair; NaN where the pair gives no error.
 
-    amplitude (point, dof): by how much the reference differs: at a peak in height, elsewhere at the same
-    frequency. at_frequency (point, dof): at the same frequency at peaks, too.
+    amplitude (point, dof): difference of the reference, at a peak in height, elsewhere at the same frequency.
+    at_frequency (point, dof): difference at the same frequency, at peaks, too.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
     is_same_curve (point,): whether the reference's own branch comes to that frequency. Where it does not, as
     beside a fold that it has elsewhere, errors are the distance to the nearest motion of the reference there.
-    ends_before (point,): where the reference has fewer motions of the branch than the curve, as it turns back
-    before.
-    peak (dof,): of the height of the greatest amplitude.
-    peak_frequency (dof,): of the frequency of that peak.
+    ends_before (point,): where the reference turns back earlier, and has fewer motions of the branch.
+    peak (dof,): error of the height of the greatest amplitude.
+    peak_frequency (dof,): error of the frequency of that peak.
     height (dof,): the greatest amplitude of the reference, as an amplitude.
-    fold (fold,): of the frequencies of the folds, in their order.
-    share (harmonic,): of each harmonic left out, from the first to the greatest that can be asked for. It is
-    its amplitude without feedback, at peaks and folds, over the greatest amplitude of the degree of freedom
-    to which it matters most.
-    reference: the harmonics with which it is followed elsewhere.
-    contact_loads (point, contact, 4): of the contact loads, see `contact_cycles.cycles`, each relative
+    fold (fold,): errors of the frequencies of the folds, in their order.
+    share (harmonic,): shares of the harmonics left out, from harmonic 1 to the highest that can be asked for.
+    A share is the harmonic's amplitude without feedback, at peaks and folds, over the greatest amplitude of
+    the degree of freedom to which it matters most.
+    reference: the harmonics with which the reference is followed elsewhere.
+    contact_loads (point, contact, 4): errors of the contact loads, see `contact_cycles.cycles`, each relative
     to itself; infinite where it is 0, but not in the reference.
-    greatest (contact, 4): of the greatest of each along the path.
+    greatest (contact, 4): errors of their maxima along the path.
     contacts: states and loads of the contacts of the path itself.
-    pieces: what is known of the reference's curve.
-    motions: those of the reference that were found.
+    pieces: the known pieces of the reference's curve.
+    motions: the motions of the reference that were found.
     """
 
     amplitude: FloatArray
@@ -102,10 +102,9 @@ def errors_along(
     options: PairOptions = PAIR,
     budget: Budget | None = None,
 ) -> PathErrors:
-    """Errors of the points of a path of a system's balance; quantities is what is reported along it, if
-    known.
+    """Errors of a path of a system's balance; quantities are those reported along it, if known.
 
-    Where the reference's own branch does not come to a frequency nothing is known, see `with_nearest`.
+    They are unknown where the reference's own branch does not come to a frequency, see `with_nearest`.
     """
     quantities = quantities or reported_quantities(system, path)
     contacts = ContactRecord.at(system, path.z)
@@ -117,7 +116,7 @@ def errors_along(
     special = distinct_values(folds, path.where(Mark.PEAK), tops)
     share, met = _spectrum(system, path, quantities, special, size, options)
     more = reference_harmonics(system.harmonics, share, system.layout.ports, options)
-    nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that it is not looked at
+    nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that, shares are unknown
     reported = ReportedPath(path, quantities, _flat(contacts.contact_loads))
     if quantities.linear.all() or nothing:
         return _same_error(system, reported, contacts, share, 0.0)
@@ -127,7 +126,7 @@ def errors_along(
     elsewhere = more
     if not reference.is_same_curve():
         elsewhere = affordable_reference(system, path, share, options)
-    if elsewhere != more:  # only with these it is followed
+    if elsewhere != more:  # it is followed with these harmonics only
         reference.stretches.budget = Budget(0.0)
     change = reference.displacements(np.concatenate((reference.distinct_points(special), folds, met)))
     reference.follow_stretches(change)
@@ -146,7 +145,7 @@ def errors_along(
     comes: Mask = ~np.any(np.isnan(error), axis=1)
     height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, met, of_peaks)
     unit, amplitude = reference.unit, quantities.amplitude
-    at_rest = amplitude <= np.finfo(float).eps * unit  # but for rounding
+    at_rest = amplitude <= np.finfo(float).eps * unit  # within rounding
     for one in (error, at_frequency):
         one *= unit / np.where(at_rest, unit, amplitude)
     system.work.add(reference.seconds())
@@ -199,7 +198,7 @@ def _same_error(
 
 
 def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> PathErrors:
-    """Errors of a path with every entry unknown (NaN); `quantities` is what is reported along the path."""
+    """Errors of a path with every entry unknown (NaN); `quantities` are those reported along the path."""
     contacts, nan = ContactRecord.at(system, path.z), np.nan
     none, unseen = np.full_like(quantities.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
     contact_loads = np.full_like(contacts.contact_loads, nan)
@@ -221,14 +220,14 @@ def with_nearest(
 ) -> tuple[PathErrors, ...]:
     """Errors of the paths of a response, with the nearest motions where the reference's own branch has none.
 
-    Where that branch does not come to a frequency, the error is the distance to the nearest motion of the
-    reference that is known there. It may be on another branch, or where the branch has turned back. The error
-    of a fold is the distance to the nearest fold.
+    Where that branch does not come to a frequency, the error is the distance to the nearest known motion of
+    the reference there. That may be on another branch, or where the branch has turned back. The error of a
+    fold is the distance to the nearest fold.
 
-    As that is another motion, a degree of freedom in which it happens to be the same says nothing: each has
-    at least the distance of the greatest. A peak that the reference has nowhere beside it is compared with
-    the greatest amplitude of the reference, where that is known at every frequency of the path. The paths
-    before the first have their errors already.
+    The nearest motion is another one: agreement in a single degree of freedom means nothing. Each therefore
+    has at least the error of the greatest difference. A peak without a peak of the reference beside it is
+    compared with the greatest amplitude of the reference, if that is known at every frequency of the path.
+    The paths before `first` have their errors already.
     """
     if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
         return tuple(errors)
@@ -271,10 +270,9 @@ def with_nearest(
 def _with_greatest(errors: PathErrors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> PathErrors:
     """Errors of a path whose unknown peak errors are filled from the greatest amplitudes of all pieces.
 
-    amplitude is (point, dof). The `height` of the reference is the greatest of the path's own pieces.
-
-    Where the reference does not come to the frequency of a peak that is another motion, and each such peak
-    has at least the error of the greatest.
+    amplitude is (point, dof). `height` is the greatest amplitude of the path's own pieces. If the reference
+    does not come to the frequency of a peak, the motion compared is another one. Each such peak then has at
+    least the greatest error of all.
     """
     tops, top = amplitude.argmax(axis=0), amplitude.max(axis=0)
     own, every = (
@@ -316,14 +314,14 @@ def _spectrum(
 ) -> tuple[FloatArray, Indices]:
     """Shares (harmonic,) of the harmonics left out, and the points where one of them meets a mode.
 
-    The share of a harmonic is its greatest amplitude without feedback relative to size (dof,), at special
-    points. A harmonic that meets a mode and leads there counts as well.
+    A share is the harmonic's greatest amplitude without feedback, relative to size (dof,), at special points.
+    Points where a harmonic meets a mode and dominates the others count as well.
     """
     further, arc = FurtherHarmonics(system), lengths(path)
     special = special[distinct(arc[special], options.peak_spacing * (arc[-1] - arc[0]))]
     met: Indices = further.resonances(path.z, quantities.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
-    if met.size:  # there it leads, however small the motion is
+    if met.size:  # it may dominate there, however small the motion is
         local = further.shares(path.z[met], quantities.amplitude[met])
         extends = local > options.leading_share * local.max(axis=1, keepdims=True)
         share = np.maximum(
@@ -333,11 +331,11 @@ def _spectrum(
 
 
 def _at_frequency(reference: ReferenceCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
-    """Errors (point, dof) at equal frequency, in the reference curve's unit."""
+    """Errors (point, dof) at equal frequency, in the unit of `ReferenceCurve`."""
     error = np.where(reference.linear[:, None], 0.0, np.abs(shift))
-    # displacements may cancel at a frequency, but not what the reference itself is off by
+    # displacements may cancel at a frequency, but the error of the reference itself does not
     moved = reference.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
-    moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
+    moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed, the shifts alone count
     every: FloatArray = np.maximum(error, reference.options.reference_error * moved)
     return every
 
@@ -350,13 +348,15 @@ def _set_errors_of_peaks(
     met: Indices,
     of_peaks: PeakErrors,
 ) -> tuple[FloatArray, Mask, FloatArray]:
-    """Greatest amplitudes (dof,) of the reference, whether the errors at them are known, and the errors of
+    """Set the errors at the greatest amplitudes (dof,) of the curve.
+
+    Returns the greatest amplitudes of the reference, whether the errors at them are known, and the errors of
     their frequencies.
 
-    error (point, dof), in units of the reference's curve, is then filled at the greatest amplitudes, with the
-    difference in height. That of a reference with still more harmonics counts, too; where that is not found
-    and may matter the error is unknown. Where another peak of the reference is the greatest, both count: by
-    how much that is off, and the peak itself.
+    error (point, dof), in the unit of `ReferenceCurve`, is filled there with the difference in height. It
+    includes the difference of a second reference, with still more harmonics; if that is not found and may
+    matter, the error is unknown. If another peak of the reference is its greatest, the error is the greater
+    of the difference from that and the error of the peak itself.
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
     own, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
@@ -385,14 +385,14 @@ def _set_errors_of_peaks(
 def _of_folds(reference: ReferenceCurve, folds: Indices, change: FloatArray) -> FloatArray:
     """Relative errors (fold,) of the frequencies of folds.
 
-    Each is the distance to the reference's fold beside it. Where the reference was followed and has as many
-    folds, they are compared in order; NaN elsewhere.
+    An error is the distance to the reference's fold beside it. Where the reference was followed and has as
+    many folds, they are compared in order. NaN elsewhere.
     """
     error, parameter = np.full(len(folds), np.nan), reference.path.parameter
     of_reference = parameter * (1.0 + change[:, 0])
     for k, fold in enumerate(folds.tolist()):
         around = of_reference[max(fold - 2, 0) : fold + 3]
-        if np.isfinite(around[[0, -1]]).all():  # at a corner that has moved the fold itself may be missed
+        if np.isfinite(around[[0, -1]]).all():  # the fold itself may be missed at a corner that has moved
             own = np.nanmax(around) if _side(parameter, fold) >= 0.0 else np.nanmin(around)
             error[k] = abs(own / parameter[fold] - 1.0)
         elif np.isfinite(of_reference[fold]):
@@ -412,10 +412,10 @@ def _with_nearest_folds(
 ) -> FloatArray:
     """Errors (fold,), with unknown ones replaced by the relative distance in frequency to the nearest fold.
 
-    Only folds of the pieces at which the frequency turns back to the same side count; NaN where none is near.
+    Only folds of the pieces at which the frequency turns back to the same side count. NaN if none is near.
 
-    Near is one whose amplitudes and frequency are both within `PairOptions.end_tolerance`: with the same
-    amplitudes at another frequency it is another fold.
+    A fold is near if its amplitudes and its frequency are both within `PairOptions.end_tolerance`. One with
+    the same amplitudes at another frequency is another fold.
     """
     error, folds, dofs = errors.fold.copy(), path.where(Mark.FOLD), amplitude.shape[1]
     turns = {side: [(one, one.turns(side)) for one in pieces] for side in (-1.0, 1.0)}

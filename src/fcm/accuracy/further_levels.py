@@ -1,9 +1,9 @@
-"""Follows the level of the forces at further frequencies that the branches found so far suggest.
+"""Follow the force level at further frequencies that the known branches suggest.
 
-The first are where a low harmonic comes to the highest peak, or between that and the nearest resonance. There
-a contact that opens and closes two or three times a period may do so on a closed branch, beside one on which
-it stays closed. The others are in ranges in which no motion that was found is stable. The steady motion there
-is another one: on a branch that was not found, of several periods, or aperiodic.
+At the first of these, a low harmonic meets the highest peak, or comes between that and the nearest resonance.
+There a contact may open and close two or three times a period on a closed branch, beside one on which it
+stays closed. The others are in ranges in which no known motion is stable. The steady motion there is another
+one: on an unknown branch, of several periods, or aperiodic.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def with_traced(found: RefinedResponse, traced: Traced, accuracy: float) -> Refi
 
 
 def with_levels_below_peaks(found: RefinedResponse, accuracy: float) -> RefinedResponse:
-    """A response with branches from the level, followed where a low harmonic excites the highest peaks."""
+    """A response with branches from force levels where a low harmonic excites the highest peaks."""
     system, options = found.system, found.system.option(LEVELS)
     looked = list(_level_solutions(system, _excited_frequencies(found, options), options))
     return _with_branches(found, looked, [z for one in looked for z in one.solutions], accuracy)
@@ -43,11 +43,12 @@ def with_levels_where_unstable(
 ) -> tuple[RefinedResponse, bool]:
     """A response with the branches that the level leads to in frequency ranges without a stable motion.
 
-    Also returns whether more harmonics have a higher motion there.
+    Also returns whether more harmonics have a motion there that is higher than the response's peaks with
+    their errors.
 
-    stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known. With few
-    harmonics the level is followed with more: what these have is led to the others, or is higher than their
-    peaks may be by the errors.
+    stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is unknown. If the
+    response has few harmonics, the level is followed with more. Its solutions then start branches of the
+    response's harmonics.
     """
     system, paths = found.system, found.traced.branches.paths
     stretches = stretches_of(paths, stable, system.scene.frequency_range)
@@ -83,10 +84,11 @@ def _with_branches(
 def _level_solutions(
     system: System, stretches: Iterable[Stretch], options: LevelOptions
 ) -> Iterator[LevelSolutions]:
-    """Yields the solutions that the level of the forces passes in the middle of stretches, the widest first.
+    """Yield the solutions that the force level passes in the middle of stretches, the widest first.
 
-    Of a wide stretch both halves are looked at as well: a closed branch may lie beside its middle. The level
-    is followed up to where few curves come back from: that takes half as long as to its end.
+    Both halves of a wide stretch are searched as well: a closed branch may lie beside its middle. The level
+    is followed only up to `clear_level`, above which few curves come back. That takes half as long as to its
+    end.
     """
     first, last = system.scene.frequency_range
     left = sorted(stretches, key=_width)
@@ -108,7 +110,7 @@ def _width(stretch: Stretch) -> float:
 
 
 def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Iterator[Stretch]:
-    """Yields frequencies at which a low harmonic meets a highest peak, as stretches of width zero.
+    """Yield frequencies at which a low harmonic meets a highest peak, as stretches of width zero.
 
     Frequencies halfway between that peak and the nearest resonance are included, since peaks of smaller
     motions lie there.
@@ -129,7 +131,7 @@ def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Itera
 
 
 def _highest_peaks(found: RefinedResponse) -> Iterator[float]:
-    """Yields the frequency of the highest peak of each degree of freedom."""
+    """Yield the frequency of the highest peak of each degree of freedom."""
     paths, quantities = found.traced.branches.paths, found.quantities
     heights = np.array([one.amplitude.max(axis=0) for one in quantities])
     for d, k in enumerate(heights.argmax(axis=0).tolist()):

@@ -1,8 +1,8 @@
-"""Errors and stability of the points of a curve over the level of the forces.
+"""Errors and stability of the points of a curve over the force level.
 
-A solution at one level of the forces is one at the level 1 of forces as much greater. So its stability is
-that of its motion, whatever the forces; and what the harmonics left out would do to it is found by balancing
-them too, at the same frequency and level.
+A solution at a force level is also one at the level 1 of forces as many times as large. Its stability depends
+only on its motion. Its error is found by balancing the harmonics left out, too, at the same frequency and
+level.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from fcm.stability.floquet import multipliers_of
 class LevelPoints(NamedTuple):
     """Points of a curve over the force level.
 
-    z (point, unknown + 1) and level (point,), amplitudes (point, dof), its contact loads (point, contact, 4),
-    and parity (point,), see `Path.parity`.
+    z (point, unknown + 1), level (point,), amplitude (point, dof), contact_loads (point, contact, 4), and
+    parity (point,), see `Path.parity`.
     """
 
     z: FloatArray
@@ -37,10 +37,9 @@ class LevelPoints(NamedTuple):
 
 
 def stable_at_levels(system: System, z: FloatArray, parity: FloatArray) -> FloatArray:
-    """Stability of the points z (point, unknown + 1) of a curve over the force level: 1, 0, or NaN where
-    unknown.
+    """Stability of the points z (point, unknown + 1) of a curve over the force level: 1, 0, or NaN (unknown).
 
-    parity : (point,) of the curve, see `Path.parity`.
+    parity (point,) is that of the curve, see `Path.parity`.
     """
     if not system.scene.contacts:
         return np.ones(len(z))
@@ -54,7 +53,7 @@ def errors_at_levels(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative errors of amplitudes and contact loads against the reference at the same force levels.
 
-    NaN where that is not found, as beside folds, where the curve with them has no such solution.
+    NaN where the reference is not found, as beside folds that it does not have there.
     """
     z, level, amplitude, contact_loads, parity = points
     further = FurtherHarmonics(system)
@@ -84,8 +83,8 @@ def _balanced(
 ) -> tuple[FloatArray, FloatArray]:
     """Amplitudes (point, dof) and contact loads (point, contact, 4) balanced with the harmonics of `finer`.
 
-    NaN where Newton's method finds none that is as the point is, with an even or odd number of real
-    multipliers above 1.
+    NaN where Newton's method finds no solution whose number of real multipliers above 1 has the parity of the
+    point.
     """
     raised, front = finer.level_problem
     newton, found = front.newton, np.zeros((len(z), raised.unknowns + 1))

@@ -18,9 +18,10 @@ class CurveDistanceOptions(Frozen):
     coincident : float
         Distance of two points, relative to the length of the curve, below which they coincide.
     max_halvings : int
-        Number of bisections by which the place of a value of the parameter is found between two points.
+        Number of bisections that locate a value of the parameter between two points.
     parts : int
-        Number of parts of the way from a point to the next, at whose ends a curve may be higher than its top.
+        Number of parts of the interval between two points; a curve's rise above its top is sought between
+        these parts.
     """
 
     coincident: float = 1e-4
@@ -32,15 +33,16 @@ CURVE_DISTANCE = CurveDistanceOptions()
 
 
 class PairOptions(Frozen):
-    """Options on how the reference of a curve is chosen, and how closely it is looked at.
+    """Options on how the reference of a curve is chosen, and how closely it is compared.
 
     Attributes
     ----------
     harmonics_factor, min_harmonic, max_added : int
-        Number of harmonics of the reference relative to that of the curve; highest harmonic of the reference,
-        at least; and most harmonics that it has more than the curve.
+        Number of harmonics of the reference relative to that of the curve; least value of its highest
+        harmonic; and most harmonics that it has more than the curve.
     max_named : int
-        Most further harmonics of the reference that the spectrum of the exact forces names.
+        Most further harmonics of the reference that are named, that is chosen by the spectrum of the exact
+        forces.
     min_share : float
         Effect of a harmonic, relative to that of all harmonics left out, above which it is named.
     leading_share, min_resonant_share : float
@@ -50,17 +52,17 @@ class PairOptions(Frozen):
         Most unknowns of the reference; and number of harmonics that it may have more than the curve in any
         case.
     point_interval : int
-        Number of points of the curve from one whose displacement to the reference is found at first to the
-        next; between them more are found where they are needed.
+        Number of points between two whose displacements to the reference are found at first; more are found
+        between them where they are needed.
     interpolation_tolerance : float
         Error of an interpolated displacement, relative to it, from which on more of them are found.
     negligible_displacement : float
         Relative displacement below which it is not resolved any further.
     max_steepness : float
-        Slope of an amplitude by the frequency, both relative, that stands for all steeper ones.
+        Greatest relative slope of an amplitude by the frequency; it replaces steeper ones.
     max_seconds : float
         [s] Most work (see `fcm.harmonic_balance.cost_model`) of following the reference where no point of it
-        lies normal to the curve; as much again for points that are not found.
+        lies normal to the curve; and as much again for points that are not found.
     work_fraction, min_seconds : float
         Most work of following the reference, relative to that of the response itself; and [s] work that it
         may take in any case.
@@ -73,29 +75,28 @@ class PairOptions(Frozen):
         Work of following the reference one way before other ways are followed, relative to all work
         elsewhere.
     level_fraction : float
-        Work of following the level of the forces at one frequency, relative to what is left elsewhere, times
-        the share of points of which nothing is known yet.
+        Work of following the force level at one frequency, relative to the work left elsewhere times the
+        fraction of points that are still unknown.
     interval_factor : int
         Ratio of `point_interval` to the next smaller interval, at which motions are tried as starts of the
         reference.
     probes, min_found : int, float
-        Number of points along a curve, about, whose displacements are found first; and share of them that has
-        to be found, or else the reference is another curve.
+        Approximate number of points along a curve whose displacements are found first; and the fraction of
+        them that has to be found, or else the reference is another curve.
     fewer_factors : tuple of int
-        Numbers that replace `harmonics_factor`, in turn, where following the reference takes longer than it
-        may: until about as many evaluations as the curve took, times the ratio of the numbers of harmonics,
-        are affordable.
+        Values that replace `harmonics_factor` in turn if following the reference takes too long. It is
+        estimated to take the evaluations of the curve, times the ratio of the numbers of harmonics.
     following, following_of_many, coarse_following : FollowOptions
-        How the reference is followed: with few contacts; with many, most of whose corners are slight; and
-        elsewhere, where only the points at given frequencies matter.
+        How the reference is followed: with few contacts; with many, most of whose corners are slight; and on
+        other branches, where only the points at given frequencies matter.
     many_contacts : int
         Number of contacts from which on they are many.
     max_point_seconds : float
-        [s] Most work of all points whose displacements are found, those that are found included.
+        [s] Most work of all searches for displacements, successful or not.
     span_margin : float
         Distance beyond a stretch up to which the reference is followed, relative to the width of the stretch.
     end_tries : int
-        Number of points at an end of a stretch from which the reference is looked for.
+        Number of points at an end of a stretch from which the reference is sought.
     end_tolerance : float
         Relative difference of amplitudes below which the reference has reached the other end of a stretch;
         and of amplitudes and frequency, below which a fold elsewhere is that of the curve.
@@ -105,33 +106,32 @@ class PairOptions(Frozen):
     reference_error : float
         Error of the reference itself, relative to a displacement: no estimated error at a point is less.
     second_factor : int
-        Number of harmonics of the reference's own reference, relative to that of the reference. It is looked
-        for at peaks, and where the reference is not reliable.
+        Number of harmonics of the second reference (the reference of the reference), relative to that of the
+        reference. It is sought at peaks, and where the reference is not reliable.
     second_named : int
-        Most further harmonics of it that the spectrum names.
+        Most further harmonics of the second reference that are named.
     max_second_unknowns : int
-        Most unknowns of it; with more there is none.
+        Most unknowns of the second reference; with more there is none.
     feedback_factor : float
-        Effect of harmonics, relative to that without feedback. Where that of the harmonics which the
-        reference lacks exceeds the estimated error, the error of the reference itself is looked for.
+        Effect of harmonics, relative to that without feedback. Where this estimate for the harmonics that the
+        reference lacks exceeds the estimated error, the reference's own error is computed.
     max_spectra, max_uncertain : int
         Most points of a curve at which the harmonics that the reference lacks are computed, and most at which
         its own error is.
     peak_offsets : tuple of int
-        Numbers of points to either side of a top at which the reference is looked for, in turn, if it is not
+        Numbers of points to either side of a top at which the reference is sought, in turn, if it is not
         found at the top.
     rival_fraction : float
         Height relative to the greatest amplitude, above which a top may become the greatest.
     residual_factor : float
-        Highest harmonic at which it is looked what the reference lacks, relative to the one that meets the
-        highest mode.
+        Highest harmonic that is computed beyond the reference, relative to the one that meets the highest
+        mode.
     max_residual_harmonic, max_products : int
-        Highest harmonic in any case, and most multiplications of modes for all of them.
+        Highest of these harmonics in any case, and most multiplications of modes for all of them.
     samples_per_period : int
         Number of samples for each period of the highest harmonic.
     newton_tolerance : float
-        Length of a Newton step, relative to the displacement, below which it is the last: the error is then
-        far less.
+        Length of the last Newton step, relative to the displacement; the error that is left is far less.
     max_kept : int
         Most balances that are kept for the next curve.
     batch : int
@@ -140,8 +140,8 @@ class PairOptions(Frozen):
         Height of a local maximum, relative to the greatest amplitude of its degree of freedom, from which on
         it is a peak.
     peak_neighbours : int
-        Number of points to either side of the highest that are found if their interpolated heights are above
-        it.
+        Number of points to either side of the highest one that are computed if their interpolated heights are
+        above it.
     rounding : float
         Difference of a force, slip or energy of a contact, relative to its greatest, up to which it is
         ignored.
@@ -232,9 +232,9 @@ class PairOptions(Frozen):
 
 
 PAIR = PairOptions()
-# of harmonics that are given: the pair is for the errors alone, and nothing is traced again
+# for given harmonics: the pair estimates errors only, and nothing is traced again
 OF_GIVEN = PairOptions(work_fraction=2.0, max_seconds=8.0, long_fraction=1.0, work_fraction_elsewhere=2.0)
-# at single points, where many harmonics take little: as many as the reference of a reference has
+# at single points, where many harmonics are cheap: as many as the second reference has
 AT_POINTS = PairOptions(
     harmonics_factor=PAIR.harmonics_factor * PAIR.second_factor,
     min_harmonic=PAIR.min_harmonic * PAIR.second_factor,
@@ -250,24 +250,25 @@ class RefinementOptions(Frozen):
     max_rounds : int
         Most rounds of tracing, estimating the error and choosing harmonics.
     safety : float
-        Effect of the harmonics left out that is aimed at, relative to the accuracy.
+        Target for the effect of the harmonics left out, relative to the accuracy.
     feedback_factor : float
-        Effect of harmonics, relative to that without feedback, as long as the pair does not tell it.
+        Effect of harmonics, relative to that without feedback, as long as the pair does not give it.
     max_first_added, max_growth : int
-        Most harmonics that are added at once; or, where more, the most relative to the number that there is.
+        Most harmonics that are added at once, as a number, and relative to the present number; the larger
+        limit holds.
     rival_fraction : float
-        Height of a branch's top, relative to the greatest amplitude, above which it is looked at.
+        Height of a branch's top, relative to the greatest amplitude, above which it is checked.
     min_amplitude : float
-        Amplitude of a degree of freedom, relative to the greatest, up to which no accuracy is asked of it.
+        Amplitude of a degree of freedom, relative to the greatest, up to which no accuracy is required.
     peak_offsets : tuple of int
-        Numbers of points to either side of a top at which the reference is looked for, in turn, if it is not
+        Numbers of points to either side of a top at which the reference is sought, in turn, if it is not
         found at the top.
     max_folds : int
-        Most folds of a branch that are looked at.
+        Most folds of a branch that are checked.
     complete_harmonics : int
         Harmonic up to which no single one is left out: stability between folds may depend on it.
     max_seconds_without_progress : float
-        [s] Most work of rounds of which nothing shows that they bring the accuracy nearer.
+        [s] Most work of rounds that are not known to bring the accuracy nearer.
     """
 
     max_rounds: int = 8
@@ -294,11 +295,10 @@ class ValidityOptions(Frozen):
     max_error : float
         Estimated relative error of the amplitudes above which a solution is not called stable.
     max_fold_error : float
-        Width of a stretch of stable solutions without an error beside a fold, relative to their frequency,
-        above which their stability is unknown.
+        Width of a stretch of stable solutions without a known error beside a fold, relative to their
+        frequency, above which their stability is unknown.
     max_unknown_points : int
-        Number of points in a row without a reference, above which the branch does not belong to more
-        harmonics.
+        Number of consecutive points without a reference, above which more harmonics do not have the branch.
     max_change : float
         Change of a solution, relative to its greatest displacement, above which it is taken for one on
         another branch.
@@ -314,16 +314,16 @@ VALIDITY = ValidityOptions()
 
 
 class StabilityLimitOptions(Frozen):
-    """Options on how the limits of stability of more harmonics are found beside those of fewer.
+    """Options on how the stability limits of more harmonics are found beside those of fewer.
 
     Attributes
     ----------
     max_distance : float
-        Number of points to either side of a crossing up to which that of more harmonics is looked for.
+        Number of points to either side of a crossing up to which that of more harmonics is sought.
     first_distance : float
-        Distance at which it is looked for first, in points; it is then doubled.
+        Distance at which it is sought first, in points; it is then doubled.
     tolerance : float
-        Error of its place, relative to the way between two points, at which the search ends.
+        Error of its place, relative to the interval between two points, at which the search ends.
     relative_tolerance : float
         Change of its frequency in a step, relative to its distance from the crossing of fewer harmonics, at
         which the search ends.
@@ -332,8 +332,8 @@ class StabilityLimitOptions(Frozen):
     min_growth : float
         Logarithm of the growth over a period that stands for any smaller one.
     crossing_distance : float
-        Distance of the crossing of more harmonics from that of fewer, relative to the way to any other, below
-        which they belong together.
+        Distance of the crossing of more harmonics from that of fewer, relative to the distance of any other,
+        below which they belong together.
     sign_change : SignChangeOptions
         How the crossing is bracketed.
     """

@@ -1,8 +1,8 @@
 r"""Errors of the peaks of a curve against those of its reference, in height and in frequency.
 
-A peak of a degree of freedom is a local maximum of its amplitude a(s) along the curve. The reference's is
-that of a(s) + e(s), e what points are displaced by, between the same two minima. Both are the tops of
-parabolas through three points.
+A peak of a degree of freedom is a local maximum of its amplitude a(s) along the curve. The reference's peak
+is that of a(s) + e(s) between the same two minima, where e is the displacement to the reference. Both are the
+tops of parabolas through three points.
 """
 
 from __future__ import annotations
@@ -32,8 +32,7 @@ class PeakErrors(Frozen):
     frequency: FloatArray
 
     def at(self, tops: Indices) -> tuple[FloatArray, FloatArray]:
-        """Errors (dof,) of the heights and of the frequencies of the peaks at given points; NaN where a point
-        has no peak."""
+        """Errors (dof,) of heights and of frequencies at points tops (dof,); NaN where there is no peak."""
         height, frequency = np.full((2, len(tops)), np.nan)
         at_top = self.point == tops[self.dof]
         height[self.dof[at_top]], frequency[self.dof[at_top]] = self.height[at_top], self.frequency[at_top]
@@ -53,7 +52,7 @@ def peak_errors(reference: ReferenceCurve, change: FloatArray) -> PeakErrors:
     parameter = reference.path.parameter
     of_reference = curve + reference.unit * change[:, 1:]
     frequency = parameter * (1.0 + change[:, 0])
-    rows = list[tuple[int, int, int]]()  # point, dof, point that is displaced to the reference's
+    rows = list[tuple[int, int, int]]()  # point, dof, point that is displaced to the reference's peak
     beside = list[tuple[int, int, float, float]]()  # point, dof, height and frequency of the reference's
     for d, (own, moved) in enumerate(zip(curve.T, of_reference.T, strict=True)):
         for i, low, high in _between_minima(own, reference.options.least_peak):
@@ -83,7 +82,7 @@ def _between_minima(amplitude: FloatArray, least: float) -> list[tuple[int, int,
 
 
 def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None:
-    """Index of the highest amplitude between two places; None at an end, or beside unknown amplitudes."""
+    """Index of the highest amplitude between low and high; None at an end, or beside unknown amplitudes."""
     inside = moved[low : high + 1]
     if np.isnan(moved[i]) or np.isnan(inside).all():
         return None
@@ -93,8 +92,7 @@ def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None
 
 
 def _followed_top(reference: ReferenceCurve, d: int, i: int) -> tuple[float, float] | None:
-    """Height and frequency of the nearest peak of the followed reference, beside the peak at point i; or
-    None.
+    """Height and frequency of the followed reference's peak nearest to that at point i, or None.
 
     It must be within `PairOptions.end_tolerance` in both; one farther away is another peak.
     """

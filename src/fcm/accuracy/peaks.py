@@ -15,15 +15,14 @@ from fcm.model.scene import FloatArray
 def tops_of_reference(
     reference: ReferenceCurve, change: FloatArray, shift: FloatArray, resonant: Indices
 ) -> list[list[ReferenceTop]]:
-    """The reference of a curve where that is highest, and where itself is, for each degree of freedom.
+    """The reference at the top of the curve, and at its own top, for each degree of freedom.
 
-    Of two that lie so close together that they are one there is the latter. A height is NaN where the
-    greatest is unknown.
+    If both are at the same place, only the latter is returned. Its height is NaN if it is unknown, as the
+    reference could not be followed along a stretch nearly as high as the curve.
 
-    change, shift (point, dof): of the amplitudes along the curve, and at equal frequency, in their unit.
-    resonant: points where a harmonic that only the reference has meets a mode: between these it may have a
-    peak, and is followed. Unknown where a stretch is nearly as high as the curve, and the reference could not
-    be followed along it.
+    change, shift (point, dof) are those of the amplitudes along the curve, and at equal frequency, in their
+    unit. resonant are the points where a harmonic that only the reference has meets a mode. The reference may
+    have a peak beside them, and is followed there.
     """
     amplitude, options = reference.amplitude, reference.options
     now = amplitude.max(axis=0)
@@ -51,9 +50,9 @@ def tops_of_reference(
 def _displaced_tops(
     reference: ReferenceCurve, change: FloatArray, shift: FloatArray
 ) -> list[list[ReferenceTop]]:
-    """What the highest point of a curve is displaced to, and the highest to which one is, if it is another.
+    """The point to which the top of a curve is displaced, and the highest displaced point, if it is another.
 
-    Where the curve is highest at an end the amplitudes at its frequencies count.
+    If the curve is highest at an end, the reference's amplitudes at the curve's frequencies are used.
     """
     amplitude, unit, last = reference.amplitude, reference.unit, len(reference.amplitude) - 1
     own = amplitude.argmax(axis=0)
@@ -83,12 +82,9 @@ def _displaced_tops(
 
 
 def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: Indices) -> FloatArray:
-    """Rise (dof,) of a displaced curve between its highest points and their neighbours.
+    """Rise (dof,) of a displaced curve between its highest points and their neighbours; see `rises`.
 
-    moved (point, dof): displacements of the amplitudes. places: indices of the highest points.
-
-    Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
-    is told of what lies between a point and a corner.
+    moved (point, dof): displacements of the amplitudes. places (dof,): indices of the highest points.
     """
     corner = ((reference.path.mark & Mark.CORNER) > 0).view(np.uint8)
     return rises(
@@ -102,10 +98,10 @@ def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: In
 
 
 def _highest(reference: ReferenceCurve, change: FloatArray) -> tuple[FloatArray, Indices]:
-    """Changes (point, dof) and indices (dof,) of the highest points of the reference.
+    """Changes (point, dof), and indices (dof,) of the highest points of the reference.
 
-    Neighbours whose interpolated height is clearly greater are computed as well, until the highest is a
-    computed one.
+    Neighbours whose interpolated height is clearly greater are computed, too, until a computed one is the
+    highest.
     """
     change, count, options = change.copy(), len(change), reference.options
     near = np.arange(-options.peak_neighbours, options.peak_neighbours + 1)[:, None]

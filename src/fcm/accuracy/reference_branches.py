@@ -1,9 +1,8 @@
 """Motions of the reference at frequencies that no known branch of it reaches.
 
-Where the reference is another curve, few of its points lie normal to the path, and it is followed here alone,
-with as many harmonics as the work allows.
-They belong to the whole response: what is followed from one branch tells the others, too, and all of it has
-one budget.
+If the reference is another curve, few of its points lie normal to the path. Then it is followed only here,
+with as many harmonics as the work allows. The motions belong to the whole response: those followed from one
+branch serve the other branches, too, and all share one budget.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from fcm.model.scene import FloatArray
 if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import PathErrors
 
-# of any number of contacts, as the motions lie far from those that are sought
+# with damped steps for any number of contacts, as the starts lie far from the motions that are sought
 OF_FAR_MOTIONS = ProlongationOptions(damped=DampedOptions(min_contacts=0))
 
 
@@ -47,15 +46,15 @@ def further_reference_pieces(
 
     The search ends when every frequency is passed, or the work allowed is spent.
 
-    They are followed from points of the paths from the first on whose errors are unknown, those of the
-    smallest motions before the others: there the reference has fewest. Where no motion of such a path leads
-    to one of its reference, the level of the forces may; then points between those that were tried.
+    Starts are points of the paths from `first` on whose errors are unknown, the smallest motions first: there
+    the reference has the fewest motions. After Newton's method from these points, the force level is
+    followed, and then points between those that were tried.
     """
     search = _Search(system, paths, quantities, errors, first, options)
     interval = options.point_interval
     while interval and search.is_open and search.extends(interval):
         interval //= options.interval_factor
-    # what the levels took is paid already
+    # the work of the levels is charged already
     system.work.add(sum(one.each * one.evaluations for one in search.followers.values()))
     return search.found
 
@@ -63,10 +62,10 @@ def further_reference_pieces(
 def affordable_reference(
     system: System, path: Path, share: FloatArray, options: PairOptions
 ) -> tuple[int, ...]:
-    """Harmonics of the reference on other branches; fewer where following it would exceed its budget.
+    """Harmonics of the reference on other branches; fewer if following it would exceed its budget.
 
-    That is about as many evaluations as the path took, for so many times as many harmonics. share as of
-    `reference_harmonics`.
+    It is estimated to take the evaluations of the path, times the ratio of the numbers of harmonics. share is
+    as in `reference_harmonics`.
     """
     most, ports = Budget.elsewhere(system.work, options).seconds, system.layout.ports
     more = reference_harmonics(system.harmonics, share, ports, options)
@@ -81,7 +80,7 @@ def affordable_reference(
 
 @dataclass(eq=False)
 class _Front:
-    """A point from which the reference of a path is followed on, with the direction there.
+    """A point from which the reference of a path is followed further, with the direction there.
 
     `gain` is the number of points that its last piece reached first, per second of work.
     """
@@ -115,7 +114,7 @@ class _Search:
             _UnknownError(*one, system.harmonics) for one in zip(paths, quantities, errors, strict=True)
         ]
         self.followers = dict[int, StretchFollower]()
-        self.closed = list[FloatArray]()  # where pieces began that came back there
+        self.closed = list[FloatArray]()  # starts of closed pieces
         for piece in self.known:
             _newly_known(piece, self.unknown)
 
@@ -139,7 +138,7 @@ class _Search:
         return len(self.known) > before
 
     def from_motions(self, interval: int) -> None:
-        """Follows the reference from motions `interval` points apart, then on from the most useful fronts."""
+        """Follow the reference from motions `interval` points apart, then further from the best fronts."""
         left = list[_Front]()
         for k, i in self._places(interval):
             if self.unknown[k].sought[i]:  # it was tried before
@@ -150,7 +149,7 @@ class _Search:
         self._follow(left)
 
     def from_levels(self, interval: int) -> None:
-        """Follows the reference from motions that the force level passes at points `interval` apart.
+        """Follow the reference from motions that the force level passes at points `interval` apart.
 
         It stops when finding a motion takes more than the budget allows.
         """
@@ -161,7 +160,7 @@ class _Search:
                 break
 
     def _places(self, interval: int) -> Iterator[tuple[int, int]]:
-        """Yields (path, point) of the smallest motions that no piece has reached, `interval` points apart."""
+        """Yield (path, point) of the smallest motions that no piece has reached, `interval` points apart."""
         for one in self.unknown:
             one.tried[:] = False
         while self.budget.seconds > 0.0:
@@ -185,14 +184,14 @@ class _Search:
         return [_Front(k, z, None, forward) for forward in (True, False)]
 
     def _follow(self, fronts: list[_Front]) -> None:
-        """Follows the reference on from fronts, always from the one with the greatest gain."""
+        """Follow the reference from fronts, always from the one with the greatest gain."""
         while fronts and self.is_open:
             best = max(fronts, key=lambda one: one.gain)
             fronts.remove(best)
             fronts += self._followed(best)
 
     def _followed(self, front: _Front) -> list[_Front]:
-        """Follows a piece from a front; returns the front at its end if it was useful and interrupted."""
+        """Follow a piece from a front; return the front at its end if it was useful and interrupted."""
         stretches, count = self._stretches(front.path), 0
         given = min(self.each, self.budget.seconds)
         if given <= 0.0 or any(front.z is begin for begin in self.closed):
@@ -215,7 +214,7 @@ class _Search:
         return [_Front(front.path, path.z[-1], path.direction[-1], True, count / spent)]
 
     def _stretches(self, k: int) -> StretchFollower:
-        """The `StretchFollower` of the reference of path k, made for motions that lie far from the path."""
+        """The `StretchFollower` of path k's reference, made for motions that lie far from the path."""
         if k not in self.followers:
             more = self.errors[k].reference
             finer, options = self.system.with_harmonics(more), self.options
@@ -237,8 +236,7 @@ class _Search:
 class _UnknownError:
     """The points of a path whose errors are unknown, with the sizes of their motions.
 
-    `tried` (point,): used at the present interval. `sought` (point,): the reference was sought from them at
-    any.
+    `tried` (point,): used at the present interval. `sought` (point,): used at any interval.
     """
 
     def __init__(
@@ -246,7 +244,7 @@ class _UnknownError:
     ) -> None:
         self.path, self.size = path, quantities.amplitude.max(axis=1)
         self.size[errors.is_same_curve] = np.inf
-        if errors.reference == harmonics:  # it has none
+        if errors.reference == harmonics:  # it has no reference
             self.size[:] = np.inf
         self.tried, self.sought = np.zeros((2, len(self.size)), dtype=np.bool_)
 

@@ -1,4 +1,4 @@
-"""The reference of a curve: found point by point, interpolated, or followed where Newton diverges."""
+"""The reference of a curve: found point by point, interpolated, or followed where Newton's method fails."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 class ReferenceTop(NamedTuple):
-    """Where the reference is highest: a point of a followed piece, or one displaced from the curve."""
+    """A top of the reference: a point of a followed piece, or one displaced from the curve."""
 
     height: float
     point: int
@@ -59,7 +59,7 @@ class ReferenceTop(NamedTuple):
 
 
 class FollowedStretch(Frozen):
-    """A stretch of a curve (points first to before end) with the reference's pieces followed beside it."""
+    """A stretch of a curve (points first to end - 1) with the reference's pieces followed beside it."""
 
     first: int
     end: int
@@ -69,8 +69,8 @@ class FollowedStretch(Frozen):
 class ComparedQuantities(Frozen):
     """The quantities in which a curve is compared with its reference: amplitudes, then contact loads.
 
-    value, growth along the curve, unit (point, column); change (point, 1 + column) to the reference, that of
-    the frequency first, the others in their unit.
+    value, growth (along the curve) and unit are (point, column). change (point, 1 + column) leads to the
+    reference: first the relative change of the frequency, then the others in their unit.
     """
 
     value: FloatArray
@@ -91,8 +91,8 @@ class SecondReference:
     def found(self, z: FloatArray, direction: FloatArray | None) -> bool:
         """Whether Newton's method finds the second reference from a point of the reference.
 
-        It is sought at the point's frequency, or normal to a direction if one is given; `amplitude` (dof,) is
-        then set.
+        It is sought at the point's frequency, or normal to a direction if one is given. `amplitude` (dof,) is
+        set.
         """
         if direction is None:
             there = self.prolongation.find_at_frequency(self.system.extended(z, self.finer.harmonics), True)
@@ -108,16 +108,14 @@ class SecondReference:
 
 
 class ReferenceCurve:
-    """Relative displacements from the points of a path to its reference: of the frequency, then of the
-    amplitudes.
+    """Relative displacements from points of a path to its reference: of frequency, then of amplitudes.
 
-    unit (point, dof): what the displacements of amplitudes are relative to. It is the amplitude or, of a
-    degree of freedom that hardly moves, a part of the greatest amplitude, as its own rounding would hide the
-    others.
+    unit (point, dof): unit of the displacements of amplitudes. It is the amplitude, but at least a part of
+    the greatest amplitude: the rounding of a degree of freedom that hardly moves would hide the others.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
     arc (point,): arc length along the path, in scaled coordinates.
-    contact_loads (point, 4 contact): of its contacts.
-    ends_before (point,): whose frequency the reference passes less often, as it turns back.
+    contact_loads (point, 4 contact): those of the path's contacts.
+    ends_before (point,): where the reference turns back earlier, and passes the frequency less often.
     followed: the stretches beside which it was followed, see `follow_stretches`.
     """
 
@@ -140,8 +138,8 @@ class ReferenceCurve:
         self.system, self.more = system, more
         self.finding = PointwiseDisplacement(prolongation)
         self.stretches = StretchFollower(system, finer, prolongation, path, options, budget)
-        self.each = seconds_of(finer, 1, len(more))  # evaluation
-        self.second: SecondReference | None = None  # its own reference, if that is not too expensive
+        self.each = seconds_of(finer, 1, len(more))  # seconds for one evaluation
+        self.second: SecondReference | None = None  # the second reference, if it is affordable
         self.is_costly = False
         self.errors_at_tops = list[tuple[ReferenceTop, tuple[FloatArray, float]]]()
         self.failed, self.before = budget.seconds / self.each, prolongation.newton.evaluations
@@ -156,11 +154,10 @@ class ReferenceCurve:
         self.filled = PartialInterpolant(self.arc, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
-        """Displacements (point, 1 + dof) to the reference, computed at some points and interpolated
-        elsewhere.
+        """Displacements (point, 1 + dof) to the reference: computed at some points, interpolated elsewhere.
 
-        They are found at special points, at every so many, next to linear parts, and between two of these
-        where the middle one is not as interpolated.
+        They are computed at special points, at equally spaced points, and at both ends of linear parts. The
+        interval between two of these is bisected until the interpolation predicts the middle.
         """
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
@@ -198,13 +195,13 @@ class ReferenceCurve:
     def distinct_points(self, points: Indices) -> Indices:
         """The given points, in order, without those close to one already taken.
 
-        Of many degrees of freedom each has its own peak; what the reference has at one is interpolated to the
+        Many degrees of freedom each have a peak of their own; the reference at one is interpolated to the
         next.
         """
         return points[distinct(self.arc[points], self._near)]
 
     def release(self) -> None:
-        """Returns the prolongations to the cache, for the next curve."""
+        """Return the prolongations to the cache, for the next curve."""
         keep_for_next(self.finding.prolongation, self.system, self.more, self.options)
         if self.second is not None:
             keep_for_next(self.second.prolongation, self.second.finer, self.second.more, self.options)
@@ -216,7 +213,7 @@ class ReferenceCurve:
         return float(seconds + (self.second.seconds() if self.second else 0.0))
 
     def find(self, points: Indices) -> None:
-        """Computes the displacements of given points; beyond the work allowed they are set to NaN."""
+        """Compute the displacements of given points; once the work allowed is spent, they are NaN."""
         most = self.options.max_point_seconds / self.each
         if most < np.inf:
             for k, i in enumerate(points.tolist()):
@@ -241,11 +238,10 @@ class ReferenceCurve:
         return found
 
     def left_out(self, points: Indices) -> FloatArray:
-        """Sum (place,) of the relative changes that the harmonics beyond the reference would make without
-        feedback.
+        """Sum (place,) of the relative changes by the harmonics beyond the reference, without feedback.
 
-        The points must have been found. Each harmonic counts by the degree of freedom to which it matters
-        most.
+        The points must have been found. The change by a harmonic is that of the degree of freedom to which it
+        matters most.
         """
         amplitude = self.amplitude[points] + self.unit[points] * self.change[points, 1:]
         shares = self._further.shares(self.reference_unknowns[points], amplitude)
@@ -261,7 +257,7 @@ class ReferenceCurve:
     def own_error(self, i: int) -> FloatArray | None:
         """Differences (dof,) between the second reference and the reference, in the unit of the curve.
 
-        Compared at the frequency to which point i is displaced; None where either has no motion there.
+        They are compared at the frequency to which point i is displaced; None if either has no motion there.
         """
         self.find(np.array([i]))
         z, amplitude = self.reference_unknowns[i], self.amplitude[i] + self.unit[i] * self.change[i, 1:]
@@ -274,14 +270,14 @@ class ReferenceCurve:
         return off
 
     def error_at_top(self, top: ReferenceTop, d: int, difference: float) -> FloatArray:
-        """Error (2,) of the reference itself at a top of a degree of freedom, and what the harmonics beyond
-        both would still change.
+        """Errors (2,) of the reference itself at a top of degree of freedom d.
 
-        The first is the difference from the amplitude of a reference with still more harmonics; 0 where there
-        is none. Where that is not found it is NaN if it may exceed the relative difference of the curve from
-        the reference. The second is by how much the harmonics that this lacks, too, would change the
-        amplitude. The points compared lie normal to the reference, at the nearest point that has both; at an
-        end of the curve at its frequency. Tops closely together have the errors of the first.
+        The first is the difference of the second reference's amplitude; 0 if there is no second reference.
+        The other is the change by the harmonics that the second reference lacks, too. Both are NaN if the
+        second reference is not found, and its error may exceed the curve's relative difference.
+
+        The references are compared normal to the first, at the nearest point that has both, or at an end of
+        the curve at its frequency. Tops close together share the errors of the first.
         """
         arc = top.arc(self)
         beside = (
@@ -297,8 +293,10 @@ class ReferenceCurve:
         return errors[:, d] if left_out <= difference else np.full(2, np.nan)
 
     def _errors_at_top(self, top: ReferenceTop) -> tuple[FloatArray, float]:
-        """Error of the reference at one top, and what is left out even then (2, dof); and about the relative
-        error, by the harmonics left out, where a reference with still more is not found."""
+        """Errors (2, dof) as in `error_at_top`, and the estimated error if no second reference is found.
+
+        That estimate is relative, from the shares of the harmonics left out; it is 0 if the errors are known.
+        """
         none = np.zeros((2, self.amplitude.shape[1]))
         if top.piece is None and self.linear[top.point]:
             return none, 0.0
@@ -319,9 +317,10 @@ class ReferenceCurve:
     def _motions_around(
         self, top: ReferenceTop
     ) -> Iterator[tuple[FloatArray, FloatArray, FloatArray | None]]:
-        """Motions of the reference at a top and on either side of it, as far as contacts slip or separate.
+        """Yield motions of the reference at a top and on either side of it where contacts slip or separate.
 
-        Each with its amplitudes, and the direction of the curve; None at an end, where the frequency counts.
+        Each comes with its amplitudes and the direction of the curve. The direction is None at an end, where
+        motions are compared at the same frequency.
         """
         count = len(self.linear) if top.piece is None else len(top.piece.path.z)
         inside = top.piece is not None or 0 < top.point < count - 1
@@ -350,9 +349,9 @@ class ReferenceCurve:
         return not normal and bool(prolongation.find_at_frequency(self._guesses[i], True))
 
     def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondReference | None:
-        """The second reference; None where it has no more harmonics, or too many unknowns.
+        """The second reference; None if it has no more harmonics, or too many unknowns.
 
-        Its harmonics are chosen at the first point for which it is asked.
+        Its harmonics are chosen at the first point z at which it is needed.
         """
         finer, options = self.stretches.finer, self.options
         if self.is_costly:
@@ -368,7 +367,7 @@ class ReferenceCurve:
     def amplitude_at_frequency(self, i: int) -> FloatArray | None:
         """Amplitudes (dof,) of the reference at the frequency of point i, from Newton's method.
 
-        None where it diverges, or finds a motion whose number of real multipliers above 1 has other parity.
+        None if that diverges, or finds a motion whose number of real multipliers above 1 has another parity.
         """
         prolongation, path = self.finding.prolongation, self.path
         if self.linear[i] or not prolongation.find_at_frequency(self._guesses[i], True):
@@ -391,10 +390,9 @@ class ReferenceCurve:
     def _misses_expected(
         self, before: Indices, middle: Indices, after: Indices, expected: FloatArray
     ) -> Mask:
-        """Mask of the middle points whose displacement differs from the one interpolated from both
-        neighbours.
+        """Mask of the middle points whose displacement differs from the interpolated one.
 
-        Along a steep part one of the frequency is a so much larger error of the amplitude.
+        The displacement of the frequency is weighted by the steepness of the curve.
         """
         more, options = np.zeros(len(middle), dtype=np.uint8), self.options
         points = np.array((before, middle, after))
@@ -409,7 +407,7 @@ class ReferenceCurve:
         return more.view(np.bool_)
 
     def follow_stretches(self, change: FloatArray) -> None:
-        """Follows the reference beside the stretches without displacements; highest first."""
+        """Follow the reference beside the stretches without displacements, the highest first."""
         found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
         self.followed = [
@@ -418,9 +416,9 @@ class ReferenceCurve:
         ]
 
     def _is_bridged(self, first: int, end: int, change: FloatArray) -> bool:
-        """Whether a short gap (first to before end) can be interpolated from its two nearly equal neighbours.
+        """Whether a short gap (first to end - 1) can be interpolated from its two nearly equal neighbours.
 
-        If so, `change` is filled there. A gap at a fold is never bridged.
+        If so, fill `change` there. A gap at a fold is never bridged.
         """
         before, after = first - 1, end
         if (self.path.mark[max(before, 0) : after + 1] & Mark.FOLD).any():
@@ -440,11 +438,10 @@ class ReferenceCurve:
         return float(self.options.peak_spacing * (self.arc[-1] - self.arc[0]))
 
     def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
-        """Amplitudes and contact loads of the curve with their changes to the reference, interpolated
-        everywhere.
+        """Amplitudes and contact loads of the curve, with changes to the reference at all points.
 
-        change (point, 1 + dof) is that of the amplitudes. The unit of a contact load is its greatest along
-        the curve.
+        change (point, 1 + dof) is that of frequency and amplitudes; those of the contact loads are
+        interpolated. The unit of a contact load is its maximum along the curve.
         """
         most = self.contact_loads.max(axis=0)
         unit = np.tile(np.where(most > 0.0, most, 1.0), (len(self.contact_loads), 1))
@@ -481,10 +478,10 @@ class ReferenceCurve:
         return shift
 
     def _fill_beyond_folds(self, compared: ComparedQuantities, shift: FloatArray) -> None:
-        """Fills points without a shift at which the reference turns back before the frequency of the curve.
+        """Fill shifts at points whose frequency the reference does not reach before it turns back.
 
-        Filled are those whose frequency curve and reference pass but once. Those that the reference passes
-        less often, where all of it is known, are remembered.
+        Nothing is done unless all of the reference is known. Points whose frequency both curves pass exactly
+        once are filled. Points whose frequency the reference passes less often are marked in `ends_before`.
         """
         missing = np.isnan(shift).any(axis=1) & np.isfinite(compared.change).all(axis=1)
         whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in self.followed)
@@ -504,9 +501,9 @@ class ReferenceCurve:
     def _fill_from_pieces(
         self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray
     ) -> None:
-        """Fills the shifts along a followed stretch, and next to it, from the pieces followed.
+        """Fill the shifts along a followed stretch, and next to it, from the pieces followed.
 
-        Where these do not reach, the reference at the points before and behind the stretch is used.
+        Where these do not reach, the reference at the points before and after the stretch is used.
         """
         first, end = one.first, one.end
         missing: Mask = np.any(np.isnan(shift), axis=1)
@@ -520,7 +517,7 @@ class ReferenceCurve:
         if (self.path.mark[first:end] & Mark.FOLD).any():
             number = self._passing_numbers(one, rows)
         now = compared.value[rows]
-        dofs = self.amplitude.shape[1]  # by which the same motion is known
+        dofs = self.amplitude.shape[1]  # amplitudes identify the motion
         by = np.ascontiguousarray(now[:, :dofs])
         for way in (map(self._of_piece, one.pieces), self._pieces_near(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
@@ -533,7 +530,7 @@ class ReferenceCurve:
             shift[rows], number = new, np.minimum(number, -1)
 
     def _pieces_near(self, compared: ComparedQuantities, first: int, end: int) -> Iterator[CurvePiece]:
-        """Yields the reference at the known points before a stretch, and behind it, as pieces of a curve."""
+        """Yield the reference at the known points before a stretch, and after it, as pieces of a curve."""
         missed = np.flatnonzero(np.isnan(compared.change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
         high = min(missed[missed >= end], default=len(compared.change))
@@ -570,10 +567,10 @@ class ReferenceCurve:
         return contact_loads_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
     def _passing_numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
-        """Which passing of the reference (row,) matches each point of a stretch with folds.
+        """Number (row,) of the reference's passing that matches each point of a stretch with folds.
 
-        It is the same in their order where both have as many, the nearest (-1) where the reference has more,
-        and none (-2) where it has fewer.
+        If curve and reference pass the frequency equally often, passings match in order. It is -1 (the
+        nearest) if the reference passes more often, or is not one piece, and -2 (none) if less often.
         """
         own, omega = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2], self.path.parameter[rows]
         offset, of_curve = rows[0] - max(rows[0] - 1, 0), passings(own, omega)
@@ -601,7 +598,7 @@ def curve_piece(finer: System, piece: ReferencePiece) -> CurvePiece:
 def passings(parameter: FloatArray, omega: FloatArray) -> Indices:
     """How often (place,) a curve passes given frequencies.
 
-    Counted are pieces that begin below and end at or above the frequency, or the other way round.
+    Intervals that begin below and end at or above the frequency count, and the other way round.
 
     >>> passings(np.array([0.0, 2.0, 1.0, 3.0]), np.array([0.0, 0.5, 1.5, 3.0, 4.0])).tolist()
     [1, 1, 3, 1, 0]
@@ -611,16 +608,16 @@ def passings(parameter: FloatArray, omega: FloatArray) -> Indices:
     one, other = parameter[:-1], parameter[1:]
     found: Indices = np.searchsorted(np.sort(np.minimum(one, other)), omega)
     found -= np.searchsorted(np.sort(np.maximum(one, other)), omega)
-    for end, beside in ((0, 1), (-1, -2)):  # an end on it counts, too
+    for end, beside in ((0, 1), (-1, -2)):  # an end at the frequency counts, too
         found += (parameter[end] == omega) & (omega < parameter[beside])
     return found
 
 
 def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:
-    """Mask (place, piece) of the pieces between neighbouring points that pass given frequencies."""
+    """Mask (place, interval) of the intervals between neighbouring points that pass given frequencies."""
     below = parameter < omega[:, None]
     passes: Mask = below[:, 1:] != below[:, :-1]
-    if passes.shape[1]:  # an end on it counts, too
+    if passes.shape[1]:  # an end at the frequency counts, too
         passes[:, 0] |= (parameter[0] == omega) & (omega < parameter[1])
         passes[:, -1] |= (parameter[-1] == omega) & (omega < parameter[-2])
     return passes

@@ -1,13 +1,13 @@
 r"""The reference's own error, where it may exceed the error that the pair estimates.
 
-What the harmonics that it lacks would do without feedback is known all along of the spectrum of its exact
-forces times the receptance. Feedback makes
+The spectrum of the exact forces times the receptance gives the shares s_h of the harmonics that the reference
+lacks, without feedback, all along the curve. With feedback, the error is
 
-    e_reference = g sum_h s_h
+    e_reference = g sum_h s_h.
 
-of it. The gain g is that of a second reference, with more harmonics, at a few points where e_reference may
-exceed the error that the first one gives. These are where amplitudes of curve and reference cross, or
-harmonics converge slowly. No error is less than e_reference.
+A second reference, with more harmonics, gives the gain g at a few points where e_reference may exceed the
+error of the pair. At such points the amplitudes of curve and reference cross, or harmonics converge slowly.
+The estimated errors are raised to e_reference.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fcm.model.scene import FloatArray
 
 
 def with_reference_errors(reference: ReferenceCurve, error: FloatArray) -> FloatArray:
-    """Errors (point, dof) in units of the reference's curve, raised to at least the reference's own error.
+    """Errors (point, dof), in the unit of `ReferenceCurve`, raised to at least the reference's own error.
 
     NaN stays NaN.
     """

@@ -23,10 +23,10 @@ def reference_harmonics(
     Parameters
     ----------
     share : array (harmonic,)
-        What each would do that is left out, from the first on: the spectrum of the exact forces times the
-        receptance, of the points that matter.
+        Effect without feedback of each harmonic left out, from harmonic 1 on: the spectrum of the exact
+        forces times the receptance, at the points that matter.
     ports : int
-        Directions in which all contacts move.
+        Number of ports: the directions of motion of all contacts.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def reference_harmonics(
     highest = min(options.harmonics_factor * count, count + options.max_added)
     low = range(1, min(max(highest, options.min_harmonic), LIMITS.harmonics + options.max_added) + 1)
     named = [h for h in order if h not in low][: options.max_named]
-    # where not all can be had what matters most comes first, then the lowest
+    # in order of priority, if not all are allowed: the most important one, then the lowest
     wanted = dict.fromkeys((*order[:1], *low, *named))
     more = [h for h in wanted if h not in has][:allowed]
     return tuple(sorted(has.union(more)))
@@ -84,7 +84,7 @@ def prolongation_to(system: System, more: tuple[int, ...], options: PairOptions 
 def keep_for_next(
     prolongation: Prolongation, system: System, more: tuple[int, ...], options: PairOptions = PAIR
 ) -> None:
-    """Returns the prolongation made by `prolongation_to` for the same arguments to the cache."""
+    """Return the prolongation made by `prolongation_to` for the same arguments to the cache."""
     prolongation.newton.poll = None
     if _is_shareable(system):
         _BALANCES.by_key[_key(system, more, options)] = prolongation
@@ -93,7 +93,7 @@ def keep_for_next(
 
 
 def _is_shareable(system: System) -> bool:
-    """Whether prolongations may be cached: no ring, no strain at rest and no contact laws of one's own."""
+    """Whether prolongations may be cached: no ring, no strain at rest, and no contact laws of its own."""
     return system.scene.ring is None and not system.scene.strained and not system.own_laws
 
 

@@ -17,10 +17,8 @@ from fcm.model.scene import FloatArray
 class CurvePiece(Frozen):
     """A piece of a curve: frequency (point,), compared quantities and their slopes (point, column).
 
-    The first columns are the amplitudes.
-
-    orientation (point,) times the sign of the rate of the frequency tells whether the number of real
-    multipliers above 1 is even.
+    The first columns are the amplitudes. orientation (point,) times the sign of the frequency's rate is the
+    parity: positive if the number of real multipliers above 1 is even.
     """
 
     curve: ReferenceCurveData
@@ -47,8 +45,7 @@ class CurvePiece(Frozen):
         target: FloatArray,
         number: npt.NDArray[np.intc] | None = None,
     ) -> FloatArray:
-        """Values (place, column) where the piece passes frequencies omega (place,), nearest to target (place,
-        dof).
+        """Values (place, column) nearest to target (place, dof) where the piece passes omega (place,).
 
         See `ReferenceCurveData.values_at_crossings`; without `number` every passing is considered.
         """
@@ -83,8 +80,8 @@ def piece_through(
 ) -> CurvePiece | None:
     """A curve piece through points with given arc lengths, frequencies, orientations and values.
 
-    All but the values are (point,), these (point, column). Of coincident points the first
-    is used. None if fewer than two remain.
+    The values are (point, column), the others (point,). Of coincident points the first is used. None if fewer
+    than two remain.
     """
     apart = np.append(True, np.diff(arc) > 0.0)
     if np.count_nonzero(apart) < 2:
@@ -103,9 +100,9 @@ def piece_through(
 def nearest(
     pieces: Iterable[CurvePiece], omega: FloatArray, parity: FloatArray, target: FloatArray
 ) -> FloatArray:
-    """Values (place, column) of the nearest motion among all pieces at frequencies omega (place,).
+    """Values (place, column) of the motion nearest to target (place, dof) at frequencies omega (place,).
 
-    The nearest to target values (place, dof) of the same parity, else of all; NaN where there is none.
+    Motions of the same parity are preferred, from all pieces; NaN where there is no motion.
     """
     known = tuple(pieces)
     found = _nearest(known, omega, parity, target)
@@ -118,7 +115,7 @@ def nearest(
 def _nearest(
     pieces: tuple[CurvePiece, ...], omega: FloatArray, parity: FloatArray, target: FloatArray
 ) -> FloatArray:
-    """Values (place, column) of the nearest motion of a parity; of any where that is zero."""
+    """Values (place, column) of the nearest motion of a parity; 0 admits any parity."""
     best, dofs = np.full((len(omega), pieces[0].value.shape[1]), np.nan), target.shape[1]
     omega, parity = np.ascontiguousarray(omega), np.ascontiguousarray(parity)
     target = np.ascontiguousarray(target)
@@ -147,7 +144,7 @@ def rates(values: FloatArray, arc: FloatArray) -> FloatArray:
 
 
 def distinct(arc: FloatArray, near: float) -> npt.NDArray[np.intp]:
-    """Indices of the arc lengths, in order, that lie farther than `near` behind the last one taken.
+    """Indices of the arc lengths, in order, that are more than `near` beyond the last one taken.
 
     >>> distinct(np.array([0.0, 0.1, 0.4, 0.6]), 0.3).tolist()
     [0, 2]

@@ -1,7 +1,7 @@
-"""Follows the reference along stretches of a curve beside which no point of it lies normal to the curve.
+"""Follow the reference along stretches of a curve whose normal planes contain no point of it nearby.
 
-Where a corner or a pair of folds has moved, Newton's method in the normal plane diverges. But it does on both
-sides, and from one of them the reference can be followed to the other.
+Where a corner or a pair of folds has moved, Newton's method in the normal plane diverges. It converges on
+both sides of the stretch, and the reference is followed from one side to the other.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class BudgetSpentError(Exception):
 
 
 class ReferencePiece(Frozen):
-    """A piece of the reference followed from one end of a stretch; `reached_end`: up to the other."""
+    """A piece of the reference followed from one end of a stretch; `reached_end`: whether up to the other."""
 
     path: Path
     quantities: ReportedQuantities
@@ -41,7 +41,7 @@ class ReferencePiece(Frozen):
 
     @property
     def whole(self) -> bool:
-        """Whether the piece ends at an end of the reference or stretch, not by interruption or stalling."""
+        """Whether the piece ends at an end of the reference or of the stretch, not interrupted or stalled."""
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
 
     @cached_property
@@ -50,7 +50,7 @@ class ReferencePiece(Frozen):
         return lengths(self.path)
 
     def passes(self, frequency: FloatArray) -> bool:
-        """Whether the piece shares frequencies with a range from the least to the greatest of the given ones.
+        """Whether the piece shares frequencies with the range of the given ones.
 
         A piece that shares none leads away from the stretch.
         """
@@ -89,8 +89,8 @@ class StretchFollower:
     def between(self, first: int, last: int, found: FloatArray) -> list[ReferencePiece]:
         """Pieces of the reference between points first and last of the curve, which may lie beyond its ends.
 
-        One piece that leads from one to the other, or what hangs on both as far as that stays near the
-        stretch, and as the work allows. found (point, unknown + 1): where it was found; NaN elsewhere.
+        The result is one piece that joins both, or a piece from each, as far as it stays near the stretch and
+        the work allows. found (point, unknown + 1) is the reference where it was found; NaN elsewhere.
         """
         if self.budget.seconds <= 0.0:
             return []
@@ -106,7 +106,7 @@ class StretchFollower:
         if first < 0 and before is None and not _any_passes(pieces, own):
             pieces += self._towards(own, found)
         if first < 0 and before is None and not _any_passes(pieces, own):
-            before = self._nearest_passed(0, True)  # the level takes more than the reference from an end
+            before = self._nearest_passed(0, True)  # the level costs more than following from an end
             pieces += self._from_ends(before, None)
         if before is None and behind is None and not _any_passes(pieces, own):
             pieces += self._from_ends(None, self._same_parity(last - 1))
@@ -127,7 +127,7 @@ class StretchFollower:
         return pieces
 
     def _towards(self, frequency: FloatArray, found: FloatArray) -> list[ReferencePiece]:
-        """A piece followed towards a stretch's frequencies from the found motion nearest to them.
+        """Follow a piece towards a stretch's frequencies from the found motion nearest to them.
 
         Empty if a found motion already lies within these frequencies.
         """
@@ -144,8 +144,7 @@ class StretchFollower:
     def start(self, i: int, by_level: bool) -> FloatArray | None:
         """A motion of the reference at the frequency of point i; None if the work allowed finds none.
 
-        It is the one that Newton's method finds from the motion there, or one that the level of the forces
-        passes.
+        It is found by Newton's method from that point, or by_level on the curve of the force level.
         """
         before = self.prolongation.newton.evaluations
         begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
@@ -165,10 +164,10 @@ class StretchFollower:
         return ReferencePiece(path, reported_quantities(self.finer, path), False)
 
     def _end(self, places: Iterable[int], found: FloatArray) -> StretchEnd | None:
-        """The end of a stretch at the first of some points from which the reference is found; None if there
-        is none.
+        """The end of a stretch at the first of some points from which the reference is found, or None.
 
-        Of many contacts that was from beside another, and may not be found from the point alone.
+        The predictor starts from a known motion of the reference: with many contacts, the point alone may not
+        be enough.
         """
         for i in places:
             if not 0 <= i < len(self.curve.z):
@@ -187,15 +186,14 @@ class StretchFollower:
     def _same_parity(self, i: int) -> StretchEnd | None:
         """The reference's motion at the frequency of point i.
 
-        It comes from Newton's method, else from the level of the forces with the parity of the point.
+        It comes from Newton's method, else from the curve of the force level, with the parity of the point.
         """
         return self._same_frequency(i) or self._nearest_passed(i, True)
 
     def _nearest_passed(self, i: int, same_parity: bool) -> StretchEnd | None:
-        """The nearest motion at the frequency of point i that the level of the forces passes; None if there
-        is none.
+        """The nearest motion at the frequency of point i on the curve of the force level, or None.
 
-        With `same_parity` only motions count whose number of real multipliers above 1 has the parity of the
+        With `same_parity`, only motions count whose number of real multipliers above 1 has the parity of the
         point.
         """
         prolongation, curve = self.prolongation, self.curve
@@ -215,7 +213,7 @@ class StretchFollower:
         return None
 
     def _passed(self, omega: float) -> tuple[FloatArray, ...]:
-        """The motions that the level of the forces passes at a frequency, as far as the budget allows."""
+        """The motions at level 1 on the curve of the force level at a frequency; empty beyond the budget."""
         work, before = self.finer.work, self.finer.work.seconds
         try:
             with work.limited_to(before + max(self.budget.seconds, 0.0)):
@@ -232,7 +230,7 @@ class StretchFollower:
         return StretchEnd(i, np.array(newton.z), np.array(self.prolongation.found[1:]), rises)
 
     def _span(self, before: StretchEnd | None, behind: StretchEnd | None) -> tuple[float, float]:
-        """Frequency range in which a stretch is followed, with a margin as folds may have moved."""
+        """Frequency range in which a stretch is followed, with a margin, as folds may have moved."""
         ends = [end for end in (before, behind) if end]
         first = before.number if before else 0
         last = behind.number if behind else len(self.curve.z) - 1
@@ -262,7 +260,7 @@ class StretchFollower:
         return ReferencePiece(path, reported_quantities(self.finer, path), reached)
 
     def _is_at(self, path: Path, end: StretchEnd) -> bool:
-        """Whether a path ends at a given end of the stretch, and not at another motion of that frequency."""
+        """Whether a path ends at a given end of the stretch, not at another motion of that frequency."""
         last = slice(len(path.z) - 1, len(path.z))
         amplitude = reported_quantities(self.finer, _part(path, last)).amplitude[0]
         off = np.abs(amplitude - end.amplitude).max(initial=0.0)
@@ -305,7 +303,7 @@ class StretchFollower:
 
 
 def _any_passes(pieces: Sequence[ReferencePiece], frequency: FloatArray) -> bool:
-    """Whether any whole piece has frequencies of a stretch."""
+    """Whether any whole piece passes frequencies of a stretch."""
     return any(piece.whole and piece.passes(frequency) for piece in pieces)
 
 

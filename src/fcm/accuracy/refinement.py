@@ -1,4 +1,4 @@
-"""Adds harmonics until a response reaches an accuracy: trace, compare with the reference, add, repeat."""
+"""Add harmonics until a response reaches an accuracy: trace, compare with the reference, add, repeat."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
-# what has been traced, by how much its reference changes it (NaN: unknown), and the harmonics that come next
+# called with the traced response, its change by the reference (NaN: unknown), and the next harmonics
 OnTraced = Callable[[UncheckedResponse, float, tuple[int, ...]], None]
 
 
 class RefinedResponse(UncheckedResponse):
     """A response with its estimated errors and the accuracy that was asked for.
 
-    errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
-    amplitude over all of them; max_error the greatest of these and of the errors of the folds, NaN where
-    one is unknown, and max_known_error the greatest of those that are known. further: the harmonics that
-    would do more but take too long, if any; begun: whether that was seen only when they had been begun.
+    errors (path,) are those of the branches' paths. peak (dof,) is the relative error of the greatest
+    amplitude over all paths. max_error is the greatest error of peaks and folds, NaN if one is unknown;
+    max_known_error is the greatest of the known ones. further: larger set of harmonics that would be needed,
+    but takes too long, if any. begun: whether tracing with these had begun when it was given up.
     """
 
     errors: tuple[PathErrors, ...]
@@ -105,13 +105,15 @@ def refined_response(
 ) -> RefinedResponse:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
-    All is traced again, with the harmonics added that the spectrum names, until no peak of a degree of
-    freedom, and no fold, differs from the reference's by more than the accuracy (relative). Starts are the
-    solutions with more harmonics near the branches traced before, and near their stable peaks. The level of
-    the forces is followed only with as many harmonics as are predicted to be enough; it may lead to branches
-    that fewer harmonics do not have. What would take longer in all than `WorkOptions` allows is not begun,
-    and what does take longer is given up. Whether the branches are complete is another question, see their
-    status. What has been traced goes to on_traced, before more is.
+    Everything is traced again with the harmonics that the spectrum names, until no peak of a degree of
+    freedom, and no fold, differs from the reference's by more than the accuracy (relative). Tracing starts
+    from solutions with more harmonics near the branches traced before, and near their stable peaks. The force
+    level is followed only with the harmonics that are predicted to be enough; it may lead to branches that
+    fewer harmonics do not have.
+
+    A round that would exceed the total time of `WorkOptions` is not begun, and one that does exceed it is
+    given up. The status of the branches tells whether they are complete. Each traced response is passed to
+    on_traced before the next round.
     """
     found: UncheckedResponse = unchecked_response(system, progress)
     if on_traced is not None and found.quantities:
@@ -143,15 +145,15 @@ def refined_response(
         found = found.with_levels()
     many = len(system.scene.contacts) >= PAIR.many_contacts
     if checked is None or (many and not checked.agrees):
-        # nothing is traced again: the pair of many contacts is for the errors alone, as of given harmonics
+        # nothing is traced again: the pair of many contacts only gives the errors, as with given harmonics
         checked = with_errors(found, accuracy, options=OF_GIVEN if many else None)
     return replace(checked, further=further, begun=begun)
 
 
 def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
-    """The response traced again with more harmonics.
+    """Trace the response again with more harmonics.
 
-    None where no solution is found, or where all would take longer than `WorkOptions` allows.
+    None if no solution is found, or if all would take longer than `WorkOptions` allows.
     """
     work = found.system.work
     if work.seconds + found.seconds_with(harmonics) > found.system.options.work.max_seconds:
@@ -174,9 +176,9 @@ def unchecked_with_given_harmonics(
 ) -> UncheckedResponse:
     """The response with the harmonics of the system, without errors.
 
-    It is traced with one of them first, then with those that tell how far the level of all is to be followed,
-    then with half. Solutions with more harmonics beside the stable peaks are starts, too, as the level of the
-    forces may not lead to them. A branch that is isolated with three harmonics may be connected with the
+    It is traced first with one of them, then with the few that tell how far to follow the force level with
+    all, then with half of them. Solutions with more harmonics beside the stable peaks are starts, too, as the
+    force level may not lead to them. A branch that is isolated with three harmonics may be connected with the
     others with one.
     """
     counts = sorted({1, few_harmonics(system), max(len(system.harmonics) // 2, few_harmonics(system))})
@@ -204,7 +206,7 @@ def _after(
     progress: Progress | None = None,
     peaks: tuple[FoundPeak, ...] = (),
 ) -> UncheckedResponse:
-    """The response of a system, started from the response with fewer harmonics if there is one."""
+    """Trace the response of a system, started from that with fewer harmonics if there is one."""
     if before is None:
         return unchecked_response(system, progress)
     near = prolongated_solutions(before, system.harmonics)
@@ -219,7 +221,7 @@ def with_errors(
 ) -> RefinedResponse:
     """A response with its errors; those of its first branches may be given as `known`.
 
-    Without an accuracy, which is infinite then, its harmonics are given.
+    An infinite accuracy means that the harmonics are given, not chosen by an accuracy.
     """
     outline.system.work.tell("its errors")
     options = options or (OF_GIVEN if np.isinf(accuracy) else PAIR)
@@ -256,7 +258,7 @@ def without_errors(outline: UncheckedResponse) -> RefinedResponse:
 def _peaks(heights: FloatArray, errors: tuple[PathErrors, ...], options: PairOptions) -> FloatArray:
     """Relative errors (dof,) of the greatest of heights (path, dof) over all paths.
 
-    Another path may be the highest of the reference's; unknown where that of one nearly as high is.
+    The reference may be highest on another path. An error is unknown if that of a path nearly as high is.
     """
     which, d = heights.argmax(axis=0), np.arange(heights.shape[1])
     now = heights[which, d]
@@ -269,7 +271,7 @@ def _peaks(heights: FloatArray, errors: tuple[PathErrors, ...], options: PairOpt
 
 
 def has_unknown_rival(known: FloatArray, heights: FloatArray, options: PairOptions) -> Mask:
-    """Whether what is known (path, ...) of a path nearly as high as the highest is NaN."""
+    """Whether a value of known (path, ...) is NaN on a path nearly as high as the highest."""
     rivals = heights > options.rival_fraction * heights.max(axis=0)
     found: Mask = (np.isnan(known) & rivals).any(axis=0)
     return found
@@ -278,7 +280,7 @@ def has_unknown_rival(known: FloatArray, heights: FloatArray, options: PairOptio
 def enlarged(found: RefinedResponse, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:
     """The harmonics of a response together with those that the spectrum requires for the accuracy.
 
-    No more are added than can be followed in some seconds.
+    No more are added than can be followed in the given seconds.
     """
     has, required = found.system.harmonics, required_harmonics(found)
     if np.isfinite(found.max_error):

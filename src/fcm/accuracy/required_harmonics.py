@@ -1,8 +1,8 @@
 r"""Harmonics that an accuracy requires, from the spectrum of the exact forces and the receptance.
 
-The peaks and folds of a curve are displaced to its reference. There every harmonic has, or would have without
-feedback, |G(h omega) F_h| of the amplitude. What those that the curve lacks do together is more, as
-they change one another: by the gain, which the pair tells,
+The peaks and folds of a curve are displaced to its reference. There the share of each harmonic, without
+feedback, is |G(h omega) F_h| relative to the amplitude. Together the missing harmonics change the motion more
+than the sum of their shares, as they act on one another. The pair gives this gain:
 
     gain = change / sum of the shares of the reference's further harmonics
 """
@@ -29,12 +29,10 @@ from fcm.scene.options import LIMITS
 
 
 class RequiredHarmonics(Frozen):
-    """What the reference tells of the harmonics that a response lacks.
+    """The harmonics that a response lacks, judged by its reference.
 
-    change: greatest relative change of a peak or fold by the reference, of those that are known.
-
-    is_known: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. reference:
-    its harmonics.
+    change: greatest known relative change of a peak or fold by the reference. is_known: whether it is known
+    for all peaks. share (harmonic,): greatest share of each harmonic. reference: harmonics of the reference.
     """
 
     change: float
@@ -44,9 +42,9 @@ class RequiredHarmonics(Frozen):
 
 
 class _SpecialPoint(Frozen):
-    """A peak or fold, with the points of a path at which the reference is looked for in turn.
+    """A peak or fold, with the points of a path (tries) at which the reference is sought in turn.
 
-    With them, which of the frequency and the amplitudes (1 + dof,) count there.
+    counts (1 + dof,) marks which of the frequency and the amplitudes count there.
     """
 
     path: Path
@@ -58,7 +56,7 @@ class _SpecialPoint(Frozen):
 def dofs_of_interest(scene: Scene, height: FloatArray, options: RefinementOptions = REFINEMENT) -> Mask:
     """Mask (dof,) of the degrees of freedom whose greatest amplitudes (`height`) must reach the accuracy.
 
-    Those of `output` where the scene has it, else all in the results; not those that hardly move beside them.
+    These are those of `output` if the scene has it, else all in the results, without those that hardly move.
     """
     asked = np.array([scene.asks_for(dof) for dof in scene.modal.dofs])
     moves: Mask = height > options.min_amplitude * height[asked].max(initial=0.0)
@@ -93,7 +91,7 @@ def required_harmonics(
         of_reference = _greatest_shares(finer, np.array(motions), size, ())
         share = (
             of_reference if is_known else np.maximum(share, of_reference)
-        )  # where a peak is missed its own spectrum names
+        )  # if a peak is missed, the curve's own spectrum counts, too
     return RequiredHarmonics(change, is_known, share, more)
 
 
@@ -131,9 +129,8 @@ def _places(
 ) -> list[_SpecialPoint]:
     """The special points of all paths: tops nearly as high as height (dof,), and folds.
 
-    The height is infinite for a degree of freedom that does not count.
-
-    Of tops that lie closely together, as those of many degrees of freedom do, the first stands for all.
+    The height is infinite for a degree of freedom that does not count. If tops lie close together, as those
+    of many degrees of freedom do, the first stands for all.
     """
     found, dofs = [], len(height)
     for path, amplitude in zip(paths, amplitudes, strict=True):

@@ -1,8 +1,8 @@
 r"""Errors of the frequencies at which stability is lost, against a balance with more harmonics.
 
-Places of the curve around a crossing are displaced to the curve of the balance with those further harmonics
-that would change it most. The crossing of more harmonics is where the growth of disturbances changes its sign
-on that curve.
+Places of the curve around a crossing are displaced to the curve of a balance with the further harmonics that
+would change it most. The growth of disturbances changes its sign on that curve at the crossing of more
+harmonics.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class StabilityLimit(Frozen):
 def stability_limits(
     system: System, path: Path, crossings: Sequence[MultiplierCrossing], accuracy: float = 0.0
 ) -> list[StabilityLimit]:
-    """Errors of the crossings of a path; each need only be known to the accuracy."""
+    """Errors of the crossings of a path, computed no more precisely than the accuracy needs."""
     known: dict[tuple[int, ...], _ReferenceGrowth] = {}
     found = [_lost(system, path, one, accuracy, known) for one in crossings]
     for more, beside in known.items():
@@ -52,8 +52,7 @@ def stability_limits(
 
 
 def distances_from(lost: Sequence[StabilityLimit], fewer: Sequence[StabilityLimit]) -> list[StabilityLimit]:
-    """Crossings whose unknown errors are replaced by the distance to the same crossing with fewer
-    harmonics."""
+    """The crossings; unknown errors become the distance to the same crossing with fewer harmonics."""
     return [_moved(one, lost, fewer) if math.isnan(one.error) else one for one in lost]
 
 
@@ -101,13 +100,13 @@ class _ReferenceGrowth:
     def __init__(self, finer: System, path: Path, prolongation: Prolongation, system: System) -> None:
         self.path, self.prolongation, self.balance = path, prolongation, system.new_balance()
         self.multipliers = multipliers_of(finer, float(path.parameter.max()))
-        self.frequency = math.nan  # of the place that was looked at last
+        self.frequency = math.nan  # of the last place
 
     def growth(self, place: float) -> float:
-        """Growth of disturbances on the curve with more harmonics beside a place; NaN where it is unknown.
+        """Growth of disturbances on the curve with more harmonics beside a place; NaN if unknown.
 
-        The finer motion of so many harmonics tells it: to balance its own as well would be expensive, and is
-        done only where it does not tell.
+        The finer motion of so many harmonics is accurate enough. Its further harmonics are balanced, which is
+        expensive, only if it gives no growth.
         """
         k = min(int(place), len(self.path.z) - 2)
         z, direction = self.path.z[k], self.path.direction[k]
@@ -125,11 +124,11 @@ class _ReferenceGrowth:
         return max(growth, STABILITY_LIMITS.min_growth)
 
     def crossing(self, one: MultiplierCrossing, fine: float) -> float:
-        """Frequency at which the growth changes sign next to a crossing; NaN where it is not found.
+        """Frequency at which the growth changes sign next to a crossing; NaN if it is not found.
 
-        It is within `StabilityLimitOptions.tolerance`. The search also ends where two frequencies differ by
-        less than fine, relative, or by less than `StabilityLimitOptions.relative_tolerance` of their distance
-        from the crossing.
+        It is located to `StabilityLimitOptions.tolerance`. The search also ends when two successive
+        frequencies differ by less than fine (relative), or by less than
+        `StabilityLimitOptions.relative_tolerance` of their distance from the crossing.
         """
         near = self._enclosed(one.place)
         if near is None:
@@ -151,7 +150,7 @@ class _ReferenceGrowth:
         return self.frequency if not math.isnan(value) else math.nan
 
     def _enclosed(self, place: float) -> SignChange | None:
-        """A bracket of the growth's sign change nearest to a place, sought on both sides; or None.
+        """Bracket the growth's sign change nearest to a place, on either side of it.
 
         None if there is none up to where the growth is unknown, or up to the greatest distance.
         """

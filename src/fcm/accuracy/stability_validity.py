@@ -26,11 +26,11 @@ def unreliable_points(
     Parameters
     ----------
     frequency, stable, fold : array (point,)
-        fold is whether a point is one.
+        Frequencies, stability, and whether a point is a fold.
     truncations : sequence of array (point,)
         Estimated errors of each branch, NaN where there is none.
     options : ValidityOptions, optional
-        Up to which errors a solution is called stable.
+        Errors up to which a solution is called stable.
     """
     truncation = np.concatenate(truncations)
     lost = np.concatenate([on_other_branch(one, options) for one in truncations])
@@ -42,7 +42,7 @@ def unreliable_points(
 def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY) -> Mask:
     """Mask (point,) of long stretches on which the reference was not found.
 
-    There a branch tells nothing of the exact motion.
+    There a branch says nothing about the exact motion.
     """
     far = np.zeros(len(truncation), dtype=np.bool_)
     for first, end in runs(np.isnan(truncation)):
@@ -53,9 +53,9 @@ def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY)
 def without_neighbour(
     truncation: FloatArray, is_same_curve: Mask, options: ValidityOptions = VALIDITY
 ) -> Mask:
-    """Mask (point,) of points beside which no motion with more harmonics was found.
+    """Mask (point,) of points that have no motion with more harmonics near them.
 
-    truncation: how far they are from the reference's curve, or from its nearest motion, relative.
+    truncation is their relative distance from the reference's curve, or from its nearest motion.
     """
     far: Mask = ~is_same_curve & (truncation > options.max_change)
     return far
@@ -64,10 +64,10 @@ def without_neighbour(
 def _without_error(
     frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask, options: ValidityOptions
 ) -> Mask:
-    """Mask (point,) of stretches without a known error, which marches in time often leave.
+    """Mask (point,) of stretches without a known error, which time integration often leaves.
 
-    Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
-    is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
+    A fold has no error either: a stretch at a fold is not marked if its stable part is narrow. A single point
+    with a small error, as at a corner, does not split a stretch.
     """
     found, unknown = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
     unknown[1:-1] |= unknown[:-2] & unknown[2:] & (truncation[1:-1] <= options.max_error)

@@ -1,8 +1,8 @@
 r"""Changes that the harmonics beyond the reference would still make to one of its motions, without feedback.
 
-Each is the coefficient of the exact forces times the receptance, as in `residual_spectrum`; all of them
-together are added to the motion, whose half peak-to-peak displacement then differs. Far below some
-modes these are met by harmonics so high that no balance has them.
+Each harmonic is the coefficient of the exact forces times the receptance, as in `residual_spectrum`. All are
+added to the motion, and change its half peak-to-peak displacement. If the frequency is far below some modes,
+only harmonics higher than those of any balance meet these.
 """
 
 from __future__ import annotations
@@ -19,11 +19,10 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 def changes_left_out(system: System, balance: Balance, z: FloatArray, options: PairOptions) -> FloatArray:
-    """Changes (dof,) of the amplitudes of a motion z (unknown + 1,) by the harmonics that a balance leaves
-    out.
+    """Changes (dof,) of the amplitudes of a motion z (unknown + 1,) by the harmonics that a balance lacks.
 
-    Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
-    and degrees of freedom only as far as the options allow.
+    They are zero if no mode is met beyond its harmonics, and for a ring. With many modes and degrees of
+    freedom, harmonics count only as far as the options allow.
     """
     last = _highest_harmonic(system, float(z[-1]), options)
     others = tuple(h for h in range(1, last + 1) if h not in system.harmonics)
@@ -47,7 +46,7 @@ def _highest_harmonic(system: System, omega: float, options: PairOptions) -> int
     if system.scene.ring is not None or not linear.natural.size:
         return 0
     each = linear.natural.size * (linear.ports.shape[1] + linear.dofs.shape[1])
-    # the same for many frequencies, so that they share a kernel
+    # a power of 2, the same for many frequencies, so that they share a kernel
     wide = 2.0 ** np.ceil(np.log2(max(options.residual_factor * linear.natural.max() / omega, 1.0)))
     return int(min(wide, options.max_residual_harmonic, options.max_products / each))
 

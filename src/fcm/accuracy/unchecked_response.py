@@ -1,7 +1,7 @@
-"""A response without its errors, and with more harmonics, within the time allowed.
+"""A response without its errors, and the same with more harmonics, within the time allowed.
 
-To see which harmonics it takes the branches will do that those of fewer lead to. The levels of the forces,
-which take about as long as these, are followed at last, with the harmonics that are enough
+While harmonics are chosen, only the branches near those of fewer harmonics are followed. The force levels
+take about as long as these. They are followed at the end, with the harmonics that are enough
 (`UncheckedResponse.with_levels`).
 """
 
@@ -30,10 +30,10 @@ from fcm.model.scene import FloatArray
 
 
 class UncheckedResponse(Frozen):
-    """A response whose errors are not known yet; `quantities` (path,) belongs to the paths of its branches.
+    """A response whose errors are not known yet; `quantities` (path,) are those of its branches' paths.
 
-    seconds: about what following its levels and branches took. before: the response of fewer harmonics that
-    its branches come of, as long as no level was followed with its own, see `with_levels`.
+    seconds: approximate time for following its levels and branches. before: the response with fewer harmonics
+    from which its branches come, until a level is followed with its own, see `with_levels`.
     """
 
     system: System
@@ -69,7 +69,7 @@ class UncheckedResponse(Frozen):
     ) -> tuple[int, ...]:
         """`more` without its highest new harmonics, so that following takes at most the given seconds.
 
-        The lowest stay: a branch of one harmonic may be of no motion at all.
+        The lowest stay: a branch of one harmonic may not belong to any motion.
         """
         least = {*self.system.harmonics, *range(1, options.complete_harmonics + 1)}
         while self.seconds_with(more) > seconds and not least.issuperset(more):
@@ -82,14 +82,14 @@ class UncheckedResponse(Frozen):
     ) -> UncheckedResponse:
         """The response with more harmonics, from its own branches and from the solutions `near`.
 
-        Where these lead to no branch, the level of the forces is followed.
+        If these lead to no branch, the force level is followed.
         """
         system = self.system.with_harmonics(harmonics)
         begin = system.work.seconds
         response = traced_from(system, self.traced, near, progress)
         if response is None or not response.branches.paths:
             return unchecked_response(system, progress, self.traced.found, near, self.traced.peaks)
-        levels = self._seconds_with(self.traced.work, harmonics)  # are still to be followed
+        levels = self._seconds_with(self.traced.work, harmonics)  # for the levels, still to be followed
         response, seconds = replace(response, work=levels), system.work.seconds - begin + levels
         return UncheckedResponse(
             system, response, _shown(system, response.branches.paths), seconds, before=self
@@ -110,7 +110,7 @@ class UncheckedResponse(Frozen):
         return UncheckedResponse(self.system, response, quantities, self.seconds)
 
     def of_thinned(self, values: Sequence[FloatArray], most: int) -> list[FloatArray]:
-        """Values (path, point) at the points that the response keeps when it is thinned to about `most`."""
+        """Values (path, point) at the points that the response keeps if it is thinned to about `most`."""
         if points_of(self) <= most:
             return list(values)
         return [one[rows] for one, rows in zip(values, self._rows(most), strict=True)]
@@ -122,10 +122,10 @@ class UncheckedResponse(Frozen):
         return [path.representative(math.ceil(len(path.z) * most / count)) for path in paths]
 
     def with_levels(self, most: float | None = None) -> UncheckedResponse:
-        """The response with the branches that only the level of the forces leads to, with its own harmonics.
+        """The response with the branches to which only the force level leads, with its own harmonics.
 
-        If that takes more than `most` seconds in all, it is given up: then other branches may be missing.
-        `most` is by default that of the system's options.
+        If that takes more than `most` seconds in all, it is given up, and other branches may be missing. By
+        default, `most` is that of the system's options.
         """
         if self.before is None:
             return self
@@ -158,7 +158,7 @@ def unchecked_response(
     Raises
     ------
     ResponseInterrupted
-        With the branches up to there, where a `KeyboardInterrupt` comes when there is a part of one.
+        On a `KeyboardInterrupt`, if there is a part of a branch; it has the branches up to there.
     """
     before = system.work.seconds
     try:
@@ -190,11 +190,11 @@ def with_more(
     progress: Progress | None = None,
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[UncheckedResponse | None, tuple[int, ...], bool]:
-    """The response with more harmonics, or None; then the harmonics that take too long, and whether tracing
-    had begun.
+    """Trace the response with more harmonics within the time allowed.
 
-    is_known tells whether these harmonics are known to bring the accuracy. Otherwise, or if they take too
-    long, only as many are added as are quick, at least the lowest three.
+    Returns the response, or None; the harmonics that take too long, if any; and whether tracing with these
+    had begun. is_known tells whether these harmonics are known to bring the accuracy. If not, or if they take
+    too long, only as many are added as are quick, at least the lowest three.
     """
     work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
     if not is_known or work.seconds + found.seconds_with(more) > most:
@@ -209,7 +209,7 @@ def with_more(
             then = found.prolongated(more, stable, progress)
     except WorkLimitError:
         return None, more, True
-    # where no solution was found the one of fewer harmonics, which says its error, stays
+    # if no solution is found, the response with fewer harmonics stays, with its error
     return (then if then.quantities else None), (), False
 
 
