@@ -1,15 +1,15 @@
 r"""Branch points of a traced branch, and the branches that leave it there.
 
-Along a branch closed by its own tangent t the determinant of
+Bordered by the branch's own tangent t, the determinant of
 
     [ dF/d(x, omega) ]
     [       t        ]
 
 changes its sign where a real eigenvalue passes zero without a fold: another branch crosses (Keller,
 "Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977; Allgower and Georg, chapter 8).
-The singular vector there leads to it: the solutions at a distance along that, across the branch, are looked
-for by Newton's method in a bordered system. A corner of the response may change the sign by a jump, and is
-treated alike.
+The singular vector there leads to that branch: Newton's method in a bordered system finds solutions at a
+distance along this vector, off the known branch. A corner of the response may change the sign by a jump; it
+is treated in the same way.
 """
 
 from __future__ import annotations
@@ -32,12 +32,15 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 Found = TypeVar("Found")
-Jacobian = Callable[[], FloatArray]  # (unknown, unknown + 1) of a problem as it was evaluated last
+Jacobian = Callable[[], FloatArray]  # (unknown, unknown + 1) of a problem at its last evaluation
 
 
 class BranchPoint(Frozen):
-    """z (unknown + 1,); starts: solutions on either side of the branch there, which lie on branches that
-    leave it; direction (unknown + 1,): in which they do, of any length."""
+    """A branch point z (unknown + 1,), and solutions on the branches that leave it.
+
+    starts: these solutions, on either side of the branch. direction (unknown + 1,): direction in which the
+    branches leave, of any length.
+    """
 
     z: FloatArray
     starts: tuple[FloatArray, ...]
@@ -45,7 +48,7 @@ class BranchPoint(Frozen):
 
 
 def branch_points(system: System, paths: Sequence[Path]) -> Iterator[BranchPoint]:
-    """The branch points of paths of a system."""
+    """Yield the branch points of paths of a system."""
     if any(sign_changes(path.orientation) for path in paths):
         balance = system.new_balance()
         yield from branch_points_of(balance, partial(jacobian_of, balance), paths, system.option(BRANCHING))
@@ -54,7 +57,7 @@ def branch_points(system: System, paths: Sequence[Path]) -> Iterator[BranchPoint
 def branch_points_of(
     problem: Problem, jacobian: Jacobian, paths: Sequence[Path], options: BranchingOptions = BRANCHING
 ) -> Iterator[BranchPoint]:
-    """The branch points of paths of a problem that other branches leave."""
+    """Yield the branch points of paths of a problem that other branches leave."""
     for path in paths:
         for i in sign_changes(path.orientation):
             point = branch_point_at(problem, jacobian, path, i, options)
@@ -69,9 +72,9 @@ def with_leaving(
     extended: Callable[[Found, BranchPoint], Found | None],
     options: BranchingOptions,
 ) -> Found:
-    """What was found, extended at each branch point of its paths, then of those that this adds, and so on.
+    """Extend what was found at each branch point of its paths, then at those of the new paths, and so on.
 
-    points: those of some paths. extended: None where nothing more is to be looked for.
+    points yields the branch points of given paths. extended returns None if the search is to end.
     """
     known, left = 0, options.max_starts
     for _ in range(options.max_rounds):
@@ -89,7 +92,7 @@ def with_leaving(
 
 
 def sign_changes(orientation: FloatArray) -> list[int]:
-    """The points before which, and after which, the determinant has another sign."""
+    """Indices i for which the determinant changes its sign between points i and i + 1."""
     return np.flatnonzero(orientation[:-1] * orientation[1:] < 0.0).tolist()
 
 
@@ -104,8 +107,7 @@ def branch_point_at(
 
 
 def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptions = BRANCHING) -> FloatArray:
-    """The place (unknown + 1,) between point i of a path and the next where the determinant of a problem
-    changes its sign."""
+    """The place (unknown + 1,) between points i and i + 1 of a path where the determinant changes sign."""
     between, before, low, high = Segment(problem, path, i), path.orientation[i], 0.0, 1.0
     between.find(low)
     z = between.z
@@ -119,8 +121,10 @@ def sign_change_at(problem: Problem, path: Path, i: int, options: BranchingOptio
 
 
 def _across(problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: int) -> FloatArray:
-    """The singular vector of a branch point that follows point i of a path, in scaled unknowns, across the
-    path. The path's direction is that of its chord: it has no one tangent there."""
+    """The singular vector, across the path, of a branch point after point i of a path, in scaled unknowns.
+
+    The chord gives the path's direction, as there is no unique tangent.
+    """
     problem.evaluate_scale(z)
     problem.evaluate(z)
     scale = np.array(problem.scale)
@@ -136,8 +140,7 @@ def _across(problem: Problem, jacobian: Jacobian, z: FloatArray, path: Path, i: 
 def _leaving(
     problem: Problem, z: FloatArray, across: FloatArray, path: Path, options: BranchingOptions
 ) -> Iterator[FloatArray]:
-    """Solutions on both sides of a branch point of a path, off the path, at the least distance at which there
-    are any."""
+    """Yield solutions on both sides of a branch point, off the path, at the first distance that has any."""
     scale, newton = np.array(problem.scale), Newton(problem)
     for distance in options.distances:
         found = list[FloatArray]()

@@ -1,16 +1,16 @@
-r"""Folds of the level of the forces, followed as curves in (frequency, level).
+r"""Folds of the force level, followed as curves in (frequency, level).
 
-At a fixed frequency the level of the forces turns back at folds; where the frequency varies these make
-curves, on which the test function g of `surface` is zero. Such a curve is followed by predictor and corrector
-on the surface of all solutions: the next place is the zero of g on an arc of a circle ahead. See Allgower and
-Georg, "Introduction to Numerical Continuation Methods", SIAM 2003, and Rheinboldt, Numer. Math. 53 (1988)
-165, for the local axes of a surface. Only the sign of g counts, so that no second derivatives are needed. A
-fold that lies in a corner of the solutions, where g jumps, is followed like any other.
+At a fixed frequency the force level turns back at folds. As the frequency varies, they form curves on which
+the test function g of `surface` is zero. Such a curve is followed by predictor and corrector on the surface
+of all solutions: the next place is the zero of g on an arc of a circle ahead. See Allgower and Georg,
+"Introduction to Numerical Continuation Methods", SIAM 2003, and Rheinboldt, Numer. Math. 53 (1988) 165, for
+the local axes of a surface. Only the sign of g counts, so that no second derivatives are needed. A fold in a
+corner of the solutions, where g jumps, is followed like any other.
 
-Cusps, where two folds meet, are ordinary places of such a curve. Where their curves touch on the surface, and
-the strip between them vanishes, the curve goes back on the other side of the strip. A place is found to a
-small part of the width of such a strip, and steps are short beside wider ones, so that the curve does not go
-over to another.
+Cusps, where two folds meet, are ordinary places of such a curve. Where two curves touch on the surface, and
+the strip between them vanishes, the curve turns back along the other side of the strip. Places are located to
+a small part of the width of such a strip, and steps are short beside wider ones, so that the curve does not
+jump to another.
 """
 
 from __future__ import annotations
@@ -48,8 +48,10 @@ class Folds(Frozen):
 
     @property
     def lost(self) -> list[float]:
-        """Frequencies [rad/s] of those ends from which the curve would go on; none where it is closed. If one
-        end comes back to the start and the other leaves what is looked at, the one has come to another curve.
+        """Frequencies [rad/s] of the ends at which the curve was lost; none if it is closed.
+
+        If one end comes back to the start, and the other leaves the range or levels, the former has jumped to
+        another curve, and is lost.
         """
         open_ends = {FoldCurveEnding.RANGE, FoldCurveEnding.LEVEL} & set(self.endings)
         if FoldCurveEnding.CLOSED in self.endings and not open_ends:
@@ -67,21 +69,21 @@ def folds_from(
     options: FoldOptions = FOLDS,
     paid: Callable[[], None] = lambda: None,
 ) -> Folds | None:
-    """The curve of folds through one, both ways; None where there is none near the start.
+    """Follow the curve of folds through a start both ways; None if there is none near the start.
 
     Parameters
     ----------
     surface : Surface
-        Of the balance.
+        Surface of the balance's solutions.
     start : (n + 2,)
         A fold.
     across : sequence of (n + 2,)
-        Directions of the surface across the curve there, as of the solutions at that frequency. The first is
-        taken along which solutions are found on both sides of the fold.
+        Directions of the surface across the curve there, such as those of the solutions at that frequency.
+        The first one is used from which the curve departs both ways.
     span : (low, high)
-        Of the frequency [rad/s].
+        Range of the frequency [rad/s].
     paid : callable
-        Called now and then.
+        Called from time to time, to charge the work.
     """
     follower = FoldSteps(surface, span, options, paid)
     for singular in across:

@@ -1,9 +1,9 @@
-r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
+r"""Solutions from which the branches of a response are traced, found by raising the force level from rest.
 
 The level is followed at both ends of the range, and at the resonances inside it of the structure with its
-contacts all stuck, as at rest, and all open. So it is in the middle of the widest interval between these, and
-in wide gaps through which a resonance moves. It goes from nearly 0 until it is well beyond every level at
-which a contact can change its sequence of states. Every passing of the level 1 is a solution.
+contacts all stuck, as at rest, and all open. It is also followed in the middle of the widest interval between
+these, and in wide gaps through which a resonance moves. Each curve goes from nearly 0 to well beyond every
+level at which a contact can change its sequence of states. Each crossing of the level 1 is a solution.
 """
 
 from __future__ import annotations
@@ -37,9 +37,10 @@ from fcm.model.scene import FloatArray
 
 
 class LevelSolutions(Frozen):
-    """Solutions at one frequency with some harmonics, z (unknown + 1,), and whether their level was followed
-    to its end, or back to its beginning; how far it is to be followed with more harmonics, infinite if that
-    is unknown; and where it turned.
+    """Solutions at one frequency with some harmonics, each (unknown + 1,), on the curve of the level.
+
+    complete: whether that curve was followed to its end, or back to its beginning. max_level: level up to
+    which it is to be followed with more harmonics, infinite if unknown. folds: where the level turns back.
     """
 
     omega: float
@@ -53,7 +54,7 @@ class LevelSolutions(Frozen):
 class LevelReachOptions(Frozen):
     """Options on how far the level of the forces is followed with many contacts.
 
-    Of these there always is one that slips or opens only far above 1.
+    One of many contacts always slips or opens only far above the level 1.
 
     Attributes
     ----------
@@ -62,18 +63,18 @@ class LevelReachOptions(Frozen):
     max_level : float
         Level up to which the curve is followed.
     max_level_without_fold : float
-        Level up to which it is followed where it has not turned back until then.
+        Level up to which it is followed if it has not turned back until then.
     max_reversal : float
-        Relative fall of its level up to which a curve does not count as turned back. A contact that begins to
-        slip in a plane turns its mean displacement as a root, which turns the level back a little.
+        Relative fall of its level up to which a curve does not count as turned back. The mean displacement of
+        a contact that begins to slip in a plane changes like a root, which turns the level back a little.
     target_turn, target_miss, min_cosine, max_miss, tolerance : float
-        Options of the steps of a curve of which only the points at the level 1 matter, as of
+        Options of the steps of a curve of which only the points at the level 1 matter, as in
         `fcm.continuation.options`; and the tolerance of its other points.
     corner_tolerance : float
         Error of the place of a corner, relative to the step.
     beyond_fraction, min_seconds_beyond : float
-        Most work of the way beyond the level 1, relative to that of the way to it; and [s] work that it may
-        take in any case. A curve that is left there is not complete: it may come back to 1.
+        Most work beyond the level 1, relative to the work up to it; and [s] work that is allowed in any case.
+        A curve that is given up there is not complete: it may come back to 1.
     """
 
     min_contacts: int = 12
@@ -90,15 +91,15 @@ class LevelReachOptions(Frozen):
     min_seconds_beyond: float = 5.0
 
 
-LEVEL_REACH = LevelReachOptions()  # where nothing else is said
+LEVEL_REACH = LevelReachOptions()  # the defaults
 
 
 def solutions(system: System, omega: float, max_level: float | None = None) -> LevelSolutions:
     """All solutions at omega on the curve of the force level that begins at rest.
 
-    Far above 1 the curve of the level of many harmonics has many folds and corners, none of which matters if
-    it does not come back. That of fewer tells: it comes back about as far. max_level is what was found with
-    them; otherwise a few are taken for that.
+    With many harmonics, the curve has many folds and corners far above 1, which do not matter if it does not
+    come back. The curve of fewer harmonics shows how far it has to be followed. max_level is that result; if
+    it is not given, a few harmonics are followed first.
     """
     most, linear = (
         highest_linear_limit(system, omega),
@@ -120,14 +121,14 @@ def solutions(system: System, omega: float, max_level: float | None = None) -> L
 def solutions_at(
     system: System, frequencies: Sequence[float], fewer: Sequence[LevelSolutions] = ()
 ) -> tuple[LevelSolutions, ...]:
-    """Solutions at some frequencies; those of fewer harmonics tell how far the level is to be followed."""
+    """Solutions at some frequencies; those of fewer harmonics show how far the level is to be followed."""
     return tuple(solutions_in_turn(system, frequencies, fewer))
 
 
 def solutions_in_turn(
     system: System, frequencies: Sequence[float], fewer: Sequence[LevelSolutions] = ()
 ) -> Iterator[LevelSolutions]:
-    """Solutions at some frequencies, as `solutions_at`, each computed when it is asked for."""
+    """Yield the solutions of `solutions_at`, each computed when it is needed."""
     precompute(system, frequencies)
     max_levels = {one.omega: one.max_level for one in fewer if np.isfinite(one.max_level)}
     for k, omega in enumerate(frequencies, start=1):
@@ -160,22 +161,22 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
 
 
 def turned_back(path: Path, options: LevelReachOptions) -> bool:
-    """Whether a curve of the level turns back by more than where slip begins.
+    """Whether a curve of the level turns back by more than the onset of slip does.
 
-    That counts above a level as far below 1 as the curve was followed above it.
+    Only levels above 1 / `max_level_without_fold` count.
     """
     levels = path.parameter[path.parameter > 1.0 / options.max_level_without_fold]
     return bool((levels < (1.0 - options.max_reversal) * np.maximum.accumulate(levels)).any())
 
 
 def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
-    """Solutions from the curve that systems of other preloads share, up to a level; None if there is none."""
+    """Solutions from the curve shared by systems of other preloads, up to a level; None if there is none."""
     if not system.preload_unit or top >= LINEAR_LIMITS.max_level:
         return None
     path = shared_curve(system, omega, top / system.preload_unit, _without_user_points)
     if path is None:
         return None
-    system.work.add(seconds_of(system, path.evaluations, len(system.harmonics)))  # whoever followed it
+    system.work.add(seconds_of(system, path.evaluations, len(system.harmonics)))  # also of another
     found = solutions_at_level_one(system, path, omega)
     if found is None:
         return None
@@ -192,10 +193,10 @@ def _without_user_points(system: System, omega: float, top: float) -> Path:
 def _coarse_curve(
     system: System, omega: float, linear: float, top: float, user_values: tuple[float, ...]
 ) -> Path:
-    """The curve of the level by long steps, or by shorter ones where those fail.
+    """Follow the curve of the level by long steps, or by shorter ones if those fail.
 
-    They fail where they do not come to the end of the curve, and to its user points. Of a curve that goes
-    back on itself, or is too long, shorter steps tell no more.
+    Steps fail if they do not reach the end of the curve, and all its user points. Shorter steps do not help
+    if the curve goes back on itself, or is too long.
     """
     options = system.option(LEVEL_CURVE)
     for step, over_corners in ((options.max_step_user_points, True), (options.max_step, False)):
@@ -214,13 +215,13 @@ def _coarse_curve(
 
 
 def _skips_user_point(path: Path, user_values: tuple[float, ...]) -> bool:
-    """Whether a curve leads across one of its user values without a point there."""
+    """Whether a curve crosses one of its user values without a point there."""
     off = path.parameter - np.array(user_values)[:, None]
     return bool((off[:, :-1] * off[:, 1:] < 0.0).any())
 
 
 def few_harmonics(system: System) -> int:
-    """Number of harmonics that tell how far the level of more harmonics is to be followed."""
+    """Number of harmonics that show how far the level is to be followed with more."""
     layout, options = system.layout, system.option(LEVEL_CURVE)
     means, each = layout.directions, layout.stride
     return min(
@@ -229,13 +230,13 @@ def few_harmonics(system: System) -> int:
 
 
 def _max_level(system: System, status: Status, levels: FloatArray) -> float:
-    """Level up to which the curve of more harmonics is to be followed, or inf if a system does not tell."""
+    """Level up to which the curve of more harmonics is to be followed; inf if that is unknown."""
     if status is not Status.COMPLETE or len(system.harmonics) < few_harmonics(system):
         return np.inf
     options = system.option(LEVEL_CURVE)
     near = np.flatnonzero(levels < options.clear_level)
     most = float(levels[: near[-1] + 1].max()) if near.size else options.clear_level
-    return options.reach_factor * max(most, options.clear_level)  # however far apart the points are
+    return options.reach_factor * max(most, options.clear_level)  # at least that, if points are far apart
 
 
 class LevelRange(Frozen):
@@ -246,17 +247,17 @@ class LevelRange(Frozen):
     span : (float, float)
         Lowest and highest level.
     step : float
-        Longest step, as of `FollowOptions`.
+        Longest step, as in `FollowOptions`.
     user_values : tuple of float
-        Levels that are landed on.
+        Levels at which a point is computed.
     linear : float
         Level up to which the response is known to be linear.
     user_points_only : bool
-        Whether nothing but the user points matters, as of `FollowOptions`.
+        Whether nothing but the user points matters, as in `FollowOptions`.
     over_corners : bool
         Whether slight corners are stepped over.
     progress : callable, optional
-        Told the share of the span that is covered, now and then.
+        Called from time to time with the fraction of the span that is covered.
     """
 
     span: tuple[float, float]
@@ -317,13 +318,13 @@ def _follow_level(system: System, start: FloatArray, omega: float, levels: Level
 
 
 class _WayBeyond:
-    """End function of a curve of the level: 1 as long as it may be followed, then -1.
+    """End function of a curve of the level: 1 as long as it may be followed beyond the level 1, then -1.
 
-    See `LevelReachOptions`.
+    See `LevelReachOptions.beyond_fraction`.
     """
 
     def __init__(self, newton: Newton, each: float, options: LevelReachOptions) -> None:
-        """Begin to count the evaluations of newton, each of which takes `each` seconds of work."""
+        """Count the evaluations of newton, each of which takes `each` seconds of work."""
         self.newton, self.each, self.options = newton, each, options
         self.to_one: float | None = None
 
@@ -338,16 +339,16 @@ class _WayBeyond:
 
 
 def _comes_back(path: Path, low: float) -> bool:
-    """Whether a curve that began above the lowest level has gone all its way back.
+    """Whether a curve that began above the lowest level has gone all the way back to it.
 
-    None does: where all is linear there is one solution.
+    No true curve does: where all is linear, there is only one solution.
     """
     levels = path.parameter
     return bool(levels.size and levels[0] > low and levels[-1] <= low)
 
 
 def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
-    """Solutions that Newton's method finds from linear responses, where no level could be followed."""
+    """Yield solutions that Newton's method finds from linear responses, if no level could be followed."""
     newton = Newton(system.new_balance())
     for x in linear_responses(system, omega, 1.0):
         found = solution_near(newton, np.append(x, omega))
@@ -367,11 +368,11 @@ def level_frequencies(system: System, peaks: Sequence[float] = ()) -> tuple[floa
 def frequencies_in_gaps(
     system: System, known: Sequence[float], peaks: Sequence[float] = ()
 ) -> Iterator[float]:
-    """Frequencies between those that are known, where these are far apart and a mode may resonate.
+    """Yield frequencies between the known ones, where these are far apart and a mode may resonate.
 
-    With its amplitude a resonance moves from where the contacts stick to where they are open. Where the level
-    is 1 on its way may be a closed branch. Levels that are followed far away from it tell nothing of it.
-    Where the response of fewer harmonics has a peak, that of more has it near there, and maybe isolated.
+    As its amplitude grows, a resonance moves from where the contacts stick to where they are open. A closed
+    branch may lie where the level is 1 on this way, and levels followed far from there do not show it. If the
+    response of fewer harmonics has a peak, that of more has one nearby, which may be isolated.
     """
     if len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
         return
@@ -402,9 +403,9 @@ def frequencies_in_gaps(
 def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple[int, ...]:
     """Harmonics of a system with the lowest added, if these find other solutions from rest.
 
-    found: where solutions were looked for with those of the system, and what was found. With one harmonic the
-    level of the forces may turn back just above 1, or not at all, where with three it turns just below 1.
-    Then its curve shows nothing of the further solutions, and its errors are those of another motion.
+    found: solutions with the system's harmonics, at all frequencies searched. With one harmonic the level of
+    the forces may turn back just above 1, or not at all, where with three it turns back just below 1. Its
+    curve then shows nothing of the further solutions, and its errors are those of another motion.
     """
     low = min(system.option(LEVEL_CURVE).reliable_harmonics, few_harmonics(system))
     few = tuple(sorted({*system.harmonics, *range(1, low + 1)}))
@@ -416,8 +417,10 @@ def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple
 
 
 def linear_resonances(system: System) -> list[float]:
-    """Natural frequencies within the range, with all contacts stuck, as at rest, and all open, in order; of
-    forces at other harmonics these divided by them."""
+    """Resonances within the range with all contacts stuck, as at rest, and all open, in order.
+
+    They are natural frequencies divided by each driven harmonic, with the small `resonance_offset`.
+    """
     low, high = system.scene.frequency_range
     stuck, found = system.springs(stuck=True), set[float]()
     offset = system.option(LEVEL_CURVE).resonance_offset

@@ -1,8 +1,8 @@
-"""Motions that slip beside one that sticks, found as friction is raised from none.
+"""Motions that slip beside one that sticks, found by raising friction from zero.
 
-Where friction presses its own contact together it may wedge it. Then a motion that sticks, by the friction
-that slip has left, exists beside one that slips, and no level of the forces leads from one to the other. The
-motion without friction leads to the second, as all coefficients of friction are raised at once.
+Friction that presses its own contact together may wedge it. Then a motion that sticks, by the residual
+friction of earlier slip, exists beside one that slips, and no force level leads from one to the other. The
+motion without friction leads to the second one if all coefficients of friction are raised together.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fcm.model.scene import FloatArray
 
 
 class FrictionProblem(Problem):
-    """A balance at omega, followed in the part of their coefficients of friction that contacts have.
+    """A balance at omega, with a factor on all coefficients of friction as the parameter.
 
     >>> import fcm
     >>> from fcm.harmonic_balance.system import System
@@ -46,7 +46,7 @@ class FrictionProblem(Problem):
         self.z = np.append(np.zeros(balance.unknowns), omega)
 
     def _with_friction(self, z: FloatArray, part: float) -> FloatArray:
-        """The unknowns of the balance, whose contacts have that part of their coefficients."""
+        """Set the factor on the coefficients of friction, and return the unknowns of the balance."""
         self.z[:-1] = z[:-1]
         for law, (mu, *others) in zip(self.balance.laws, self.numbers, strict=True):
             law.set_parameters(part * mu, *others)
@@ -85,7 +85,7 @@ class FrictionProblem(Problem):
 
 
 def with_friction_raised(system: System, found: Traced) -> Traced:
-    """The branches with those to which raising the friction from none leads, where contacts shake down."""
+    """The branches with those to which raising friction from zero leads, if contacts shake down."""
     paths, scene = found.branches.paths, system.scene
     if not (paths and scene.contacts) or scene.strained or system.own_laws or not may_wedge(scene):
         return found

@@ -1,9 +1,9 @@
-r"""Isolated branches: they begin and end where a curve of folds crosses the level 1.
+r"""Isolated branches (isolas): they begin and end where a curve of folds crosses the level 1.
 
-Where the level of the forces turns back before 1 at a frequency, two solutions meet that the response at the
-level 1 does not have there. Along the curve of these folds in (frequency, level) the level may come to 1;
-from there on the response has the two solutions, and the crossing is a fold of their branch. What turns
-beyond 1 lies between two solutions of the response at that frequency, whose branches are followed anyhow.
+Where the force level turns back before 1 at a frequency, two solutions meet that the response at the level 1
+does not have there. Along the curve of these folds in (frequency, level), the level may come to 1. From there
+on the response has both solutions, and the crossing is a fold of their branch. A fold beyond 1 lies between
+two solutions of the response at that frequency, whose branches are followed anyway.
 """
 
 from __future__ import annotations
@@ -29,9 +29,11 @@ from fcm.model.scene import FloatArray
 
 
 class LevelOneCrossings(Frozen):
-    """Solutions (unknown + 1,) beside the folds at the level 1 that curves of folds come to; and the
-    frequencies [rad/s] from where folds were not followed as far as they are looked at, so that others may be
-    missing."""
+    """Solutions at which curves of folds cross the level 1, each (unknown + 1,).
+
+    uncertain: frequencies [rad/s] at which curves of folds were lost or not followed, so that other solutions
+    may be missing.
+    """
 
     solutions: tuple[FloatArray, ...]
     uncertain: tuple[float, ...]
@@ -40,17 +42,17 @@ class LevelOneCrossings(Frozen):
 def level_one_crossings(
     system: System, found: Sequence[LevelSolutions], paths: tuple[Path, ...]
 ) -> LevelOneCrossings:
-    """Passings of the level 1 by curves of folds that lie on none of some paths.
+    """Crossings of the level 1 by curves of folds that lie on no known path.
 
     Parameters
     ----------
     system : System
-        Whose level was followed; with many harmonics the folds are followed with a few of them if these have
-        such folds, and what they come to is led to all.
+        System whose level was followed. With many harmonics, the folds are followed with a few of them if
+        these have such folds, and the crossings are prolongated to all.
     found : sequence of LevelSolutions
-        At which frequencies, and where it turned.
+        Frequencies at which the level was followed, and where it turned back.
     paths : tuple of Path
-        The branches that are known.
+        The known branches.
     """
     options, span = system.option(FOLDS), system.scene.frequency_range
     solutions, curves = list[FloatArray](), _Curves(system, found, options)
@@ -63,7 +65,7 @@ def level_one_crossings(
                     if span[0] <= z[-1] <= span[1] and not known:
                         solutions.append(z)
     except WorkLimitError:
-        pass  # the folds from where none was followed are left
+        pass  # the folds that are left count as uncertain
     return LevelOneCrossings(tuple(solutions), tuple(dict.fromkeys(curves.uncertain)))
 
 
@@ -76,7 +78,7 @@ def folds_to_follow(system: System, found: Sequence[LevelSolutions]) -> tuple[fl
 def _begun(
     found: Sequence[LevelSolutions], options: FoldOptions
 ) -> Iterator[tuple[LevelFold, tuple[int, ...]]]:
-    """The folds from which curves are followed, with the harmonics that each was found with."""
+    """Yield the folds from which curves are followed, with the harmonics with which each was found."""
     for one in found:
         yield from (
             (turn, one.harmonics) for turn in one.folds if turn.unfinished and options.covers(turn.level)
@@ -84,10 +86,10 @@ def _begun(
 
 
 class _Curves:
-    """The solutions at the crossings of the level 1 by each curve of folds, which is followed once.
+    """Iterates over curves of folds, and yields the solutions at which they cross the level 1.
 
-    It is followed with a few harmonics. Where these do not have the fold, or a crossing does not lead to a
-    solution with all, it is followed with more, up to those that the fold was found with.
+    Each curve is followed once, with a few harmonics first. If these do not have the fold, or a crossing does
+    not lead to a solution with all, more are used, up to those with which the fold was found.
     """
 
     def __init__(self, system: System, found: Sequence[LevelSolutions], options: FoldOptions) -> None:
@@ -98,7 +100,7 @@ class _Curves:
 
     @property
     def uncertain(self) -> tuple[float, ...]:
-        """Frequencies of what was lost, and of what is left to be followed."""
+        """Frequencies at which curves were lost, and of the folds that are left to be followed."""
         return *self.lost, *(float(turn.z[-1]) for turn, _ in self.left)
 
     def __iter__(self) -> Iterator[list[FloatArray]]:
@@ -123,7 +125,7 @@ class _Curves:
             del self.left[0]
 
     def _stages(self, own: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
-        """The harmonics with which a fold is followed in turn, the last those that it was found with."""
+        """Yield the harmonics with which a fold is followed in turn, up to those it was found with."""
         count, factor = few_harmonics(self.system), self.system.option(PROLONGATION_POINTS).harmonics_factor
         while count < len(own):
             yield own[:count]
@@ -137,19 +139,19 @@ class _Curves:
 
 
 class _CurvesWith:
-    """The curves of folds of a system that are known."""
+    """The known curves of folds of a system."""
 
     def __init__(self, system: System, options: FoldOptions) -> None:
         self.system, self.options, self.curves = system, options, list[Folds]()
-        self.surface = Surface(system.new_balance())  # of its own: others are followed meanwhile
+        self.surface = Surface(system.new_balance())  # a balance of its own: others are used meanwhile
         self.paid = 0
 
     def pass_fold(self, turn: LevelFold) -> bool:
-        """Whether one of them passes a fold."""
+        """Whether a known curve passes a fold."""
         return any(_passes_fold(curve, turn, self.surface, self.options) for curve in self.curves)
 
     def follow(self, turn: LevelFold) -> Folds | None:
-        """The curve through a fold; None where there is none near it."""
+        """Follow the curve through a fold; None if there is none near it."""
         start, span = np.append(turn.z, turn.level), self.system.scene.frequency_range
         curve = folds_from(self.surface, start, turn.directions, span, self.options, self._pay)
         if curve is not None:
@@ -176,8 +178,10 @@ def _passes_fold(curve: Folds, turn: LevelFold, surface: Surface, options: FoldO
 
 
 def _at_level_one(few: System, system: System, curve: Folds) -> tuple[list[FloatArray], list[float]]:
-    """The solutions of a system beside the crossings of the level 1 by a curve of folds; and the frequencies
-    [rad/s] of the crossings beside which none was found."""
+    """The solutions of a system where a curve of folds crosses the level 1.
+
+    Also returns the frequencies [rad/s] of the crossings at which no solution was found.
+    """
     off, found, lost = curve.level - 1.0, list[FloatArray](), list[float]()
     for i in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
         part = off[i] / (off[i] - off[i + 1])

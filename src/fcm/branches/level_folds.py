@@ -1,9 +1,8 @@
-"""Folds where the level of the forces turns back before 1, and solutions beside them at other frequencies.
+"""Folds at which the force level turns back, and solutions beside them at other frequencies.
 
-The level of the forces at which its curve turns is another at each frequency. Where it is 1 a window of
-several solutions begins or ends: a fold of the response. It may be a fold of a closed branch that lies
-between the frequencies at which the level was followed. All that their curves show of such a branch is a turn
-near 1.
+The level of such a fold varies with the frequency. Where it is 1, a window of several solutions begins or
+ends: a fold of the response. It may be a fold of a closed branch between the frequencies at which the level
+was followed. A fold near 1 is all that the curves of the level show of such a branch.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class WithLoad(Protocol):
-    """A problem in the frequency, at the level of the forces that is its load."""
+    """A problem with the frequency as parameter, at the force level that is its load."""
 
     load: float
     scale: FloatArray
@@ -36,8 +35,8 @@ class WithLoad(Protocol):
 class LevelFold(NamedTuple):
     """A fold of the level of the forces at one frequency: z (unknown + 1,), with the frequency.
 
-    before, after (unknown + 2,): the curve's directions, which differ at a corner, of displacements,
-    frequency, which does not change, and level. unfinished: whether it turns before it passes the level 1.
+    before, after (unknown + 2,): directions of the curve in displacements, frequency (always 0) and level;
+    they differ at a corner. unfinished: whether the curve turns back before it crosses the level 1.
     """
 
     level: float
@@ -59,18 +58,18 @@ class LevelFold(NamedTuple):
 
     @property
     def may_reach_level_one(self) -> bool:
-        """Whether the level may be 1 at a turn like this one within a range."""
+        """Whether this fold may come to the level 1 at another frequency of the range."""
         return self.unfinished and 1.0 / LEVEL_FOLDS.max_level < self.level < LEVEL_FOLDS.max_level
 
     def extended(self, system: System, harmonics: tuple[int, ...]) -> LevelFold:
-        """The fold of a balance with some harmonics as one of a system with more."""
+        """The fold of a balance with some harmonics, extended to those of a system with more."""
         before, after = (system.extended(one, harmonics) for one in (self.before, self.after))
         after = before if self.before is self.after else after
         return self._replace(z=system.extended(self.z, harmonics), before=before, after=after)
 
 
 def level_folds(path: Path, omega: float, unit: float = 1.0) -> tuple[LevelFold, ...]:
-    """The turns of a curve of levels at a frequency; its displacements and levels are multiples of a unit."""
+    """The folds of a curve of the level at a frequency, whose displacements and levels are in some unit."""
     levels = unit * path.parameter
     rises = np.diff(levels) > 0.0
     found = []
@@ -84,14 +83,14 @@ def level_folds(path: Path, omega: float, unit: float = 1.0) -> tuple[LevelFold,
 
 
 def _direction(path: Path, i: int, unit: float) -> FloatArray:
-    """The direction of a curve of the level at its point, (unknown + 2,)."""
+    """The direction (unknown + 2,) of a curve of the level at point i."""
     return unit * np.insert(path.direction[i], -1, 0.0)
 
 
 def reaches_level_one(problem: WithLoad, newton: Newton, turn: LevelFold) -> bool:
-    """Whether a fold is brought to the level 1, by shorter stages where one was too long.
+    """Whether a fold is brought to the level 1, by stages that are shortened where Newton's method fails.
 
-    newton belongs to that problem, and is then at the solution.
+    newton belongs to the problem, and is then at the solution.
     """
     problem.load = turn.level
     begin_near(newton, turn.z, turn.direction)
@@ -111,7 +110,7 @@ def reaches_level_one(problem: WithLoad, newton: Newton, turn: LevelFold) -> boo
 
 
 def solutions_past_fold(newton: Newton) -> list[FloatArray]:
-    """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
+    """The solution that was found last, and solutions on both sides of it, a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]
     for way in (sign * aside for aside in LEVEL_FOLDS.offsets for sign in (-1.0, 1.0)):

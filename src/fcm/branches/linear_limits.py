@@ -1,6 +1,6 @@
-"""Responses with linear contacts, all as at rest, stuck or open, and the levels of the forces that they tell.
+"""Responses with linear contacts (as at rest, all stuck, all open), and the limits of the level they give.
 
-Up to the least level the contacts do nothing but what they do at rest; beyond the highest none begins to
+Up to the lowest limit, all contacts stay as they are at rest. Beyond the highest limit, no contact begins to
 slip, opens or closes.
 """
 
@@ -21,7 +21,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class _ResponseCache(threading.local):
-    """The linear responses that each thread found last, by what they are of."""
+    """The linear responses that each thread found last, by system, frequencies and springs."""
 
     def __init__(self) -> None:
         self.by_key: dict[tuple[object, ...], ComplexArray] = {}
@@ -31,23 +31,22 @@ _RESPONSES = _ResponseCache()
 
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
-    """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
+    """Yield the linear response with the contacts as at rest, then all stuck, then all open."""
     for ports in _on_ports(system, omega):
         yield _unknowns(system, level * ports)
 
 
 def _on_ports(system: System, omega: float) -> ComplexArray:
-    """Responses of the ports (3, driven, port), with the contacts as in `linear_responses`; kept in the
-    system."""
+    """Responses of the ports (3, driven, port), in the order of `linear_responses`; the system keeps them."""
     if omega not in system.port_responses:
         precompute(system, (omega,))
     return system.port_responses[omega]
 
 
 def precompute(system: System, frequencies: Sequence[float]) -> None:
-    """Find the linear responses at all frequencies at which solutions will be asked for, at once.
+    """Compute the linear responses at all frequencies at which solutions will be needed, at once.
 
-    Those of the last systems are still known: of a sweep most are the same.
+    Those of the last systems are kept, as most are the same in a sweep.
     """
     at_rest = closed_at_rest(system)
     held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
@@ -89,7 +88,7 @@ def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
 
 
 def highest_linear_limit(system: System, omega: float) -> float:
-    """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
+    """A level beyond those at which a contact opens, closes or slips, if all are stuck or all open."""
     loads = np.abs(system.loads_at_rest)
     variation, slip = _motions(system, _on_ports(system, omega)[1:], np.max)
     friction = 2.0 * np.array([one.mu for one in system.scene.contacts]) * loads
@@ -98,15 +97,17 @@ def highest_linear_limit(system: System, omega: float) -> float:
 
 
 def lowest_linear_limit(system: System, omega: float) -> float:
-    """The least level at which a contact is not as it is at rest; 0 where static loads, friction of [start],
-    or laws of one's own have a say in that."""
+    """The least level at which a contact leaves its state at rest.
+
+    It is 0 with static loads, friction of [start], or contact laws of its own.
+    """
     if system.scene.strained or system.own_laws:
         return 0.0
     return float(lowest_linear_limits(system, [omega])[0])
 
 
 def lowest_linear_limits(system: System, frequencies: Sequence[float]) -> FloatArray:
-    """Least levels (frequency,) at which a contact changes from rest, without static loads and own laws."""
+    """Least levels (frequency,) at which a contact leaves its state at rest; no static loads or own laws."""
     contacts = system.scene.contacts
     ports = np.array([_on_ports(system, omega)[0] for omega in frequencies])
     n_0, mu = (np.array([getattr(one, name) for one in contacts], dtype=np.float64) for name in ("n_0", "mu"))
@@ -122,7 +123,7 @@ def lowest_linear_limits(system: System, frequencies: Sequence[float]) -> FloatA
 
 
 def _ratios(limit: FloatArray, motion: FloatArray) -> FloatArray:
-    """Levels at which motions (case, contact) come to limits (contact,)."""
+    """Levels at which motions (case, contact) reach limits (contact,)."""
     moves = motion > 0.0
     levels: FloatArray = np.broadcast_to(limit, motion.shape)[moves] / motion[moves]
     return levels
@@ -131,13 +132,12 @@ def _ratios(limit: FloatArray, motion: FloatArray) -> FloatArray:
 def _motions(
     system: System, ports: ComplexArray, together: Callable[..., FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Variation of each contact's load, and the sizes of the motions of its two limits.
+    """Variation of each contact's load (..., contact), and of its two limits (..., contact, 2).
 
-    Of ports (..., driven, port); the loads are (..., contact), the limits (..., contact, 2), in the direction
-    in which they are greater.
+    ports is (..., driven, port). In a plane the limits are those in the direction in which they are greater.
 
-    Those of the driven harmonics together: their sum is never less than that of the motion, and the greatest
-    of them no more than 4 / pi times it.
+    `together` combines the driven harmonics. Their sum is never less than the motion's amplitude; the
+    greatest of them is no more than 4 / pi times it.
     """
     contacts, directions = system.scene.contacts, system.layout.directions
     mu, k_u, k_v = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u", "k_v"))

@@ -1,4 +1,4 @@
-"""Branches that are mirror images of others, or of themselves: one of two is kept."""
+"""Branches that are mirror images of others, or of themselves: one of two images is kept."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from fcm.harmonic_balance.system import System
 
 
 def without_images(system: System, paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[int, ...]]:
-    """The paths with one of several that are mirror images of one another, and half of one that is its own;
-    and the numbers of those whose images are left out."""
+    """The paths without mirror images of others, and with only half of a path that is its own image.
+
+    Also returns the numbers of the paths whose images are left out.
+    """
     several = paths if len(paths) > 1 else ()
     symmetric = next((path for path in several if is_symmetric(system, path)), None)
     if symmetric is None:
@@ -36,8 +38,10 @@ def without_images(system: System, paths: Sequence[Path]) -> tuple[tuple[Path, .
 
 
 def symmetric_half(path: Path) -> Path:
-    """The part of a path that is its own image between its branch points, or to the one that it has; all of
-    another path."""
+    """Half of a path that is its own mirror image, cut at branch points; all of another path.
+
+    A closed path is cut at its two branch points, an open one at the middle one of an odd number.
+    """
     changes = sign_changes(path.orientation)
     if path.status is Status.CLOSED and len(changes) == 2:
         half = slice(changes[0], changes[1] + 2)

@@ -1,8 +1,8 @@
-"""Frequencies at which a response may have a peak that no point away from it tells of.
+"""Frequencies at which a response may have a peak so narrow that steps may miss it.
 
-A mode that hardly anything damps answers to a harmonic h of the forces within damping omega / h. A step may
-lead across, where the mode moves too little away from there to be seen. Where that is depends on what the
-contacts do; they do least to a mode whose peak is narrow, and what they do is bounded by all stuck, all open.
+A lightly damped mode responds to a harmonic h of the forces only within damping omega / h. A step may pass
+over such a peak, as the mode hardly moves away from there. Its place depends on the contacts. They affect a
+mode with a narrow peak least, and their effect lies between those of all stuck and all open.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fcm.structure.ring import RingLinear
 
 
 def narrow_resonances(system: System) -> list[tuple[float, float]]:
-    """Frequencies within the range, with the width of the peak, both [rad/s]."""
+    """Frequencies within the range and widths of the peaks, both [rad/s], the widest first."""
     low, high = system.scene.frequency_range
     found: dict[float, float] = {}
     for stuck in (False, True):
@@ -31,8 +31,8 @@ def narrow_resonances(system: System) -> list[tuple[float, float]]:
 
 
 def _excited_modes(linear: Linear, order: int, springs: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Natural frequencies that a harmonic meets, with springs, in order; and the damping of the modes."""
-    if isinstance(linear, RingLinear):  # whose harmonics meet other modes each
+    """Natural frequencies with springs of the modes that a harmonic excites, in order; their damping."""
+    if isinstance(linear, RingLinear):  # each harmonic excites other modes
         wave = linear.wave(order)
         return np.sort(wave.stiffened(springs)), wave.damping[np.argsort(wave.natural)]
     return np.sort(linear.stiffened(springs)), linear.damping[np.argsort(linear.natural)]

@@ -1,9 +1,9 @@
 """Solutions with few harmonics prolongated to more: zero for the new ones, then Newton's method.
 
 Each branch is prolongated at several of its points, as the branch of more harmonics may leave that of few
-anywhere. The solution with more is looked for in the plane normal to the curve of few; where Newton's method
-does not lead there at once, by a homotopy from the equations that the point of few solves (`Prolongation`);
-and where that does not, by solutions with some of the harmonics on the way.
+anywhere. The solution with more is sought in the plane normal to the curve of few. If Newton's method
+diverges, a homotopy starts from the equations that the point of few solves (`Prolongation`). If that fails,
+too, solutions with some of the harmonics are found on the way.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from fcm.model.scene import FloatArray
 
 
 def prolongated(system: System, fewer: Sequence[int], paths: Sequence[Path]) -> Iterator[FloatArray]:
-    """Solutions (unknown + 1,) of a system within its range, near points of paths of fewer harmonics.
+    """Yield solutions (unknown + 1,) of a system within its range, near points of paths of fewer harmonics.
 
-    First one of each path, then the next of each, so that most branches are known before their other points;
-    then the last before those from which Newton's method diverges: there the branch of more harmonics leaves
+    The first point of each path comes first, then the next of each, so that most branches are known early.
+    Then follow the last points before Newton's method diverges. There the branch of more harmonics leaves
     that of few, and may be another one than elsewhere.
     """
     low, high, options = *system.scene.frequency_range, system.option(PROLONGATION_POINTS)
@@ -42,21 +42,21 @@ def prolongated(system: System, fewer: Sequence[int], paths: Sequence[Path]) -> 
 
 
 class _ProlongatedPath:
-    """A path of few harmonics, and the solutions with more that its points lead to."""
+    """A path of few harmonics, and the solutions with more to which its points lead."""
 
     def __init__(self, path: Path, ways: Sequence[Sequence[Prolongation]], places: Sequence[int]) -> None:
         self.path, self.ways, self.places = path, ways, places
         self.leads = dict[int, bool]()
 
     def at(self, i: int) -> FloatArray | None:
-        """The solution near a point; None where there is none."""
+        """The solution near point i; None if there is none."""
         there = (_prolongated_by_stages(way, self.path.z[i], self.path.direction[i]) for way in self.ways)
         z = next((z for z in there if z is not None), None)
         self.leads[i] = z is not None
         return z
 
     def ends(self) -> Iterator[FloatArray]:
-        """The solutions near the last points before Newton's method diverges, by bisection."""
+        """Yield the solutions near the last points before Newton's method diverges, by bisection."""
         for here, there in pairwise(sorted(self.leads)):
             low, high = (here, there) if self.leads[here] else (there, here)
             if self.leads[here] == self.leads[there]:
@@ -82,7 +82,7 @@ def at_its_frequency(system: System, z: FloatArray) -> FloatArray | None:
 def _harmonic_stages(
     system: System, fewer: tuple[int, ...], options: ProlongationPointOptions
 ) -> list[list[Prolongation]]:
-    """Stages of harmonics from fewer to those of a system: at once, and by some of them."""
+    """Ways from fewer harmonics to those of a system: in one stage, and in stages with some of them."""
     more = system.harmonics
     between, count = list[tuple[int, ...]](), len(fewer) * options.harmonics_factor
     while count < len(more):
@@ -104,7 +104,7 @@ def _prolongation(
 def _prolongated_by_stages(
     way: Sequence[Prolongation], z: FloatArray, direction: FloatArray
 ) -> FloatArray | None:
-    """The solution near a point of a curve, by stages of more and more harmonics; None where one diverges."""
+    """The solution near a point of a curve, by stages of more and more harmonics; None if one diverges."""
     for prolongation in way:
         if not (prolongation.find_normal(z, direction) and prolongation.newton.correct(1.0)):
             return None
@@ -118,8 +118,8 @@ def _prolongated_by_stages(
 def _prolongation_points(path: Path, options: ProlongationPointOptions) -> list[int]:
     """The points of a path that are prolongated: its peaks, ends and folds, and some between them.
 
-    A corner, a fold, or a peak at one, is replaced by a point beside it. While contacts rest the point with
-    more harmonics is the same, and no branch can be begun there at its frequency.
+    A corner, a fold, or a peak at one of them, is replaced by a point beside it. While contacts rest, the
+    point with more harmonics is the same, and no branch can start there at its frequency.
     """
     count = len(path.z)
     marked = [path.where(Mark.PEAK), np.array([0, count - 1]), path.where(Mark.FOLD)]
@@ -132,7 +132,7 @@ def _prolongation_points(path: Path, options: ProlongationPointOptions) -> list[
 
 
 def _plain_points(path: Path, options: ProlongationPointOptions) -> npt.NDArray[np.intp]:
-    """The points that are not at a corner or a fold, nor lie in one place with it along the path."""
+    """The points that neither are a corner or a fold, nor coincide with one along the path."""
     size, change = np.abs(path.z).max(axis=1, initial=0.0), np.abs(np.diff(path.z, axis=0)).max(axis=1)
     place = np.concatenate(([0], np.cumsum(change >= options.same_point * size[1:])))
     special = np.flatnonzero(path.mark & (Mark.CORNER | Mark.FOLD))

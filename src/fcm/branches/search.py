@@ -1,4 +1,4 @@
-"""The further branches of a response that was traced: isolated ones, and those through branch points."""
+"""Further branches of a traced response: isolated ones, and those through branch points."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from fcm.harmonic_balance.system import System
 
 
 def with_further_branches(system: System, found: Traced, isolated: bool = True) -> Traced:
-    """The branches, with isolated ones, and those through branch points, of the response and of levels; and
-    with the motions that friction raised from none leads to.
+    """The branches with isolated ones, those through branch points, and those found by raising friction.
 
-    Without isolated ones it is noted from where curves of folds would have been followed.
+    Branch points are those of the response and of curves of the level. If isolated branches are not wanted,
+    `Traced.folds_lost` has the folds from which curves would have been followed.
     """
     every = _with_connected(system, found, isolated)
     raised = with_friction_raised(system, every)
@@ -33,7 +33,7 @@ def with_further_branches(system: System, found: Traced, isolated: bool = True) 
 
 
 def _with_connected(system: System, found: Traced, isolated: bool) -> Traced:
-    """The branches with those that what is known leads to."""
+    """The branches with those to which the known branches and levels lead."""
     if isolated:
         found = with_isolas(system, with_large_motions(system, found))
     else:
@@ -42,7 +42,7 @@ def _with_connected(system: System, found: Traced, isolated: bool) -> Traced:
 
 
 def with_large_motions(system: System, found: Traced) -> Traced:
-    """The branches with those of the level near peaks of the response without preloads that no branch has."""
+    """The branches with those found by the level near peaks without preloads that no branch has."""
     lost = found.not_met(peaks_without_preload(system), system.option(LEVEL_CURVE))
     known = {one.omega for one in found.found}
     further = [omega for omega in level_frequencies(system, lost) if omega not in known] if lost else []
@@ -53,7 +53,7 @@ def with_large_motions(system: System, found: Traced) -> Traced:
 
 
 def with_isolas(system: System, found: Traced) -> Traced:
-    """The branches with the isolated ones that curves of folds come to, and where these curves were lost."""
+    """The branches with the isolated ones to which curves of folds lead, and where these curves were lost."""
     met = level_one_crossings(system, found.found, found.branches.paths)
     if met.uncertain != found.folds_lost:
         found = replace(found, folds_lost=met.uncertain)
@@ -61,11 +61,11 @@ def with_isolas(system: System, found: Traced) -> Traced:
 
 
 def with_unsymmetric(system: System, found: Traced) -> Traced:
-    """The branches with unsymmetric ones that curves of the level lead to; one of two mirror images.
+    """The branches with unsymmetric ones to which curves of the level lead; one of two mirror images.
 
-    The levels are those of a few harmonics. The branch of these through a solution is prolongated at many
-    points: with more harmonics it may be several. Solutions that take other harmonics, and frequencies where
-    the level was not followed to its end, are noted.
+    The level is followed with a few harmonics. Their branch through a solution is prolongated at many points,
+    as it may become several with more harmonics. Solutions that need harmonics that the system lacks, and
+    frequencies where the level was not followed to its end, are recorded.
     """
     if system.harmonics[-1] < 2:
         return found
@@ -91,7 +91,7 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
 
 
 def with_branching(system: System, found: Traced) -> Traced:
-    """The branches with those that leave them at branch points, of two mirror images one."""
+    """The branches with those that leave them at branch points; one of two mirror images."""
     if not system.scene.contacts:
         return found
     return with_leaving(
@@ -104,7 +104,7 @@ def with_branching(system: System, found: Traced) -> Traced:
 
 
 def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Traced:
-    """The branches with those through the starts at a branch point that are not known, nor images of such."""
+    """The branches with those through the starts at a branch point, unless they or their images are known."""
     for z in point.starts:
         images = [symmetry.image(z) for symmetry in broken_symmetries(system, point.z, z)]
         paths, balance = found.branches.paths, system.reset_balance()

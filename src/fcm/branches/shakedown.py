@@ -1,7 +1,7 @@
-"""Curves on which contacts stick by the friction force that slip has left: they shake down.
+"""Curves on which contacts shake down: they stick by the residual friction that earlier slip has left.
 
-Where that force changes their normal load, too, they may as well slip on, as the past decides. See Klarbring,
-Ciavarella and Barber, Shakedown in elastic contact problems with Coulomb friction (2007).
+If that friction also changes their normal load, they may go on slipping instead: the history decides. See
+Klarbring, Ciavarella and Barber, Shakedown in elastic contact problems with Coulomb friction (2007).
 """
 
 from __future__ import annotations
@@ -18,11 +18,10 @@ from fcm.model.scene import FloatArray, Scene
 
 
 def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.str_]) -> float:
-    """Frequency [rad/s] at which contacts that never slip on curves would slip if they began unstressed; or
-    NaN.
+    """Frequency [rad/s] at which contacts that shake down would slip if they began unstressed, or NaN.
 
-    frequency (point,); states (point, contact). The frequency is that at which they would begin to slip at
-    the least force.
+    frequency (point,) and states (point, contact) are those of the curves, on which no contact slips. The
+    result is the frequency at which the least force makes a contact slip.
     """
     scene = system.scene
     nothing = scene.strained or system.own_laws or not states.size or (states != states[0]).any()
@@ -39,7 +38,7 @@ def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.s
 
 
 def may_wedge(scene: Scene) -> bool:
-    r"""Whether friction forces may press their own contacts together by as much as holds them.
+    r"""Whether friction forces may press their own contacts together enough to hold these.
 
     With all contacts closed, friction forces F change the limits :math:`\mu n` by G F. Forces of any size are
     held only if :math:`|F_i| \le |(G F)_i|` at all contacts, and none are if the norm of G is below 1:
@@ -63,8 +62,9 @@ def may_wedge(scene: Scene) -> bool:
 def changes_load(
     scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_], of_its_own: bool = False
 ) -> bool:
-    """Whether the residual friction of a contact that sticks changes the load of another, or of its own, if
-    all stay so; closed, stuck (contact,).
+    """Whether residual friction of a sticking contact changes the load of another one.
+
+    With of_its_own, its own load counts, too. closed, stuck (contact,): the contacts that stay so.
 
     >>> import fcm
     >>> every = np.array([True])
@@ -83,8 +83,10 @@ def changes_load(
 def _load_by_friction(
     scene: Scene, closed: npt.NDArray[Any], stuck: npt.NDArray[Any]
 ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-    """Changes of loads by a unit of friction force (contact, friction), where contacts that are closed and
-    stuck (contact,) stay so; and whose each friction force is. Raises LinAlgError where a mode is free."""
+    """Changes of loads by unit friction forces (contact, friction), and the contact of each friction force.
+
+    Contacts that are closed and stuck (contact,) stay so. Raises LinAlgError if a mode is free.
+    """
     modal, contacts = scene.modal, scene.contacts
     slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
     whose = np.array([i for i, _ in slides])

@@ -1,9 +1,9 @@
-"""Curves of the level that systems have in common, whose preloads alone differ, and those all by one factor.
+"""Curves of the level shared by systems that differ only by a common factor of all preloads.
 
-The equations are homogeneous in displacements, forces and preloads together: what a preload n_0 makes of the
-level 1, the preload 1 makes of the level 1 / n_0. So a sweep of preloads follows one curve at a frequency,
-of the greatest preload 1 (and -1), as far as any of them needs it. Each of its curves finds its solutions on
-that. Which one of them followed it does not matter.
+The equations are homogeneous in displacements, forces and preloads together: the response to the preload n_0
+and the level 1 is n_0 times that to the preload 1 and the level 1 / n_0. So a sweep of preloads follows one
+curve at a frequency, with the greatest preload 1 (or -1), as far as any system needs it. Each system finds
+its solutions on that curve. Which one followed it does not matter.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Followed = Callable[[System, float, float], Path]
 
 
 class _CurveCache(threading.local):
-    """Curves of the level that each thread keeps, by what they depend on; None for those that did not end."""
+    """Cache of each thread: curves of the level by their key; None for those without an end."""
 
     def __init__(self) -> None:
         self.paths: OrderedDict[tuple[object, ...], Path | None] = OrderedDict()
@@ -39,9 +39,9 @@ def clear() -> None:
 
 
 def shared_curve(system: System, omega: float, top: float, followed: Followed) -> Path | None:
-    """The curve of the system with preloads of 1 up to a level, as it is followed once.
+    """The curve of the normalised system, with the greatest preload 1, up to a level; followed only once.
 
-    A longer one that is known is cut there. Nothing if that does not come to its end.
+    A longer known curve is cut there. None if the curve does not come to its end.
     """
     key = (*_curve_key(system), omega)
     kept, enough = _CURVES.paths, top / (1.0 + system.option(LEVEL_CURVE).level_tolerance)
@@ -65,9 +65,9 @@ def _curve_key(system: System) -> tuple[object, ...]:
 
 
 def solutions_at_level_one(system: System, path: Path, omega: float) -> list[FloatArray] | None:
-    """Solutions (unknown + 1,) of the system at the level 1, from the curve in common.
+    """Solutions (unknown + 1,) of the system at the level 1, from the shared curve.
 
-    Nothing if one that has to be there is not found between the points that enclose it.
+    None if Newton's method does not find one between the points that enclose it.
     """
     unit = system.preload_unit
     off = path.parameter - 1.0 / unit
@@ -82,7 +82,7 @@ def solutions_at_level_one(system: System, path: Path, omega: float) -> list[Flo
 
 
 def _solution_between(system: System, omega: float, ends: FloatArray, part: float) -> FloatArray | None:
-    """The solution near a part of the way between two of other levels, if it lies between them."""
+    """The solution at the level 1 near a fraction of the chord between two other levels, if between them."""
     level, stepper = system.level_problem
     level.begin(omega)
     newton, chord = stepper.newton, ends[1] - ends[0]

@@ -1,22 +1,22 @@
-"""The solutions of a balance at all frequencies and levels of the forces: a surface, and its folds.
+"""The surface of a balance's solutions at all frequencies and levels of the forces, and its folds.
 
 The solutions of the n equations F(x, omega, lambda) = 0 for the displacements x, the frequency omega and the
-level lambda are a surface, also where dF/dx is singular. A place on it is found in the plane through a known
-place, of two axes e_1, e_2 in the scaled unknowns z = (x, omega, lambda):
+level lambda form a surface, also where dF/dx is singular. Two axes e_1, e_2 through a known place c, in the
+scaled unknowns z = (x, omega, lambda), determine another place on it:
 
     F(z) = 0,   e_1 . (z - c) = a,   e_2 . (z - c) = b.
 
-The same matrix has the two tangents t_1, t_2 of the surface there: DF t = 0; e_i . t_j = 1 if i = j, else 0.
-Where the surface folds over (omega, lambda), its tangents are not independent in these two:
+The same matrix gives the tangents t_1, t_2 of the surface there: DF t = 0; e_i . t_j = 1 if i = j, else 0.
+Where the surface folds over (omega, lambda), the tangents' components in these two are dependent:
 
     g = t_1,omega t_2,lambda - t_1,lambda t_2,omega = 0,
 
 which is the bordered test function of a fold with a border of two rows (Govaerts, "Numerical Methods for
 Bifurcations of Dynamical Equilibria", 2000, chapters 3 and 4). Its sign changes also at a fold in a corner.
 
-Many contacts have a condensed system for a frequency and displacements y = (x, omega) at one level, closed by
-a row r. Its solutions with the right sides -F_lambda and r . y = 1 alone are the directions y_l and y_r. Then
-y = y_0 + y_l lambda + y_r rho, and the two axes leave two equations for lambda and rho (block elimination,
+With many contacts, a condensed system determines displacements and frequency y = (x, omega) at one level,
+closed by a row r. Its solutions for the right sides -F_lambda and r . y = 1 alone are y_l and y_r. Then
+y = y_0 + y_l lambda + y_r rho, and the two axes give two equations for lambda and rho (block elimination,
 Govaerts 2000, section 3.2). The row is the combination of the axes that does not change the level.
 
 `FoldSteps` are the steps along a curve of folds, see `fcm.branches.fold_continuation`.
@@ -42,9 +42,9 @@ from fcm.model.scene import FloatArray
 class Surface:
     """Points of the surface of solutions at all frequencies and levels, about a centre.
 
-    `begin` at a place, then `find`: z is a place near it, value its test function g.
+    Call `begin` at a place, then `find` for places near it: z is the place, value its test function g.
 
-    z, centre, scale (n + 2,): displacements, frequency [rad/s], level; axes, tangents (2, n + 2), scaled.
+    z, centre, scale (n + 2,): displacements, frequency [rad/s], level. axes, tangents (2, n + 2): scaled.
     """
 
     def __init__(self, balance: Balance, options: SurfaceOptions = SURFACE) -> None:
@@ -64,8 +64,9 @@ class Surface:
         self.solver = Solver(2 if self.condensed else n + 2)
 
     def begin(self, z: cython.double[::1], along: cython.double[::1], across: cython.double[::1]) -> bool:
-        """Go to the surface from near it, in the plane across two directions (n + 2,), in the units of z;
-        false where there is none. The first axis is then the tangent nearest to the first of them.
+        """Go to the surface from near it, in the plane across two directions (n + 2,), in the units of z.
+
+        False if no place is found. The first axis is then the tangent nearest to the first direction.
         """
         self.z[:] = z
         if not (self.recentre(across, along) and self.find(0.0, 0.0)):
@@ -75,7 +76,7 @@ class Surface:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def recentre(self, along: cython.double[::1], across: cython.double[::1]) -> cython.bint:
-        """Take the place that z is for the centre of other axes (n + 2,), in the units of z."""
+        """Take z as the centre, with other axes (n + 2,), in the units of z; false if these are dependent."""
         i: cython.Py_ssize_t
         self.centre[:] = self.z
         self.evaluate_scale(self.z)
@@ -86,7 +87,7 @@ class Surface:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
-        """Units of lengths at a place: those of the balance, and the level by itself."""
+        """Set the units of lengths at a place: those of the balance, and the level's own size."""
         i: cython.Py_ssize_t
         for i in range(self.n + 1):
             self.balance_point[i] = z[i]
@@ -99,7 +100,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def orthonormalise(self) -> cython.bint:
-        """Make the axes unit vectors at right angles; false if they are none."""
+        """Make the axes orthonormal; false if they are dependent."""
         i: cython.Py_ssize_t
         first: cython.double = 0.0
         along: cython.double = 0.0
@@ -123,7 +124,7 @@ class Surface:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def find(self, ahead: cython.double, aside: cython.double) -> cython.bint:
-        """Whether there is a place at these lengths along the axes, from where z was put last."""
+        """Find the place at these lengths along the axes, starting from z; false if there is none."""
         i: cython.Py_ssize_t
         count: cython.int
         step: cython.double
@@ -159,7 +160,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, out: cython.double[::1]) -> cython.int:
-        """Fill out (n,) with -F_lambda, scaled: what the harmonic forces do to the free structure."""
+        """Fill out (n,) with -F_lambda, scaled: the response of the free structure to the harmonic forces."""
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         h: cython.int
@@ -207,7 +208,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def factor_condensed(self) -> cython.bint:
-        """The condensed system at a level, and what the axes leave for the level and along the row."""
+        """Factor the condensed system at a level, and the two equations of the axes for lambda and rho."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -241,7 +242,10 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def solve(self, equations: cython.bint) -> cython.int:
-        """Replace the right side (n + 2,) by the solution; equations: those of the balance have one."""
+        """Replace the right side (n + 2,) by the solution.
+
+        equations: whether the right side of the balance's equations is not zero.
+        """
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -272,7 +276,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-2, check=False)
     def correct(self, ahead: cython.double, aside: cython.double) -> cython.double:
-        """Move z by a Newton step, and return the length of that."""
+        """Move z by a Newton step, and return its length."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         total: cython.double = 0.0
@@ -291,7 +295,7 @@ class Surface:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def compute_tangents(self) -> cython.bint:
-        """Compute the tangents and the test function from the equations as they are factored."""
+        """Compute the tangents and the test function from the factored equations; false if not finite."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -326,7 +330,7 @@ Point = tuple[FloatArray, FloatArray]  # z, and the direction in which the displ
 
 @cython.cclass
 class Side:
-    """A place on one side of the curve: its angle, the test function, the direction of the circle there."""
+    """A place on one side of the curve of folds: its angle, test function, and direction of the circle."""
 
     angle: cython.double
     value: cython.double
@@ -338,10 +342,10 @@ class Side:
 
 @cython.cclass
 class Departure:
-    """A way from the centre to a place of the curve of folds.
+    """A step from the centre to a place of the curve of folds.
 
-    radius, angle: its length and angle; along, across (n + 2,): directions to there and across the curve, in
-    the units of z; left: the sign of the test function on its left.
+    radius, angle: its length and angle. along, across (n + 2,): directions to that place and across the
+    curve, in the units of z. left: the sign of the test function on its left.
     """
 
     radius = cython.declare(cython.double, visibility="readonly")
@@ -364,7 +368,7 @@ class Departure:
 
 @cython.cclass
 class FoldSteps:
-    """Steps along a curve of folds: `departures` of a start, then `run` by each of them."""
+    """Steps along a curve of folds: `departures` from a start, then `run` along each of them."""
 
     surface: Surface
     options: FoldOptions
@@ -411,7 +415,7 @@ class FoldSteps:
     def run(
         self, start: FloatArray, singular: FloatArray, way: Departure
     ) -> tuple[list[Point], FoldCurveEnding]:
-        """Follow the curve from the start on by one of its ways."""
+        """Follow the curve from the start along one of its departures."""
         options, surface, side = self.options, self.surface, Side(self.n)
         self.begin(start, singular)
         self.test_value(side, way.radius, way.angle)
@@ -432,7 +436,7 @@ class FoldSteps:
                     off *= self.angle_tolerance
                 thin: cython.bint = step < options.strip_width and not crossed
                 aside = self.other_side(options.strip_width, way.left) if thin else 0.0
-                if aside:  # the strip ends where, seen at its own width, it does not go on
+                if aside:  # the strip ends if it does not go on at steps of about its own width
                     crossed = True  # not back again
                     step = 2.0 * abs(aside)
                     found = None if step < options.min_step else self.next_departure(step, 0.0, way.left)
@@ -478,7 +482,7 @@ class FoldSteps:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def test_value(self, side: Side, radius: cython.double, angle: cython.double) -> cython.int:
-        """Evaluate the test function at a place on a circle about the centre; NaN where there is no place."""
+        """Evaluate the test function at a place on a circle about the centre; NaN if there is no place."""
         surface: Surface = self.surface
         c: cython.double = cos(angle)
         s: cython.double = sin(angle)
@@ -499,9 +503,9 @@ class FoldSteps:
         return 0
 
     def around(self, radius: float, left: float) -> list[Departure]:
-        """Ways to the changes of sign on a circle about the centre.
+        """Departures to the changes of sign on a circle about the centre.
 
-        left: the sign of the test function on the left of a way, or 0 for any.
+        left: the sign of the test function on the left of a departure, or 0 for any.
         """
         self.surface.z[:] = self.surface.centre
         circle, sides, found = self.options.circle_points, list[Side](), list[Departure]()
@@ -523,7 +527,7 @@ class FoldSteps:
 
     @cython.cfunc
     def sign_change(self, radius: cython.double, low: Side, high: Side) -> object:
-        """The way between two sides, at whose end z is left; None where there is no place on the way."""
+        """The departure between two sides, with z left at its end; None if a place is missing."""
         at: cython.double = high.angle
         of_low: cython.double = 1.0  # weights of the method of Illinois
         of_high: cython.double = 1.0
@@ -557,7 +561,7 @@ class FoldSteps:
 
     @cython.cfunc
     def next_departure(self, step: cython.double, bend: cython.double, left: cython.double) -> object:
-        """The way to the next place, near the angle of a bend; None where it is not found."""
+        """The departure to the next place, near the angle of a bend; None if it is not found."""
         most: cython.double = self.max_turn
         one: Side = Side(self.n)
         other: Side = Side(self.n)
@@ -580,8 +584,10 @@ class FoldSteps:
         return None
 
     def correct_centre(self, off: float, left: float) -> bool:
-        """Take for the centre the place on the curve that is no further than that across it; whether it is
-        there. A short step needs a centre that is nearer to the curve than the last step left it."""
+        """Move the centre across the curve onto it, by no more than off; false if it is not there.
+
+        A short step needs a centre that is nearer to the curve than the last step left it.
+        """
         surface: Surface = self.surface
         axes = np.array(surface.axes) * np.asarray(surface.scale)
         side: Side = Side(self.n)
@@ -606,7 +612,7 @@ class FoldSteps:
     def other_side(self, thin: float, left: float) -> float:
         """Distance from the centre to the other side of the strip beside the curve, positive to the left.
 
-        Zero if it is no strip, or not as thin as `thin`.
+        Zero if there is no strip as thin as `thin`.
         """
         surface: Surface = self.surface
         side: Side = Side(self.n)
@@ -636,16 +642,16 @@ class FoldSteps:
         return float(low if angle > 0.0 else -low)
 
     def cross_strip(self, aside: float) -> bool:
-        """Take for the centre the place of the curve on the other side, with the way back ahead."""
+        """Move the centre to the curve on the other side of the strip, and reverse the direction."""
         surface: Surface = self.surface
         axes = np.array(surface.axes) * np.asarray(surface.scale)
         surface.z[:] = surface.centre
         return bool(surface.find(0.0, aside) and surface.recentre(-axes[0], axes[1]))
 
     def around_corner(self, step: float, left: float) -> Departure | None:
-        """The way nearest ahead of those beside the way back, to its left and to its right.
+        """The departure nearest ahead, of the first ones to the left and to the right of the way back.
 
-        Between the way back and either of them the test function has no other sign: one side of the curve.
+        Between the way back and either of them, the test function keeps its sign: one side of the curve.
         """
         ways = [way for side in (1.0, -1.0) if (way := self.beside_way_back(step, side, left)) is not None]
         if not ways:
@@ -656,7 +662,7 @@ class FoldSteps:
 
     @cython.cfunc
     def beside_way_back(self, step: cython.double, side: cython.double, left: cython.double) -> object:
-        """The first way on one side of the way back, by angles that grow; None where a place is missing."""
+        """The first departure on one side of the way back, by growing angles; None if a place is missing."""
         off: cython.double = 2.0 * self.angle_tolerance
         width: cython.double = off
         one: Side = Side(self.n)
@@ -676,15 +682,17 @@ class FoldSteps:
 
     @cython.cfunc
     def singular(self, across: cython.double[::1]) -> object:
-        """The direction in the surface that changes frequency and level least, in the units of z; at a corner
-        that across the curve."""
+        """The direction in the surface that changes frequency and level least, in the units of z.
+
+        At a corner it is the direction across the curve.
+        """
         surface: Surface = self.surface
         i: cython.Py_ssize_t
         t: cython.double[:, ::1] = surface.tangents
         a: cython.double = t[0, self.n - 2] ** 2 + t[0, self.n - 1] ** 2
         b: cython.double = t[0, self.n - 2] * t[1, self.n - 2] + t[0, self.n - 1] * t[1, self.n - 1]
         c: cython.double = t[1, self.n - 2] ** 2 + t[1, self.n - 1] ** 2
-        # what each direction cos(angle) t_0 + sin(angle) t_1 changes of both is an ellipse
+        # the directions cos(angle) t_0 + sin(angle) t_1 change frequency and level by an ellipse
         spread: cython.double = sqrt(0.25 * (a - c) ** 2 + b * b)
         if 0.5 * (a + c) - spread > self.corner_roundness * (0.5 * (a + c) + spread):
             return np.array(across)
@@ -705,7 +713,7 @@ class FoldSteps:
     def passes(
         self, first: cython.double[::1], before: cython.double[::1], after: cython.double[::1]
     ) -> cython.bint:
-        """Whether a step comes by the first place of a curve."""
+        """Whether a step passes the first place of a curve."""
         square: cython.double = 0.0
         product: cython.double = 0.0
         off: cython.double = 0.0

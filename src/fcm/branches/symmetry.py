@@ -1,8 +1,8 @@
-"""The mirror images of motions: of a symmetric structure the motion that breaks the symmetry has one.
+"""Mirror images of motions: in a symmetric structure, a motion that breaks the symmetry has one.
 
-An image is the motion half a period later, or at once, with contacts in the place of others like them, and
-their tangential displacements reversed. Which contacts those are a symmetric motion tells, which is its own
-image; that the image of another is a solution, too, its balance.
+An image is the motion half a period later, or at the same time, with equal contacts interchanged, and their
+tangential displacements reversed. A symmetric motion, which is its own image, shows which contacts are
+interchanged. The balance shows whether the image of another motion is a solution, too.
 """
 
 from __future__ import annotations
@@ -21,8 +21,11 @@ from fcm.model.scene import FloatArray
 
 
 class Symmetry(Frozen):
-    """counterpart (contact,): whose motion a contact has in the image; factor (contact, unknown of one
-    contact) of that motion's numbers."""
+    """A symmetry of the structure with its contacts.
+
+    counterpart (contact,): the contact whose motion a contact has in the image. factor (contact, unknown of
+    one contact): factors on the unknowns of that motion.
+    """
 
     counterpart: npt.NDArray[np.intp]
     factor: FloatArray
@@ -34,9 +37,9 @@ class Symmetry(Frozen):
 
 
 def parts_of(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Greatest even parts of a motion's displacements, and greatest odd ones.
+    """Greatest even parts of a motion's displacements, and greatest odd parts.
 
-    Even are the means and the even harmonics, which a symmetric motion has not.
+    The even parts are the means and the even harmonics, which a symmetric motion does not have.
     """
     parts = np.abs(system.layout.complex_ports(z)).max(axis=0, initial=0.0)
     even = np.array([True, *(h % 2 == 0 for h in system.harmonics)])
@@ -44,7 +47,7 @@ def parts_of(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def is_symmetric(system: System, path: Path) -> bool:
-    """Whether the motions of a path are symmetric, and not all of them linear, of which each is."""
+    """Whether the motions of a path are symmetric, and not all of them linear; linear ones always are."""
     options = system.option(BRANCHING)
     some = np.arange(0, len(path.z), max(len(path.z) // options.symmetry_points, 1))
     for z in path.z[some]:
@@ -55,8 +58,10 @@ def is_symmetric(system: System, path: Path) -> bool:
 
 
 def broken_symmetries(system: System, symmetric: FloatArray, other: FloatArray) -> Iterator[Symmetry]:
-    """The symmetries of which a symmetric solution (unknown + 1,) is its own image, and the image of another
-    one is a solution, and not the same."""
+    """Yield the symmetries that a symmetric solution (unknown + 1,) has, and another solution breaks.
+
+    The symmetric solution is its own image. The image of the other one is another solution.
+    """
     balance, options = system.new_balance(), system.option(BRANCHING)
     for later in (True, False):
         symmetry = _symmetry_of(system, symmetric, later, options)

@@ -29,8 +29,11 @@ from fcm.model.scene import FloatArray
 
 
 class UnsymmetricSolution(NamedTuple):
-    """A solution z (unknown + 1,) at the level 1 of a balance with a few harmonics, the symmetric motion at
-    the level at which its branch leaves that, and which even harmonics lead in it."""
+    """A solution z (unknown + 1,) at the level 1 of a balance with a few harmonics.
+
+    symmetric: the symmetric motion at the branch point of the level from which its branch leaves. even: the
+    leading even harmonics of z.
+    """
 
     few: System
     z: FloatArray
@@ -39,10 +42,10 @@ class UnsymmetricSolution(NamedTuple):
 
 
 class UnsymmetricSolutions(NamedTuple):
-    """Unsymmetric solutions, and the frequencies at which the search for them came to no end.
+    """Unsymmetric solutions, and the frequencies at which the search for them did not end.
 
-    unfinished: frequencies [rad/s] at which the curve of the level, or what leaves it, was not followed to
-    its end.
+    unfinished: frequencies [rad/s] at which the curve of the level, or a branch that leaves it, was not
+    followed to its end.
     """
 
     solutions: tuple[UnsymmetricSolution, ...] = ()
@@ -52,8 +55,10 @@ class UnsymmetricSolutions(NamedTuple):
 def unsymmetric_solutions(
     system: System, found: Sequence[LevelSolutions], paths: Sequence[Path]
 ) -> UnsymmetricSolutions:
-    """Unsymmetric solutions that curves of the level lead to where it was followed, if a path of a system is
-    symmetric."""
+    """Unsymmetric solutions to which curves of the level lead, if a path of the system is symmetric.
+
+    The frequencies are those at which the level was followed.
+    """
     few = system.with_harmonics(tuple(range(1, few_harmonics(system) + 1)))
     if len(few.harmonics) < 2 or not any(is_symmetric(system, path) for path in paths):
         return UnsymmetricSolutions()
@@ -72,7 +77,7 @@ def unsymmetric_solutions(
 def _past_branch_points(
     few: System, omega: float, options: BranchingOptions
 ) -> tuple[list[UnsymmetricSolution], bool]:
-    """Unsymmetric solutions at one frequency, and whether all was followed to its end."""
+    """Unsymmetric solutions at one frequency, and whether all curves were followed to their ends."""
     span, found = (0.0, few.option(FOLDS).max_level), list[UnsymmetricSolution]()
     path = level_curve(few, omega, LevelRange(span))
     balance, known = few.new_balance(), list[Path]()
@@ -98,7 +103,7 @@ def _branch_through(
     span: tuple[float, float],
     options: BranchingOptions,
 ) -> list[Path]:
-    """The branch through a start, followed both ways; one way where it is closed."""
+    """The branch through a start, followed both ways, or one way if it is closed."""
     ways, wanted = list[Path](), Events((1.0,))
     for forward in (True, False):
         steps = FollowOptions(options.max_level_step)
@@ -110,7 +115,7 @@ def _branch_through(
 
 
 def _leading_even(system: System, z: FloatArray, options: BranchingOptions) -> tuple[int, ...]:
-    """The even harmonics of a motion that is not symmetric, without those small beside the others."""
+    """The leading even harmonics of a motion, without those much smaller; empty if it is symmetric."""
     parts, odd = parts_of(system, z)
     if (parts < options.motion_tolerance * odd.max()).all():
         return ()

@@ -1,9 +1,9 @@
 r"""Frequencies at which symmetric motions lose their symmetry by even harmonics that are not balanced.
 
-A symmetric motion has odd harmonics alone, and loses its symmetry by even ones. So its branch points are
-those of the balance with all even harmonics, up to twice the highest, which it solves with none of these.
-Where the balance with fewer lacks one, or has it at another frequency, the sign of the determinant is another
-along a stretch of the branch. The harmonics that it lacks are the fewest with which there is no such stretch.
+A symmetric motion has only odd harmonics, and loses its symmetry by even ones. Its branch points are those of
+the balance with all even harmonics up to twice the highest; the motion solves it with these at zero. If the
+balance with fewer harmonics lacks a branch point, or has it at another frequency, the sign of its determinant
+differs along a stretch of the branch. The lacking harmonics are the fewest with which no stretch differs.
 """
 
 from __future__ import annotations
@@ -29,15 +29,14 @@ from fcm.model.scene import FloatArray
 
 
 class SymmetryLoss(Frozen):
-    """Frequencies [rad/s] at which symmetric motions lose their symmetry by harmonics that are not balanced,
-    and which these are."""
+    """Frequencies [rad/s] at which symmetry is lost by harmonics not balanced, and these harmonics."""
 
     frequencies: tuple[float, ...] = ()
     harmonics: tuple[int, ...] = ()
 
 
 def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
-    """Places where branches of a system leave symmetric ones by even harmonics that it lacks."""
+    """Find where branches leave symmetric ones by even harmonics that the system lacks."""
     few, options = (
         len(system.scene.contacts) < system.option(LEVEL_REACH).min_contacts,
         system.option(BRANCHING),
@@ -61,8 +60,10 @@ def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
 def _loss_of(
     system: System, whole: System, path: Path, options: BranchingOptions
 ) -> tuple[list[float], set[int]]:
-    """Frequencies [rad/s] of branch points of a path with all even harmonics that its system has not, and the
-    harmonics that it lacks."""
+    """Frequencies [rad/s] of the branch points that a path has only with all even harmonics.
+
+    Also returns the harmonics that its system lacks for these.
+    """
     finer, coarser = _with_more(system, whole, path, options), _Judged(path, system)
     balance = whole.new_balance()
     frequencies, change = list[float](), np.zeros(len(whole.harmonics))
@@ -84,17 +85,17 @@ def _loss_of(
 
 
 class _Judged(Frozen):
-    """A path with the signs of the determinant of a system."""
+    """A path with the determinant's signs of a system as its orientation."""
 
     path: Path
     system: System
 
 
 def _differing(finer: _Judged, coarser: _Judged, options: BranchingOptions) -> list[tuple[int, int]]:
-    """The points before and at the end of stretches of a path where its sign is another with fewer harmonics.
+    """Points before, and at the end of, stretches of a path whose sign differs with fewer harmonics.
 
-    Only stretches that are wider than the possible displacement of a branch point. Where that depends on the
-    steps at its ends, these are located."""
+    Only stretches wider than the possible displacement of a branch point count. If that depends on the steps
+    at the ends of a stretch, these ends are located."""
     differ = finer.path.orientation * coarser.path.orientation < 0.0
     parameter, wide = finer.path.parameter, list[tuple[int, int]]()
     ends = np.flatnonzero(np.diff(differ, prepend=False, append=False)).tolist()
@@ -112,7 +113,7 @@ def _is_wide(omega: FloatArray, options: BranchingOptions) -> bool:
 
 
 def _places(judged: Sequence[_Judged], steps: Sequence[int], options: BranchingOptions) -> Iterator[float]:
-    """The frequencies [rad/s] within the given steps at which one of the signs changes."""
+    """Yield the frequencies [rad/s] within the given steps at which one of the signs changes."""
     for i in steps:
         for path, system in ((one.path, one.system) for one in judged):
             if 0 <= i < len(path.z) - 1 and path.orientation[i] * path.orientation[i + 1] < 0.0:
@@ -120,8 +121,10 @@ def _places(judged: Sequence[_Judged], steps: Sequence[int], options: BranchingO
 
 
 def _with_more(system: System, more: System, path: Path, options: BranchingOptions) -> _Judged:
-    """A path of a system with the orientations that more harmonics give it; NaN where it is no solution with
-    nothing of the others, as where these are driven."""
+    """A path of a system with the orientations that more harmonics give it.
+
+    They are NaN where the path with the further harmonics at zero is no solution, as where these are driven.
+    """
     z, direction = (more.extended(one, system.harmonics) for one in (path.z, path.direction))
     newton, orientation = Newton(more.new_balance()), np.full(len(z), np.nan)
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):

@@ -40,15 +40,14 @@ class FoundPeak(NamedTuple):
 
 
 class Traced(Frozen):
-    """The traced branches, and the solutions at the frequencies where these were looked for.
+    """The traced branches, and the solutions at the frequencies at which the level was followed.
 
-    found: those solutions, maybe with fewer harmonics; work: what that took, in seconds of `cost_model`.
-    mirrored: the numbers of the branches whose mirror images are branches, too, and are not among them.
-    folds_lost: frequencies [rad/s] from where curves of folds were not followed further, so that isolated
-    branches may be missing. symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are
-    not among those balanced. symmetry_lost_in_level: frequencies at which what leaves the curve of the level
-    is unsymmetric by even harmonics that are not among those balanced, and which lead. fewer_peaks: those of
-    the responses with fewer harmonics.
+    found: those solutions, maybe with fewer harmonics. work: its cost in seconds of `cost_model`. mirrored:
+    the numbers of the branches whose mirror images are left out. folds_lost: frequencies [rad/s] at which
+    curves of folds were lost, so that isolated branches may be missing. symmetry_lost: frequencies at which a
+    symmetric motion loses its symmetry by harmonics that are not balanced. symmetry_lost_in_level:
+    frequencies at which a branch that leaves the curve of the level is unsymmetric by even harmonics that are
+    not balanced, and the leading ones. fewer_peaks: peaks of the responses with fewer harmonics.
     """
 
     branches: Branches
@@ -72,8 +71,10 @@ class Traced(Frozen):
         return *self.own_peaks, *self.fewer_peaks
 
     def lost_peaks(self, options: LevelCurveOptions) -> tuple[float, ...]:
-        """Frequencies [rad/s] of those peaks of fewer harmonics that no branch has: maybe of one that is
-        isolated with more."""
+        """Frequencies [rad/s] of the peaks with fewer harmonics that no branch has.
+
+        Their branch may be isolated with more harmonics.
+        """
         return self.not_met(self.fewer_peaks, options)
 
     def not_met(self, peaks: Sequence[FoundPeak], options: LevelCurveOptions) -> tuple[float, ...]:
@@ -91,21 +92,20 @@ def traced(
 ) -> Traced:
     """Trace the branches through all solutions at the frequencies at which the level is followed.
 
-    And through those beside where the level of the forces turned short of 1 there.
-    fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
-    elsewhere, whose branches are traced too if they are within the range; peaks: those with fewer harmonics.
-    Where the branches have lost one, the level is followed, too.
+    fewer: the solutions found there with fewer harmonics, if any. near: known solutions (unknown + 1,) whose
+    branches are traced, too, if they are within the range. peaks: peaks with fewer harmonics. The level is
+    also followed where the branches have lost one of these peaks.
     """
     levels, found, work = level_frequencies(system), list[LevelSolutions](), 0.0
 
     def starts() -> Iterator[FloatArray]:
         nonlocal work
         ahead = solutions_in_turn(system, levels, fewer)
-        for _ in levels:  # a branch is there before the next level is followed
+        for _ in levels:  # branches are traced before the next level is followed
             before = system.work.seconds
             try:
                 found.append(next(ahead))
-            except PathInterrupted:  # its path is one of levels, and no branch
+            except PathInterrupted:  # its path is a curve of the level, not a branch
                 raise KeyboardInterrupt from None
             work += system.work.seconds - before
             yield from found[-1].solutions
@@ -125,8 +125,10 @@ def traced(
 def traced_from(
     system: System, before: Traced, near: Sequence[FloatArray], progress: Progress | None = None
 ) -> Traced | None:
-    """The branches through solutions near those of fewer harmonics; None if there is no such. No level is
-    followed: what was found is as before."""
+    """Trace the branches through solutions near those of fewer harmonics; None if there are none.
+
+    No level is followed: `found` stays as before.
+    """
     if not near:
         return None
     places = [float(z[-1]) for z in near]
@@ -135,10 +137,10 @@ def traced_from(
 
 
 def with_levels(system: System, before: Traced) -> Traced:
-    """The traced response with what the levels of the forces lead to.
+    """The traced response with the branches to which the levels of the forces lead.
 
-    Branches are traced through those solutions that lie on none that is known. Where that takes more work
-    than the system may, no level counts as followed to its end.
+    Branches are traced through the solutions that lie on no known one. If that takes more work than allowed,
+    no level counts as followed to its end.
     """
     begin, (low, high) = system.work.seconds, system.scene.frequency_range
     frequencies = level_frequencies(system, before.lost_peaks(system.option(LEVEL_CURVE)))
@@ -158,7 +160,7 @@ def branches_through(
     user_values: Sequence[float] = (),
     progress: Progress | None = None,
 ) -> Branches:
-    """The branches through solutions, of which those outside the range do not count."""
+    """Trace the branches through solutions; those outside the range are ignored."""
     low, high = system.scene.frequency_range
     inside = (z for z in starts if low <= z[-1] <= high)
     following = Following(FollowOptions(system.scene.max_step), _follow_shared(system, progress))
@@ -189,9 +191,9 @@ def _without_images(system: System, found: Traced) -> Traced:
 
 
 def _follow_shared(system: System, progress: Progress | None = None) -> Follow:
-    """A function that follows the balance a system shares, on the one stepper that it has for that.
+    """A function that follows the shared balance of a system, with its shared stepper.
 
-    progress: is told the share of each path that is covered.
+    progress is called with the fraction of each path that is covered.
     """
     stepper, places = system.shared_stepper, narrow_resonances(system)
 
@@ -212,10 +214,10 @@ def _follow_shared(system: System, progress: Progress | None = None) -> Follow:
 
 
 def _without_unsteady(system: System, branches: Branches) -> Branches:
-    """The branches without those that are no steady motion, if one is left.
+    """The branches without those that are no steady motion, if any are left.
 
-    The mean of a rigid-body mode that nothing holds is not among the equations: a branch on all of which
-    friction pushes along such a mode does not balance it.
+    The equations do not include the mean of an unconstrained rigid-body mode. A branch on which friction
+    pushes along such a mode at all points does not balance it.
     """
     paths = branches.paths
     if len(paths) < 2:
@@ -225,7 +227,7 @@ def _without_unsteady(system: System, branches: Branches) -> Branches:
 
 
 def _is_unsteady(system: System, path: Path) -> bool:
-    """Whether friction pushes along a rigid-body mode that nothing holds, on all of a path."""
+    """Whether friction pushes along an unconstrained rigid-body mode at all points of a path."""
     if system.linear.natural.min(initial=1.0) > 0.0:
         return False
     points = recorded(system, [path])

@@ -1,9 +1,9 @@
-"""The system without preloads and gaps, to whose response that of larger and larger motions tends.
+"""The system without preloads and gaps, to whose response that of ever larger motions tends.
 
-The forces of a contact are homogeneous in its motion and its preload: with s times both they are s times as
-large. So at a level s of the forces the response is s times that with preloads n_0 / s. Beyond the levels at
-which preloads and gaps matter its peaks are those without any. A branch that is isolated from small motions
-may have its top there, and the level of the forces leads to it near that frequency alone.
+The forces of a contact are homogeneous in its motion and its preload: s times both gives s times the forces.
+So at the force level s the response is s times that with preloads n_0 / s. At levels so high that preloads
+and gaps do not matter, its peaks are those without any. A branch that is isolated from small motions may have
+its top there, and the force level leads to it only near that frequency.
 """
 
 from __future__ import annotations
@@ -18,11 +18,10 @@ from fcm.harmonic_balance.system import System
 
 
 def without_preload(system: System) -> System | None:
-    """The system with a few of its harmonics and no preload, gap, static load or friction of [start]; None if
-    it is no other.
+    """The system with a few harmonics, and without preloads, gaps, static loads and friction of [start].
 
-    Nor is there one of many contacts, of which hardly any opens, or with laws of one's own, whose forces need
-    not be homogeneous.
+    None if no contact with a preload or gap can open. None, too, for many contacts, of which hardly any
+    opens, and for contact laws of its own, whose forces need not be homogeneous.
     """
     scene = system.scene
     many = len(scene.contacts) >= system.option(LEVEL_REACH).min_contacts
@@ -37,7 +36,7 @@ def without_preload(system: System) -> System | None:
 
 
 class _LastPeaks(threading.local):
-    """Those that each thread found last, with what they are of: of a sweep of preloads all have the same."""
+    """The peaks that each thread found last, with their key: a sweep of preloads shares them."""
 
     key: tuple[object, ...] = ()
     peaks: tuple[FoundPeak, ...] = ()
