@@ -1,4 +1,4 @@
-"""Nonlinear modes: frequency and damping of a mode of a structure with its contacts, against amplitude."""
+"""Nonlinear modes: frequency and damping ratio of a mode of a structure with contacts, against amplitude."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from fcm.scene.options import LIMITS
 
 
 class ModeError(ValueError):
-    """Raised for a mode that does not exist; the message says which there are."""
+    """Raised for a mode that does not exist; the message lists those that do."""
 
 
 class Mode(Frozen):
-    """Points of a nonlinear mode: modal amplitude, frequency, damping ratio, and the modes' motion over a."""
+    """Points of a nonlinear mode: modal amplitude a, frequency, damping ratio, and modal motion over a."""
 
     system: System
     problem: AutonomousProblem
     path: Path
-    amplitude: FloatArray  # (point,) a, the root of sum_i |a Q_i|^2 over the modes, of mass 1
+    amplitude: FloatArray  # (point,) a, the root of sum_i |a Q_i|^2 over the modes of mass 1
     omega: FloatArray  # (point,)
     damping: FloatArray  # (point,)
     mean: FloatArray  # (point, mode) from rest
@@ -46,19 +46,18 @@ class Mode(Frozen):
         return np.column_stack((np.reshape(z, (-1, count)), self.omega))
 
     def displacements(self) -> tuple[ComplexArray, FloatArray]:
-        """Amplitudes (point, harmonic, dof) and means (point, dof) of the degrees of freedom."""
+        """Harmonics (point, harmonic, dof) and means (point, dof) of the degrees of freedom."""
         linear, a = self.system.linear, self.amplitude
         return a[:, None, None] * (self.Q @ linear.dofs), self.rest + a[:, None] * (self.mean @ linear.dofs)
 
     @property
     def power(self) -> FloatArray:
-        """Shares (point, harmonic) of the power that the negative damping -2 D omega M x' does on each
-        harmonic.
+        """Shares (point, harmonic) of each harmonic in the power of the negative damping -2 D omega M x'.
 
             P_h / P = h^2 sum_i |Q_hi|^2 / sum_hi h^2 |Q_hi|^2
 
-        Forces in resonance do work on the first alone. Where the others have much of the power, as at an
-        internal resonance, the damping is not that of a response.
+        Forces in resonance do work only on harmonic 1. If the others have much of the power, as at an
+        internal resonance, the damping is not that of a forced response.
         """
         size: FloatArray = (np.abs(self.Q) ** 2).sum(axis=2) * np.array(self.system.harmonics) ** 2
         share: FloatArray = size / size.sum(axis=1, keepdims=True)
@@ -86,10 +85,10 @@ def nonlinear_mode(
     options: NonlinearModeOptions = NONLINEAR_MODE,
     progress: Progress | None = None,
 ) -> Mode:
-    """The mode with a number, from the linear one at the least amplitude of the span.
+    """Follow the mode with a number from the linear mode at the least amplitude of the span.
 
-    Modes are counted from 1, the lowest, as those of the structure with its contacts as they are at rest:
-    stuck where they are pressed, else open; without rigid-body modes.
+    Modes are counted from 1, the lowest, without rigid-body modes. They are those of the structure with its
+    contacts as at rest: stuck if they are pressed, else open.
 
     Raises
     ------
@@ -121,11 +120,11 @@ def nonlinear_mode(
 
 
 def without_even(system: System) -> System:
-    """The system without harmonics that the mode has not: those of a motion whose halves are opposite.
+    """The system without even harmonics, if the mode has none as the halves of its cycle are opposite.
 
-    Where no contact's load varies, and none is strained at rest, opposite motions have opposite forces, and
-    from the linear mode on all even harmonics are 0. Other motions with the same friction branch off, where
-    steps would come to nothing.
+    If no contact's load varies, and none is strained at rest, opposite motions have opposite forces, and all
+    even harmonics are 0 from the linear mode on. With them, other motions with the same friction branch off,
+    where steps would make no progress.
     """
     odd = tuple(h for h in system.harmonics if h % 2)
     symmetric = all(contact.k_v == 0.0 for contact in system.scene.contacts) and not system.rest.any()
@@ -153,10 +152,10 @@ def mode_at(system: System, problem: AutonomousProblem, path: Path) -> Mode:
 def damping_rounding(
     system: System, omega: FloatArray, Q: ComplexArray, options: NonlinearModeOptions = NONLINEAR_MODE
 ) -> FloatArray:
-    """Damping ratios (point,) that are no more than rounding.
+    """Damping ratios (point,) up to which damping is rounding.
 
-    The work of a cycle is what is left of forces of the stiffness, omega^2, and of the contacts' springs:
-    of their sum so many last digits, over 2 omega^2.
+    The work of a cycle is a small difference of forces of the stiffness, omega^2, and of the contacts'
+    springs. Its error is `last_digits` units in the last digit of their sum, over 2 omega^2.
     """
     springs = system.springs(stuck=True)
     stretched = (np.abs(Q @ system.linear.ports) ** 2 @ springs).sum(axis=1)
@@ -168,7 +167,7 @@ def damping_rounding(
 def linear_modes(
     system: System, number: int, options: NonlinearModeOptions = NONLINEAR_MODE
 ) -> list[ModeGuess]:
-    """The mode at very small amplitude; where a contact just touches, and may open, three guesses."""
+    """Guesses of the mode at very small amplitude: one, or three if a contact just touches, and may open."""
     linear = system.linear
     loads = system.loads_at_rest
     touching = any(load == 0.0 for load in loads)
@@ -193,7 +192,7 @@ def linear_modes(
 
 
 def _closed(load: float, half: float) -> float:
-    """The share of its springs that a contact has at rest, by its normal load there."""
+    """Share of a contact's springs that act at rest, by its normal load; half if it just touches."""
     return half if load == 0.0 else float(load > 0.0)
 
 
@@ -207,11 +206,12 @@ def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, Floa
 
 
 def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple[FloatArray, FloatArray]:
-    """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and the
-    contact loads with these, (point, contact, 4).
+    """Truncation error (point,), and contact loads (point, contact, 4), both by twice as many harmonics.
 
-    Relative, of the damping to the greatest of the mode; NaN where there is no such motion, and of many
-    unknowns at the points where it is unknown. By the options of the mode, if no others are given.
+    The error is the relative change of the frequency or of the damping, whichever is greater; the damping is
+    relative to its greatest value along the mode. NaN where there is no such motion. With many unknowns the
+    error is computed at some points only, and NaN at the others. The options are those of the mode unless
+    given.
     """
     system, old = mode.system, mode.problem
     options = options or old.options
@@ -237,7 +237,7 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
 
 
 def _truncation_points(mode: Mode, unknowns: int, options: TruncationOptions) -> npt.NDArray[np.intp]:
-    """The points at which the error is known that so many unknowns tell."""
+    """The points at which the truncation error is computed, for a number of unknowns with more harmonics."""
     points = len(mode.path.z)
     if unknowns < options.many_unknowns:
         return np.arange(points)

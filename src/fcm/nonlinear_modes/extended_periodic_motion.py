@@ -1,20 +1,21 @@
 r"""Periodic motion of the structure without forces, a nonlinear mode: the extended periodic motion concept.
 
-Friction takes energy, so that a free motion decays. Negative damping in proportion to the mass, which gives
-back the energy lost in each cycle, makes it periodic. See Krack, "Nonlinear modal analysis of nonconservative
-systems: extension of the periodic motion concept":
+Friction dissipates energy, so that a free motion decays. Negative damping proportional to the mass, which
+restores the energy lost in each cycle, makes it periodic. See Krack, "Nonlinear modal analysis of
+nonconservative systems: extension of the periodic motion concept":
 
     M x'' + (C - 2 D omega M) x' + K x + f(x) = 0
 
-omega is the mode's frequency and D its damping ratio at the amplitude of the motion: of a linear mode its
-own. With modes of mass 1 the receptance at the harmonic h has the denominators
+omega is the mode's frequency, and D its damping ratio, at the amplitude of the motion; for a linear mode they
+are its own. With modes of mass 1 the receptance at the harmonic h has the denominators
 
     e_i = w_i^2 - (h omega)^2 + 2 i h omega (zeta_i w_i - D omega)
 
-x is counted from rest, where static loads are balanced by the contacts, and f from its value there. All
-amplitudes are divided by that of the mode, a: the fundamental's modal amplitudes are a Q_i, with
-sum_i |Q_i|^2 = 1. So a linear motion is the same at all a. The parameter is ln a. The modes whose frequency
-the motion may come to have no receptance there; their Q are unknowns beside the contacts' displacements.
+x is counted from rest, where the contacts balance the static loads, and f from its value there. All
+amplitudes are divided by the mode's amplitude a: the fundamental's modal amplitudes are a Q_i, with
+sum_i |Q_i|^2 = 1. A linear motion is therefore the same at all a. The parameter is ln a. Modes whose
+frequency the motion may reach have no receptance there; their Q are unknowns beside the contacts'
+displacements.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ AMPLITUDE_UNIT = float(np.log(10.0))  # unit of the parameter
 class ModeGuess(Frozen):
     """Initial guess of a mode: modal amplitudes Q (mode,), frequency and damping.
 
-    `kept` are the modes that it may come near.
+    `kept` are the modes whose frequencies the motion may come near; their Q are unknowns.
     """
 
     Q: FloatArray
@@ -53,9 +54,9 @@ class ModeGuess(Frozen):
 
 
 class ModalMotion(Frozen):
-    """Motion at a point of a mode: a, omega, D, and modal amplitudes over a.
+    """Motion at a point of a mode: a, omega, D, and modal displacements over a.
 
-    These are at rest, `mean` (mode,), and harmonics Q (harmonic, mode).
+    These are the mean from rest, `mean` (mode,), and the harmonics Q (harmonic, mode).
     """
 
     amplitude: float
@@ -66,9 +67,10 @@ class ModalMotion(Frozen):
 
 
 class AutonomousProblem(Problem):
-    """The unknowns: those of the contacts as in `contact_law`, over a; Re and Im of the kept Q; omega; D.
+    """The equations of a mode, with the parameter ln a.
 
-    precision: of Newton's method, in the units of `evaluate_scale`.
+    The unknowns are those of the contacts as in `contact_law`, over a; Re and Im of the kept Q; omega; and D.
+    precision: options of Newton's method, in the units of `evaluate_scale`.
     """
 
     def __init__(
@@ -101,7 +103,10 @@ class AutonomousProblem(Problem):
         return z
 
     def with_harmonics_of(self, z: FloatArray, other: AutonomousProblem) -> FloatArray:
-        """A point of the same mode with other harmonics, or a direction there: what both have, else 0."""
+        """A point, or a direction, of another problem of the same mode, in the harmonics of this one.
+
+        Harmonics that the other problem lacks are 0.
+        """
         found = np.zeros(self.n + 1)
         found[self.contact_unknowns :] = z[other.contact_unknowns :]
         found[self.mean_rows] = z[other.mean_rows]
@@ -111,11 +116,11 @@ class AutonomousProblem(Problem):
         return found
 
     def modal_amplitude(self, z: FloatArray) -> float:
-        """a; where a step leads astray, what can still be calculated with."""
+        """The amplitude a, limited to a range that does not overflow if a step leads astray."""
         return exp(min(max(z[self.n], -self.units.max_log_amplitude), self.units.max_log_amplitude))
 
     def contact_motion(self, z: FloatArray) -> FloatArray:
-        """Displacements of the contacts as in `contact_law`, those at rest among them, (unknown,)."""
+        """Displacements of the contacts (unknown,) as in `contact_law`, including those at rest."""
         return self.contacts.rest + self.modal_amplitude(z) * z[: self.contact_unknowns]
 
     def evaluate(self, z: Any) -> int:
@@ -125,7 +130,7 @@ class AutonomousProblem(Problem):
         J[:], residual[:] = 0.0, 0.0
         self.contacts.evaluate(z[:m], self.modal_amplitude(z))
         force, tangent = self.contacts.force, self.contacts.tangent
-        grows = (tangent @ z[:m].reshape(*tangent.shape[:2], 1)).ravel() - force  # by ln a
+        grows = (tangent @ z[:m].reshape(*tangent.shape[:2], 1)).ravel() - force  # derivative by ln a
         J[self.mean_rows, :m] = self.of_contacts(self.static, tangent[:, : self.contacts.directions])
         J[self.mean_rows, n] = self.static @ grows[self.mean_rows]
         residual[self.mean_rows] = self.static @ force[self.mean_rows]
@@ -136,14 +141,17 @@ class AutonomousProblem(Problem):
         return 0
 
     def of_contacts(self, answer: FloatArray, tangent: FloatArray) -> FloatArray:
-        """answer (row, port) times the derivatives of forces of each contact by its own unknowns, tangent
-        (contact, direction, unknown): (row, unknown of all)."""
+        """Multiply answer (row, port) by the contacts' tangent (contact, direction, unknown).
+
+        tangent has the derivatives of each contact's forces by its own unknowns. Returns (row, unknown of all
+        contacts).
+        """
         (contacts, directions, width), rows = tangent.shape, len(answer)
         each = answer.reshape(rows, contacts, directions).swapaxes(0, 1) @ tangent
         return each.swapaxes(0, 1).reshape(rows, contacts * width)
 
     def denominators(self, h: float, z: FloatArray) -> tuple[ComplexArray, ComplexArray, complex]:
-        """e (mode,), and its derivatives by omega (mode,) and D."""
+        """The denominators e (mode,), and their derivatives by omega (mode,) and D."""
         omega, D, natural = z[self.n - 2], z[self.n - 1], self.linear.natural
         rate = 2.0 * self.linear.damping * natural
         e = (natural - h * omega) * (natural + h * omega) + 1j * h * omega * (rate - 2.0 * D * omega)
@@ -151,7 +159,7 @@ class AutonomousProblem(Problem):
         return e, by_omega, -2j * h * omega * omega
 
     def harmonic(self, j: int, h: float, z: FloatArray, grows: FloatArray) -> None:
-        """Rows of one harmonic: X + G F, without the modes kept, which have rows of their own."""
+        """Fill the rows of one harmonic, X + G F; the kept modes of the fundamental have their own rows."""
         m, n, P, rows = self.contact_unknowns, self.n, self.linear.ports, self.rows[j]
         e, by_omega, by_damping = self.denominators(h, z)
         push, first = P @ _complex(self.contacts.force, rows), int(rows[0]) if rows.size else 0
@@ -176,7 +184,7 @@ class AutonomousProblem(Problem):
         derivative: ComplexArray,
         denominators: tuple[ComplexArray, ComplexArray, complex],
     ) -> None:
-        """Rows of the kept modes, whose Q and derivative are set, and of amplitude and phase."""
+        """Fill the rows of the kept modes, of amplitude and of phase; set Q and derivative of these modes."""
         m, n, kept = self.contact_unknowns, self.n, self.guess.kept
         J, residual = self.views["jacobian"], self.views["residual"]
         unit = self.guess.omega**2
@@ -195,13 +203,13 @@ class AutonomousProblem(Problem):
         J[n - 1] = self.units.damping * (self.guess.Q @ derivative).imag
 
     def add(self, rows: npt.NDArray[np.intp], value: ComplexArray, derivative: ComplexArray) -> None:
-        """Complex equations as their real and imaginary parts."""
+        """Set rows to the real parts of complex equations, and the rows after them to the imaginary parts."""
         J, residual = self.views["jacobian"], self.views["residual"]
         residual[rows], residual[rows + 1] = value.real, value.imag
         J[rows], J[rows + 1] = derivative.real, derivative.imag
 
     def evaluate_scale(self, z: Any) -> int:
-        """Displacements by their present size, tangential and normal of each contact."""
+        """Set the units: those of displacements are their present sizes, by port, with a floor."""
         z, scale = np.asarray(z), self.views["scale"]
         size = np.sqrt(z[self.mean_rows] ** 2 + (z[self.rows] ** 2 + z[self.rows + 1] ** 2).sum(axis=0))
         self.largest = np.maximum(self.largest, size)
@@ -221,7 +229,7 @@ class AutonomousProblem(Problem):
         return 0
 
     def evaluate_margins(self, z: Any) -> int:
-        """The margins of the contacts, one after the other."""
+        """Fill the margins of the contacts, one after the other."""
         if self.margins == 0:
             return 0
         z = np.asarray(z)
@@ -235,14 +243,14 @@ class AutonomousProblem(Problem):
         return 0
 
     def evaluate_outputs(self, z: Any, direction: Any) -> int:
-        """Reports the damping and the frequency with their growth along the curve."""
+        """Report the damping ratio and the frequency with their growth along the curve."""
         omega = self.guess.omega
         self.output[0], self.growth[0] = self.units.damping_offset + abs(z[self.n - 1]), direction[self.n - 1]
         self.output[1], self.growth[1] = z[self.n - 2] / omega, direction[self.n - 2] / omega
         return 0
 
     def motion(self, z: FloatArray) -> ModalMotion:
-        """The modes' motion at a point."""
+        """The modal motion at a point."""
         self.contacts.evaluate(z[: self.contact_unknowns], self.modal_amplitude(z))
         P, force = self.linear.ports, self.contacts.force
         Q = np.array([-(P @ _complex(force, rows)) for rows in self.rows])
@@ -262,7 +270,7 @@ def _complex(values: FloatArray, rows: npt.NDArray[np.intp]) -> ComplexArray:
 
 
 def _scaled_steps(coarse: float) -> NewtonOptions:
-    """Lengths that are as short in units so many times as large."""
+    """Newton options whose lengths stay the same in units that are larger by a factor."""
     usual = NewtonOptions()
     lengths = (
         "tolerance",

@@ -1,11 +1,11 @@
 r"""Response near a resonance from a nonlinear mode (single nonlinear mode theory).
 
-Near a resonance the motion is that of the mode, with the frequency omega and damping ratio D that it has at
-its amplitude a. Forces at the frequency W that do the modal force p = |sum_i conj(Q_i) F_i| on it give
+Near a resonance the motion is that of the mode, with the frequency omega and the damping ratio D that it has
+at the amplitude a. Forces at the frequency W with the modal force p = |sum_i conj(Q_i) F_i| give
 
     |omega^2 - W^2 + 2 i D omega W| a = p
 
-exact for a linear structure with one mode, and good where no other mode is near.
+This is exact for a linear structure with one mode, and accurate if no other mode is near.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ def modal_force(mode: Mode) -> FloatArray:
 
 
 def resonant_level(mode: Mode) -> FloatArray:
-    """Level of the scene's forces at which the resonance, greatest in a, has the amplitude of the point.
+    """Force level (point,) at which the resonance, the maximum of a, has the amplitude of the point.
 
-    (point,) 2 D omega^2 sqrt(1 - D^2) a / p; infinite where the forces do nothing on the mode.
+    It is 2 D omega^2 sqrt(1 - D^2) a / p; infinite if the scene's forces have no modal force.
     """
     D = np.clip(mode.damping, 0.0, 1.0)
     need = 2.0 * D * mode.omega**2 * np.sqrt(1.0 - D * D) * mode.amplitude
@@ -44,7 +44,7 @@ def resonant_level(mode: Mode) -> FloatArray:
 def flanks(mode: Mode, level: float = 1.0) -> FloatArray:
     """Frequencies W (point, 2) below and above resonance at which forces of a level give the amplitude.
 
-    NaN where they give it at none.
+    NaN where no frequency gives it.
     """
     square, D = mode.omega**2, mode.damping
     middle = square * (1.0 - 2.0 * D * D)
@@ -61,7 +61,7 @@ def resonances(mode: Mode, level: float = 1.0) -> Mode | None:
 
 
 def at_amplitude(mode: Mode, amplitude: float) -> Mode | None:
-    """The points of the mode with a modal amplitude; None if it does not come to it."""
+    """The points of the mode with a modal amplitude; None if the mode does not reach it."""
     return _where(mode, lambda one: one.amplitude, amplitude)
 
 

@@ -1,7 +1,7 @@
 """Tolerances and limits of nonlinear modes.
 
-`NonlinearModeOptions` has them all. It is an argument of `nonlinear_mode`; what is computed from a mode later
-takes those with which it was followed.
+`NonlinearModeOptions` has them all. It is an argument of `nonlinear_mode`. Later computations with a mode
+take the options with which it was followed.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from fcm.frozen import Frozen
 
 
 class LinearModeOptions(Frozen):
-    """Options for the linear start of a mode.
+    """Options on the linear start of a mode.
 
     Attributes
     ----------
     rigid_tolerance : float
         Square of a frequency, relative to the greatest, up to which the mode counts as a rigid-body mode.
     contact_shares : tuple of float
-        Mean shares of its springs that a contact which just touches may have: one guess of the mode for each.
+        Mean shares of its springs that a contact that just touches may have: one guess of the mode for each.
     frequency_ratio : float
-        Ratio of a mode's frequency to the frequencies the motion may reach, up to which the mode's amplitude
-        is an unknown.
+        Ratio of a mode's frequency to those that the motion may reach, up to which the mode's Q is an
+        unknown.
     """
 
     rigid_tolerance: float = 1e-12
@@ -41,10 +41,10 @@ class ModeUnitOptions(Frozen):
     damping : float
         Unit of the damping ratio.
     damping_offset : float
-        Number added to the damping ratio where its relative change is judged: a change of nearly nothing is
-        rounding.
+        Number added to the damping ratio where its relative change is judged, as the change of a very small
+        one is rounding.
     max_log_amplitude : float
-        Size of ln a beyond which the amplitude is not computed, but that of this limit.
+        Size to which ln a is limited when the amplitude is computed.
     """
 
     own_fraction: float = 0.1
@@ -57,17 +57,15 @@ class ModeUnitOptions(Frozen):
 class ManyContactsOptions(Frozen):
     """Options on how a mode of many contacts is followed.
 
-    It takes steps of nearly ln a, past the corners of single contacts.
-
-    Each contact that begins to slip turns its mean displacement like a root. Most of them turn frequency and
-    damping by nothing that matters.
+    Steps are nearly those of ln a, and pass over the corners of single contacts. The mean displacement of a
+    contact that begins to slip changes like a root, but most contacts hardly change frequency and damping.
 
     Attributes
     ----------
     min_contacts : int
-        Number of contacts from which on no corner is looked for.
+        Number of contacts from which on corners are not located.
     unit_factor : float
-        Factor by which the units of all unknowns but ln a are then larger.
+        Factor on the units of all unknowns but ln a with so many contacts.
     """
 
     min_contacts: int = 16
@@ -75,7 +73,7 @@ class ManyContactsOptions(Frozen):
 
 
 class RestartOptions(Frozen):
-    """Options on how a mode is taken up again beyond a corner where its steps make no progress.
+    """Options on how a mode is restarted beyond a corner where its steps make no progress.
 
     Attributes
     ----------
@@ -85,13 +83,12 @@ class RestartOptions(Frozen):
         Most reports in a row, of 16 steps each, without progress; and the change of ln a from one report to
         the next, relative to its span, below which there is none.
     end_fraction : float
-        Distance of the end of the first part from where steps make no progress, relative to the way to there.
+        Distance of the end of the first part from where steps make no progress, relative to its length.
     restart_lengths : tuple of float
-        Distances in ln a, in its unit, at which the mode is taken up again, in turn, until a solution is
-        found.
+        Distances in ln a, in its unit, at which a restart is tried, in turn, until a solution is found.
     max_distance_ratio : float
-        Distance of that solution from its guess, relative to the distance in ln a, from which on it is none
-        of this mode.
+        Distance of that solution from its guess, relative to the distance in ln a, from which on it does not
+        belong to this mode.
     """
 
     max_restarts: int = 12
@@ -121,14 +118,14 @@ class TruncationOptions(Frozen):
     ----------
     many_unknowns : int
         Number of unknowns with twice as many harmonics, from which on the error is estimated only at some
-        points, evenly spread, with the last one among them.
+        evenly spread points, including the last one.
     min_points : int
         Least number of these points.
     time_fraction : float
-        Time for these points, relative to that of the mode; it grows as the cube of the unknowns and decides
-        how many there are.
+        Time for these points, relative to that of the mode, which sets their number. The time for a point
+        grows as the cube of the unknowns.
     damping_floor : float
-        Damping ratio that the error of a smaller one is referred to.
+        Damping ratio to which the error is relative if the mode's greatest one is smaller.
     """
 
     many_unknowns: int = 500
@@ -143,14 +140,14 @@ class NonlinearModeOptions(Frozen):
     Attributes
     ----------
     linear, units, many, restart, rounding, truncation
-        Options of the parts, each of a class of its own.
+        Options of the parts, see the class of each.
     resonance : float
         Error of the place of a resonance, relative to the step along the mode.
     same_end : float
         Relative difference of a value from that at an end of the mode, up to which the point sought is that
         end.
     shared_power : float
-        Share of the power of the negative damping in further harmonics, above which the mode is at an
+        Share of further harmonics in the power of the negative damping, above which the mode counts as at an
         internal resonance.
     """
 
@@ -165,4 +162,4 @@ class NonlinearModeOptions(Frozen):
     shared_power: float = 0.05
 
 
-NONLINEAR_MODE = NonlinearModeOptions()  # where nothing else is said
+NONLINEAR_MODE = NonlinearModeOptions()  # the defaults

@@ -1,6 +1,6 @@
-"""A curve followed past places where its steps come to nothing, such as corners of two contacts at once.
+"""Follow a curve past places where its steps make no progress, such as corners of two contacts at once.
 
-There the curve is taken up again a little further on, from the solution nearest to where it stopped.
+The curve is restarted a little further on, from a solution near where it stopped.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def follow_past_corners(
     restart: RestartOptions = NONLINEAR_MODE.restart,
     progress: Progress | None = None,
 ) -> Path:
-    """The curve through start, upwards from the lower end of the span, as of `follow`."""
+    """Follow the curve through start upwards from the lower end of the span, see `follow`."""
     whole, low = None, span[0]
 
     def report(share: float) -> None:
@@ -40,7 +40,7 @@ def follow_past_corners(
         path, ended = _first_piece(new_problem, start, (low, span[1]), options, restart, report)
         if not path.z.shape[0]:
             return path if whole is None else whole
-        if low > span[0] and path.status is Status.RETURNED:  # to where it was taken up
+        if low > span[0] and path.status is Status.RETURNED:  # to where it was restarted
             path = replace(path, status=Status.STALLED)
         whole = path if whole is None else whole.then(path)
         if ended:
@@ -61,7 +61,7 @@ def _first_piece(
     restart: RestartOptions,
     report: Progress,
 ) -> tuple[Path, bool]:
-    """The curve as far as its steps lead, and whether that is its end."""
+    """The curve as far as its steps make progress, and whether that is its end."""
     last, same = -1.0, 0
 
     def watch(share: float) -> None:
@@ -86,7 +86,7 @@ def _first_piece(
 def _restart_point(
     problem: Problem, z: FloatArray, options: FollowOptions, restart: RestartOptions
 ) -> FloatArray | None:
-    """The solution a little further on that is nearest; None if there is none near."""
+    """The first solution found at growing distances beyond z; None if there is none near."""
     newton = Newton(problem, options.newton)
     newton.row[-1] = 1.0
     problem.evaluate_scale(np.ascontiguousarray(z))

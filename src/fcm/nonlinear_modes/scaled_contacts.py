@@ -1,4 +1,4 @@
-"""The contacts of a free motion, their displacements and forces from rest divided by its amplitude."""
+"""The contacts of a free motion; displacements and forces from rest are divided by its amplitude."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from fcm.model.scene import FloatArray
 
 
 class ScaledContacts:
-    """Unknowns laid out as in `fcm.structure.layout`; mean_rows (port,) and rows (harmonic, port) say
-    which they are of each displacement, the latter that of its Re, before that of its Im.
+    """Forces and tangents of the contacts, by unknowns laid out as in `fcm.structure.layout`.
 
-    rest (unknown,): displacements under the static loads, about which the contacts move.
+    mean_rows (port,) are the indices of the mean displacements, and rows (harmonic, port) those of the real
+    parts of the harmonics; the imaginary parts follow them. rest (unknown,): displacements under the static
+    loads, about which the contacts move.
 
     Raises
     ------
@@ -25,7 +26,7 @@ class ScaledContacts:
         layout = system.layout
         self.width, self.unknowns, self.directions = layout.width, layout.unknowns, layout.directions
         self.mean_rows, self.rows = layout.mean_at, layout.waves_at
-        self._springs = np.zeros(self.unknowns)  # of each unknown's displacement, where all stick
+        self._springs = np.zeros(self.unknowns)  # of each unknown, if all contacts stick
         self._springs[self.mean_rows] = system.springs(stuck=True)
         self._springs[self.rows] = self._springs[self.rows + 1] = system.springs(stuck=True)
         self.rest = np.zeros(self.unknowns)
@@ -39,8 +40,10 @@ class ScaledContacts:
         self.tangent = np.zeros((len(self.laws), self.width, self.width))  # of each contact by its own
 
     def evaluate(self, x: FloatArray, a: float) -> None:
-        """Forces over a and their tangents at displacements a x from rest, without what they are there, and
-        without those counted to the structure."""
+        """Compute the forces, over a, and their tangents at displacements a x from rest.
+
+        Forces are counted from rest, without those of springs that are counted to the structure.
+        """
         w, normal, whole = self.width, self.directions - 1, self.rest + a * x
         for c, law in enumerate(self.laws):
             here = slice(c * w, (c + 1) * w)
@@ -56,7 +59,7 @@ class ScaledContacts:
             self.tangent[c, normal, normal] -= self._counted[c]
 
     def means_at_rest(self) -> FloatArray:
-        """Forces at rest, (port,), without those counted to the structure."""
+        """Forces at rest (port,), without those of springs that are counted to the structure."""
         found = self._force_at_rest[self.mean_rows]
         found[self.directions - 1 :: self.directions] -= (
             self._counted * self.rest[self.mean_rows][self.directions - 1 :: self.directions]
@@ -64,7 +67,7 @@ class ScaledContacts:
         return found
 
     def _is_linear(self, c: int, x: FloatArray) -> bool:
-        """Whether a contact surely neither slips nor opens: then two springs, without rounding by n_0."""
+        """Whether a contact surely neither slips nor opens; its springs then avoid rounding by n_0."""
         contact, d = self._contacts[c], self.directions
         size = np.hypot(x[d::2], x[d + 1 :: 2]).reshape(-1, d)
         *along, v = (np.abs(x[:d]) + size.sum(axis=0)).tolist()
