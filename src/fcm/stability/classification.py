@@ -155,10 +155,10 @@ def is_uncertain(
 ) -> bool:
     """Whether a classification may change if the motion changes further, as it did from plain to fine.
 
-    True if the classification is unknown, if a decay is less than the change of the growth, or if a growth is
-    less than `times` that change. With meetings, a stable one is also uncertain if a pair turns so fast that
-    it may meet at -1, where one multiplier leaves by a flip. A stable one is uncertain, too, if a left-out
-    multiplier, plain or fine, is far on the wrong side of 1.
+    It may if it is unknown, if a decay is less than the change of the growth, or if a growth is less than
+    `times` that change. With meetings, it may if a pair turns so fast that it may meet at -1, where one
+    multiplier leaves by a flip. It may, too, if all decays but a left-out multiplier, plain or fine, that is
+    far on the wrong side of 1.
     """
     if math.isnan(found.stable):
         return True

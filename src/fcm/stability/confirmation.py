@@ -108,7 +108,7 @@ class ConfirmedPoints:
         self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
         self.known = dict[int, tuple[Classification, FloatArray | None]]()  # with the classified motions
         self.evaluations_left = options.confirmation.max_fraction_of_many * len(z) if self.many else math.inf
-        self.limited = False  # whether more were asked for
+        self.limited = False  # whether more were needed
 
     def nodes(self, first: int, last: int) -> list[int]:
         """The points from first to last that are confirmed first: with many contacts only the ends.

@@ -6,9 +6,10 @@ is the derivative of the contacts' forces by the motion:
 
     ((s + D)^2 + 2 zeta_i w_i (s + D) + w_i^2) q_i + P_i T P^T q = 0.
 
-This is an eigenvalue problem with 2 modes * unknowns of each mode exponents s. Each exponent comes several
-times, shifted by i k omega. The copy whose p(t) lies most evenly about its mean has lost least by truncation
-(Lazarus and Thomas, Comptes Rendus Mecanique 338, 2010). The multipliers are exp(2 pi s / omega).
+This eigenvalue problem has twice as many exponents s as modes times unknowns of each mode. Each exponent
+comes several times, shifted by i k omega. The copy whose p(t) lies most evenly about its mean has lost least
+by truncation (Lazarus and Thomas, Comptes Rendus Mecanique 338, 2010). The multipliers are
+exp(2 pi s / omega).
 
 T is the derivative for periodic motions. For a law with memory, such as friction, it is exact for
 disturbances that neither grow nor decay, and approximate for all others.
@@ -79,7 +80,7 @@ class HillMultipliers:
         found, again = list[complex](), list[complex]()
         for k in np.argsort(np.abs(off), kind="stable").tolist():
             value = complex(np.exp(2.0 * np.pi / omega * exponents[k]))
-            # the pair shifted to -1: both signs of the imaginary part give the same multiplier
+            # a multiplier at -1 has exponents with both signs of the imaginary part
             same = any(abs(value - one) < self.options.hill.multiplier_tolerance * abs(one) for one in found)
             twice = same and abs(off[k]) > self.options.hill.min_offset
             (again if twice else found).append(value)

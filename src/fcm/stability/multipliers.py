@@ -94,7 +94,7 @@ class Multipliers:
         self.far = far
         self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
         if system.scene.planar:
-            from fcm.stability.planar_monodromy import PlanarSequence  # most scenes do without
+            from fcm.stability.planar_monodromy import PlanarSequence  # most scenes do not need it
 
             self.states = (
                 PlanarSequence(contact, tuple(finer), options.planar),

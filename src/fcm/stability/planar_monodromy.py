@@ -3,12 +3,12 @@ r"""The monodromy matrix of a motion whose contacts slide in a plane.
 A small disturbance is propagated from event to event, in steps as long as polynomials resolve its velocities.
 Each step takes the degree that reaches the next event at the least cost.
 
-As on a line (see `monodromy`), the modes, of mass 1 and with shapes P on the ports, obey
+As on a line (see `monodromy`), the modes of mass 1, with shapes P on the ports, obey
 
     q'' + 2 zeta w q' + w^2 q = - P dF
 
-and the forces of a contact in its plane change with its displacements du (2,), dv and with what its slider
-remembers. With r = mu n / k_u, dr = mu k_v dv / k_u and the direction of slip e = (cos alpha, sin alpha):
+The forces of a contact in its plane change with its displacements du (2,), dv and with the memory of its
+slider. With r = mu n / k_u, dr = mu k_v dv / k_u and the direction of slip e = (cos alpha, sin alpha):
 
     stick        df = k_u (du - dw),                               dw constant
     slip         df = k_u (dr e + (e_perp . du - s) e_perp),       s = e_perp . dw,   e . dw = e . du - dr
@@ -26,7 +26,8 @@ of the far modes, and P the shapes of the others,
 
     d = R^-1 P^T q + R^-1 S g,    R = 1 + S K,    q'' + .. + (w^2 + P K R^-1 P^T) q = (R^-1 P^T)^T g
 
-The force g on a contact accounts for its state; there is none where it sticks all through the cycle:
+g is the force of a contact's springs as if it stuck, minus its actual force. It is 0 for a contact that
+sticks all through the cycle:
 
     stick        g = k_u dw
     slip         g = k_u (e . du - dr) e + k_u s e_perp
@@ -40,8 +41,8 @@ structure includes them until another one opens or closes:
 Between events the equations are collocated at Radau points, as the equation of the direction is (see
 `Panel`). With r before s', the equation of s has no singular point where the load vanishes. Quantities that
 depend on one angle alone are eliminated at each point, as functions of (q, s). These are e . du - dr of the
-slipping contacts, the right sides for their s, and the forces on the modes. A step of length h then leaves
-equations for p = q' and s at all its points, which are solved for all disturbances at once. With the rule's
+slipping contacts, the right sides for their s, and the forces on the modes. A step of length h then has
+equations for p = q' and s at all its points, solved for all disturbances at once. With the rule's
 matrices A and D, and q_0, p_0 and s_0 at the beginning,
 
     q = q_0 + h A p,    p = p_0 + h A (forces - K q - C p),    r (D s + d s_0) + h lambda s = right side for s
@@ -423,7 +424,7 @@ class PlanarMonodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def start(self) -> cython.double:
-        """An angle at which little is remembered, in the middle between two events; `first` is the next."""
+        """The angle midway between two events at which contacts remember least; `first` is the next event."""
         i: cython.int
         c: cython.int
         count: cython.int
@@ -477,7 +478,7 @@ class PlanarMonodromy:
                 if rest <= self.tolerance:
                     break
                 self.longest[i] = h * min(max(self.safety * by, self.min_factor), self.max_retry_factor)
-            # a step that an event cuts short says nothing of a longer one
+            # a step that an event cuts short does not tell whether a longer one is accurate
             next_step: cython.double = h * min(self.safety * by, self.max_factor)
             self.longest[i] = min(max(self.longest[i], next_step), self.max_step)
             self.accept()
@@ -547,7 +548,7 @@ class PlanarMonodromy:
         self.omega = omega
         self.K_closed = ((self.shapes * every) @ seen + np.diag(self.natural**2)) / omega**2
         self.seen_closed, self.soft_closed = seen[ports], soft[ports]
-        self.open = np.full(1, -1)  # of no contact yet
+        self.open = np.full(1, -1)  # no contact yet
 
     def _open(self, contacts: npt.NDArray[np.intp]) -> None:
         """Include open contacts in the structure that was assembled with the springs of all."""

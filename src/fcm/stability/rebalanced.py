@@ -37,7 +37,7 @@ class Rebalancing:
         self.last: tuple[FloatArray, FloatArray] | None = None  # with many contacts: last z, and its change
 
     def _poll(self) -> None:
-        self.fewer.work.poll()  # of now, which may be another later
+        self.fewer.work.poll()  # of the present system: `take` may change it
 
     def take(self, system: System) -> None:
         """Take another system with the same structure and harmonics, whose contacts may differ."""

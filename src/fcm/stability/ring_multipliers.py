@@ -2,7 +2,7 @@ r"""Floquet multipliers of a wave that travels around a ring of sectors.
 
 The motion repeats after n = sectors / gcd(engine_order, sectors) sectors. Only disturbances that do so, too,
 are considered; with n = sectors these are all. Their growth in 1 / n of a period, in the frame of the wave,
-is an eigenvalue of `RingMonodromy`, or in a plane of `RingPlanarMonodromy`. A real one crosses 1 at a fold of
+is an eigenvalue of `RingMonodromy` (in a plane `RingPlanarMonodromy`). A real one crosses 1 at a fold of
 the curve of travelling waves. Any other one outside the unit circle breaks up the wave, even if its power for
 the whole period is real.
 """
