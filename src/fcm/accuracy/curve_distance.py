@@ -45,7 +45,7 @@ class PartialInterpolant:
     known: cython.uchar[::1]
     number: cython.Py_ssize_t[::1]  # of the known points
     known_points: cython.Py_ssize_t
-    coincident: cython.double  # part of the length of the curve: points nearer coincide
+    coincident: cython.double  # fraction of the curve's length, below which points coincide
 
     def __init__(
         self,
@@ -444,7 +444,7 @@ def shifted(
     dofs: cython.Py_ssize_t = amplitude.shape[1]
     along, across = np.empty((4, count)), np.empty((2, count, dofs))
     out, differences = np.empty((count, dofs)), np.empty((count, 1 + dofs))
-    moved: cython.double[:, ::1] = along  # the other's parameter, its rate; the first's, its sign of that
+    moved: cython.double[:, ::1] = along  # the other's parameter, its rate; the first's, its rate's sign
     other: cython.double[:, :, ::1] = across  # its amplitudes and their rates
     off: cython.double[:, ::1] = differences  # of the parameter and the amplitudes
     found: cython.double[:, ::1] = out

@@ -225,9 +225,9 @@ def with_nearest(
     fold is the distance to the nearest fold.
 
     The nearest motion is another one: agreement in a single degree of freedom means nothing. Each therefore
-    has at least the error of the greatest difference. A peak without a peak of the reference beside it is
-    compared with the greatest amplitude of the reference, if that is known at every frequency of the path.
-    The paths before `first` have their errors already.
+    has at least the error of the greatest difference. A peak without a reference peak beside it is compared
+    with the reference's greatest amplitude, if the reference is known at every frequency of the path. The
+    paths before `first` have their errors already.
     """
     if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
         return tuple(errors)
@@ -355,8 +355,8 @@ def _set_errors_of_peaks(
 
     error (point, dof), in the unit of `ReferenceCurve`, is filled there with the difference in height. It
     includes the difference of a second reference, with still more harmonics; if that is not found and may
-    matter, the error is unknown. If another peak of the reference is its greatest, the error is the greater
-    of the difference from that and the error of the peak itself.
+    matter, the error is unknown. If the reference is greatest at another peak, the error is the difference
+    from that peak, or the error of the peak itself, whichever is greater.
     """
     path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
     own, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])

@@ -72,7 +72,7 @@ def with_levels_where_unstable(
 def _with_branches(
     found: RefinedResponse, looked: Sequence[LevelSolutions], starts: Sequence[FloatArray], accuracy: float
 ) -> RefinedResponse:
-    """A response with the branches through given solutions, and a record of the frequencies looked at."""
+    """A response with the branches through given solutions, and a record of the frequencies searched."""
     if not looked:
         return found
     traced = with_further(found.system, found.traced, looked, starts)

@@ -222,7 +222,7 @@ class PairOptions(Frozen):
 
     @cached_property
     def second_pair(self) -> PairOptions:
-        """Options for choosing the reference's own reference, with still more harmonics."""
+        """Options for choosing the second reference, with still more harmonics."""
         return replace(
             self,
             harmonics_factor=self.second_factor,

@@ -80,7 +80,7 @@ class ComparedQuantities(Frozen):
 
 
 class SecondReference:
-    """The reference of a reference, computed at single points of it."""
+    """The second reference (the reference of a reference), computed at single points of the latter."""
 
     def __init__(self, finer: System, more: tuple[int, ...], options: PairOptions) -> None:
         self.finer, self.more = finer, more

@@ -1,7 +1,7 @@
 r"""The reference's own error, where it may exceed the error that the pair estimates.
 
 The spectrum of the exact forces times the receptance gives the shares s_h of the harmonics that the reference
-lacks, without feedback, all along the curve. With feedback, the error is
+lacks. These are without feedback, and known all along the curve. With feedback, the error is
 
     e_reference = g sum_h s_h.
 

@@ -1,4 +1,4 @@
-"""Follow the reference along stretches of a curve whose normal planes contain no point of it nearby.
+"""Follow the reference beside stretches of a curve in whose normal planes it has no point nearby.
 
 Where a corner or a pair of folds has moved, Newton's method in the normal plane diverges. It converges on
 both sides of the stretch, and the reference is followed from one side to the other.

@@ -105,8 +105,8 @@ def refined_response(
 ) -> RefinedResponse:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
-    Everything is traced again with the harmonics that the spectrum names, until no peak of a degree of
-    freedom, and no fold, differs from the reference's by more than the accuracy (relative). Tracing starts
+    Everything is traced again with the harmonics that the spectrum names. This ends when no peak of a degree
+    of freedom, and no fold, differs from the reference's by more than the accuracy (relative). Tracing starts
     from solutions with more harmonics near the branches traced before, and near their stable peaks. The force
     level is followed only with the harmonics that are predicted to be enough; it may lead to branches that
     fewer harmonics do not have.
@@ -176,10 +176,10 @@ def unchecked_with_given_harmonics(
 ) -> UncheckedResponse:
     """The response with the harmonics of the system, without errors.
 
-    It is traced first with one of them, then with the few that tell how far to follow the force level with
-    all, then with half of them. Solutions with more harmonics beside the stable peaks are starts, too, as the
-    force level may not lead to them. A branch that is isolated with three harmonics may be connected with the
-    others with one.
+    It is traced first with one of them, then with the few that show how far to follow the force level, then
+    with half of them, then with all. Solutions with more harmonics beside the stable peaks are starts, too,
+    as the force level may not lead to them. A branch that is isolated with three harmonics may be connected
+    to the others with one.
     """
     counts = sorted({1, few_harmonics(system), max(len(system.harmonics) // 2, few_harmonics(system))})
     before, peaks = None, tuple[FoundPeak, ...]()

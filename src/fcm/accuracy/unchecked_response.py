@@ -57,7 +57,7 @@ class UncheckedResponse(Frozen):
         return self._seconds_with(self.seconds, harmonics)
 
     def _seconds_with(self, seconds: float, harmonics: tuple[int, ...]) -> float:
-        """Scales seconds of work from the present harmonics to others."""
+        """Scale seconds of work from the present harmonics to others."""
         few, many = len(self.system.harmonics), len(harmonics)
         if not seconds:  # nothing was to be followed
             return 0.0
