@@ -50,8 +50,8 @@ class Folds(Frozen):
     def lost(self) -> list[float]:
         """Frequencies [rad/s] of the ends at which the curve was lost; none if it is closed.
 
-        If one end comes back to the start, and the other leaves the range or levels, the former has jumped to
-        another curve, and is lost.
+        An end that comes back to the start is lost, too, if the other end leaves the range or levels: it has
+        jumped to another curve.
         """
         open_ends = {FoldCurveEnding.RANGE, FoldCurveEnding.LEVEL} & set(self.endings)
         if FoldCurveEnding.CLOSED in self.endings and not open_ends:

@@ -14,7 +14,7 @@ class SurfaceOptions(Frozen):
     Lengths are in the scaled unknowns.
     """
 
-    # least unit of the level of the forces: above it the level is measured by itself
+    # least unit of the level of the forces: the unit of a higher level is the level itself
     level_floor: float = 0.1
     max_iterations: int = 8  # number of Newton steps after which a guess is given up as too far away
     tolerance: float = 1e-4  # length of the last Newton step: the error that is left is about its square

@@ -54,7 +54,7 @@ def may_wedge(scene: Scene) -> bool:
     rough = np.array([one.mu if one.k_u > 0.0 else 0.0 for one in scene.contacts])
     try:
         load, _ = _load_by_friction(scene, np.ones_like(rough), np.zeros_like(rough))
-    except np.linalg.LinAlgError:  # a mode is free to drift with it
+    except np.linalg.LinAlgError:  # a rigid-body mode is unconstrained
         return True
     return bool(np.linalg.norm(rough[:, None] * load, 2) >= 1.0)
 
@@ -73,7 +73,7 @@ def changes_load(
     """
     try:
         load, whose = _load_by_friction(scene, closed, stuck)
-    except np.linalg.LinAlgError:  # a mode is free to drift with it
+    except np.linalg.LinAlgError:  # a rigid-body mode is unconstrained
         return True
     if not of_its_own:
         load[whose, np.arange(whose.size)] = 0.0

@@ -44,10 +44,11 @@ class Traced(Frozen):
 
     found: those solutions, maybe with fewer harmonics. work: its cost in seconds of `cost_model`. mirrored:
     the numbers of the branches whose mirror images are left out. folds_lost: frequencies [rad/s] at which
-    curves of folds were lost, so that isolated branches may be missing. symmetry_lost: frequencies at which a
-    symmetric motion loses its symmetry by harmonics that are not balanced. symmetry_lost_in_level:
-    frequencies at which a branch that leaves the curve of the level is unsymmetric by even harmonics that are
-    not balanced, and the leading ones. fewer_peaks: peaks of the responses with fewer harmonics.
+    curves of folds were lost or not followed, so that isolated branches may be missing. symmetry_lost:
+    frequencies at which a symmetric motion loses its symmetry by harmonics that are not balanced.
+    symmetry_lost_in_level: frequencies at which a branch that leaves the curve of the level is unsymmetric by
+    even harmonics that are not balanced, and its leading even harmonics. fewer_peaks: peaks of the responses
+    with fewer harmonics.
     """
 
     branches: Branches

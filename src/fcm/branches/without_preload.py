@@ -46,7 +46,7 @@ _LAST = _LastPeaks()
 
 
 def peaks_without_preload(system: System) -> tuple[FoundPeak, ...]:
-    """Peaks of the response of the system `without_preload`."""
+    """Peaks of the response of the system `without_preload`; empty if there is no such system."""
     free = without_preload(system)
     if free is None:
         return ()
