@@ -37,7 +37,7 @@ class ScaledContacts:
                 law.evaluate(self.rest, c * self.width)
                 self._force_at_rest[c * self.width : (c + 1) * self.width] = law.force
         self.force = np.zeros(self.unknowns)
-        self.tangent = np.zeros((len(self.laws), self.width, self.width))  # of each contact by its own
+        self.tangent = np.zeros((len(self.laws), self.width, self.width))  # by the contact's own unknowns
 
     def evaluate(self, x: FloatArray, a: float) -> None:
         """Compute the forces, over a, and their tangents at displacements a x from rest.
