@@ -7,9 +7,9 @@ by the angle theta = omega t, and of the sliders' places w then obey
 
 with constant coefficients. The exponential of this system propagates them.
 
-K is the stiffness of the modes, of mass 1, with contacts that stick, slip or are open (`Stiffness`). w are
-the places where sticking sliders have come to rest. With many modes, the system is decomposed by its
-eigenvalues. By time instead of angle it does not depend on the frequency,
+K is the stiffness of the modes, of mass 1, over omega^2, with contacts that stick, slip or are open
+(`Stiffness`). w are the places where sticking sliders have come to rest. With many modes, the system is
+decomposed by its eigenvalues. By time instead of angle it does not depend on the frequency,
 
     q' = v,    v' = -K q - D v + B w,
 
