@@ -1,4 +1,4 @@
-"""Error against processor time: one line a method, over its longest step."""
+"""Plot the error against the processor time: a line for each method, a mark for each longest step."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ class DrawnRun(NamedTuple):
 
 
 class AccuracyPanel(Frozen):
-    """Runs against one reference: of each method its marks, from long steps to short ones."""
+    """Runs compared with one reference: the marks of each method, from long steps to short ones."""
 
     reference: str
     own_error: float | None
     max_step: float  # of the reference
-    lines: Mapping[tuple[str, bool], list[DrawnRun]]  # by the method and whether its points are corrected
+    lines: Mapping[tuple[str, bool], list[DrawnRun]]  # keys: method, and whether its points are corrected
 
 
 class Accuracy(Frozen):
@@ -91,7 +91,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> AccuracyPanel:
         if reference == "closed form" and run["method"] == "exact":
             continue  # its difference from harmonic balance is not its error
         if reference == "exact" and not run["corrected"]:
-            continue  # there the harmonic hides what the table does
+            continue  # there the error of the single harmonic hides that of the table
         shown = run["against"][reference]
         error, below = shown["errors"][quantity], shown["below"].get(quantity)
         if error or below:
@@ -112,7 +112,7 @@ def _number(value: Any) -> float:
 
 
 def draw_accuracy(accuracy: Accuracy) -> Figure:
-    """A panel for each reference, its own error a dotted line."""
+    """Draw a panel for each reference; a dotted line marks the reference's own error."""
     with house_style():
         figure = new_figure(COLUMN, HEIGHT if len(accuracy.panels) > 1 else 0.62 * HEIGHT)
         all_axes = figure.subplots(len(accuracy.panels), 1, sharex=True, squeeze=False)[:, 0]

@@ -39,9 +39,10 @@ def draw_backbone(
     curves: Sequence[DrawnCurve],
     colours: Sequence[str],
 ) -> Line2D:
-    """Draw the modes up to the highest curve; the axes stay as they are. What stands for them in a legend.
+    """Draw the modes up to the height of the highest curve, and return their legend handle.
 
-    A mode of one curve of several has its colour. The forces of the curves may differ, which move no mode.
+    The limits of the axes do not change. A mode that belongs to one of several curves has the colour of that
+    curve. The curves may differ in their forces, on which modes do not depend.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def _without_forces(parameters: Mapping[str, float]) -> dict[str, float]:
 
 
 def _below(x: FloatArray, y: FloatArray, top: float) -> tuple[FloatArray, FloatArray]:
-    """A line up to a height, with the points at which it passes that."""
+    """The line with its crossings of a height inserted; NaN above that height."""
     above = y - top
     passing = np.flatnonzero(above[:-1] * above[1:] < 0.0)
     part = above[passing] / (above[passing] - above[passing + 1])

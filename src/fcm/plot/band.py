@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def banded_column(response: DrawnResponse, dof: str | None) -> int:
-    """The degree of freedom whose bands can be drawn; errors say why there are none."""
+    """Column of the degree of freedom to draw; PlotError says why it has no bands."""
     column = response.column(dof)
     if not response.drawn:
         raise PlotError(
@@ -40,7 +40,7 @@ def banded_column(response: DrawnResponse, dof: str | None) -> int:
 def draw_bands(
     response: DrawnResponse, column: int, bands: Sequence[Band], span: tuple[float, float], log: bool | None
 ) -> Figure:
-    """The figure of one degree of freedom: a band with its median, for each that there is."""
+    """The figure of one degree of freedom: each band with its median."""
     with house_style():
         figure = new_figure()
         axes = figure.add_subplot()
@@ -64,7 +64,7 @@ def draw_bands(
 
 
 def _said(bands: Sequence[Band], span: tuple[float, float]) -> str:
-    """What the band is, of how many draws, and how many its ends take."""
+    """Title: percentiles of the band, number of draws, and how many draws its ends need if these are few."""
     from fcm.results.quantile_interval import draws_needed
     from fcm.results.scatter import draws_beyond
 
@@ -82,7 +82,7 @@ def _said(bands: Sequence[Band], span: tuple[float, float]) -> str:
 
 
 def _doubt(response: DrawnResponse, column: int) -> str:
-    """Line on the curves whose errors at their greatest amplitudes are large, or unknown; or ''."""
+    """Title line that counts the curves whose error at the peak is large or unknown; '' if there are none."""
     tops = [
         doubtful(curve)[np.nanargmax(curve.amplitude[:, column])]
         for curve in response.curves

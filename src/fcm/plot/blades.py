@@ -44,7 +44,10 @@ _GREY, _NOTE = "0.7", "#c03020"
 
 
 class DrawnBlades(Frozen):
-    """What a file says of a mistuned ring beside its curves, in its units. All (curve, dof) of a sector."""
+    """Data of a mistuned ring beside its curves, in the file's units.
+
+    The arrays are (curve, dof), for the degrees of freedom of a sector.
+    """
 
     names: tuple[str, ...]  # degrees of freedom of a sector
     sectors: int
@@ -58,12 +61,15 @@ class DrawnBlades(Frozen):
     tuned_at_end: FloatArray
 
     def place(self, dofs: Sequence[str], column: int) -> int | None:
-        """Number among `names` of a column, None of that of one sector; all names are the last columns."""
+        """Index into `names` of a column; None if the column is of one sector.
+
+        The last columns of `dofs` are those of `names`.
+        """
         place = column - (len(dofs) - len(self.names))
         return place if place >= 0 else None
 
     def asked(self, dofs: Sequence[str]) -> tuple[str, ...]:
-        """Names of which the scene asks for any sector, by all that it asks for."""
+        """Names that the scene asks for in any sector; `dofs` is all that it asks for."""
         return tuple(name for name in self.names if any(self._is_of(name, dof) for dof in dofs))
 
     def _is_of(self, name: str, dof: str) -> bool:
@@ -88,7 +94,8 @@ class DrawnBlades(Frozen):
     def label(self, curve: int, place: int) -> str:
         """The amplification of a curve and the sector it is in; empty where it is not known.
 
-        A greatest amplitude at an end of the range is no peak: of one the amplification is a bound.
+        A greatest amplitude at an end of the range is no peak. If one of the two amplitudes is there, the
+        amplification is a bound; if both are, it is unknown.
         """
         ratio = float(self.amplification[curve, place])
         ends = bool(self.at_end[curve, place]), bool(self.tuned_at_end[curve, place])
@@ -101,12 +108,12 @@ class DrawnBlades(Frozen):
         return f"Greatest amplitude of {self.names[place]} in {self.sectors} sectors"
 
     def labels(self, place: int | None, curves: Sequence[int]) -> list[str]:
-        """That of each curve, empty of a column that is no envelope."""
+        """The `label` of each curve; empty if the column is no envelope (place None)."""
         return ["" if place is None else self.label(curve, place) for curve in curves]
 
 
 def blades_of(variables: Mapping[str, Any]) -> DrawnBlades | None:
-    """The blades of the variables of an open file; None of one that is of no mistuned ring."""
+    """Read the blades from the variables of an open file; None if it holds no mistuned ring."""
     if not all(name in variables for name in NEEDED):
         return None
     from fcm.plot.read import floats
@@ -119,9 +126,9 @@ def blades_of(variables: Mapping[str, Any]) -> DrawnBlades | None:
 def draw_blades(
     axes: Axes, response: DrawnResponse, place: int, numbers: Sequence[int], colours: Sequence[str]
 ) -> dict[str, Line2D]:
-    """A diamond at the peak of the tuned ring for each curve, and of one curve alone lines of its sectors.
+    """Draw a diamond at the tuned ring's peak for each curve; for a single curve, also its sectors' lines.
 
-    Returned is what stands for them in a legend.
+    Returns the legend handles by their names.
     """
     from matplotlib.lines import Line2D
 
@@ -152,7 +159,7 @@ def draw_blades(
 
 
 def draw_tuned_peaks(figure: Figure, axes: Axes, blades: DrawnBlades, place: int, swept: FloatArray) -> None:
-    """Beside the peaks of the worst blades those of the tuned ring: diamonds, or a line if it is one ring."""
+    """Draw the tuned ring's peaks beside those of the worst blades: diamonds, or a line if all are equal."""
     heights = blades.tuned_peaks(place)[1]
     known = np.isfinite(heights)
     if not known.any():
@@ -166,7 +173,7 @@ def draw_tuned_peaks(figure: Figure, axes: Axes, blades: DrawnBlades, place: int
 
 
 def name_amplification(axes: Axes, blades: DrawnBlades, place: int) -> FloatArray:
-    """The amplifications (curve,) for a panel, and its labels; NaN where they are bounds alone."""
+    """Label a panel of amplifications and return these (curve,); NaN where they are only bounds."""
     axes.set_ylabel("Amplification (–)")
     bound = (blades.at_end[:, place] == 1.0) | (blades.tuned_at_end[:, place] == 1.0)
     if bound.any():

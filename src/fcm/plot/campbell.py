@@ -22,7 +22,11 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_NUMBER = (0.12, 0.01, 0.045)  # of diameters beside one, and of the axis below and above its foot: its room
+_NUMBER = (
+    0.12,
+    0.01,
+    0.045,
+)  # room of a number: beside it in diameters, below and above its foot in axis heights
 
 
 class DrawnRing(Frozen):
@@ -89,7 +93,7 @@ def _top(ring: DrawnRing) -> float:
 
 
 def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatArray], state: str) -> None:
-    """The lowest modes of all diameters joined, the second ones, ..."""
+    """Join the lowest modes of all diameters by a line, then the second ones, and so on."""
     x = np.array(diameters)
     most = max(len(one) for one in frequencies)
     for number in range(most):
@@ -102,9 +106,9 @@ def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatA
 
 
 def _orders(axes: Axes, ring: DrawnRing, top: float) -> None:
-    """Draws each engine order's harmonics and the line of its highest speed; if alone, of both speeds.
+    """Draw the harmonics of each engine order and the line of its highest rotor speed.
 
-    None without a range.
+    A single order also has the line of its lowest speed. Without a range nothing is drawn.
     """
     if ring.span is None:
         return
@@ -145,7 +149,7 @@ def _bars(
 
 
 def _number(axes: Axes, ring: DrawnRing, harmonic: int, x: float, end: float, top: float) -> None:
-    """The number of a harmonic where its bars end, legible where lines cross it."""
+    """Write the number of a harmonic where its bars end, with a halo against lines that cross it."""
     from matplotlib.patheffects import withStroke
 
     axes.annotate(
@@ -156,9 +160,9 @@ def _number(axes: Axes, ring: DrawnRing, harmonic: int, x: float, end: float, to
 
 
 def free_height(ring: DrawnRing, x: float, end: float, top: float) -> float:
-    """Height of a number at the end of a bar: above it, and above the modes in its way.
+    """Height of a number at the end of a bar: above the end and above the modes in its way.
 
-    Below the end, if the axis does not go so far.
+    It is below the end if the axis has no room above.
     """
     room_of_number, below, above = _NUMBER
     modes = [
@@ -192,7 +196,7 @@ def _placed(ring: DrawnRing, x: float, bars: list[DrawnOrder]) -> list[tuple[Dra
 def _met(
     sectors: int, span: tuple[float, float], orders: Sequence[int], top: float
 ) -> dict[float, list[DrawnOrder]]:
-    """The bars at each nodal diameter, as far as they are seen."""
+    """The bars at each nodal diameter, without those that begin above the axis."""
     met: dict[float, list[DrawnOrder]] = {}
     for order in orders:
         for harmonic in range(1, LAYOUT.campbell_harmonics + 1):
@@ -205,12 +209,12 @@ def _met(
 
 
 def lanes_of(spans: Sequence[tuple[float, float]]) -> list[int]:
-    """A lane for each of some spans, so that those in one lane do not overlap; as few lanes as that takes.
+    """Assign spans to as few lanes as possible so that those in one lane do not overlap.
 
     >>> lanes_of([(1, 2), (1, 2), (2, 4), (1.5, 3)])
     [0, 1, 0, 2]
     """
-    ends: list[float] = []  # of what is last in each lane
+    ends: list[float] = []  # of the last span in each lane
     lanes = [0] * len(spans)
     for i in sorted(range(len(spans)), key=lambda i: spans[i][0]):
         low, high = spans[i]
@@ -236,7 +240,7 @@ def _zigzag(sectors: int, speed: float, top: float) -> tuple[FloatArray, FloatAr
 
 
 def folded(turns: float, sectors: int) -> float:
-    """The nodal diameter that so many turns around the ring look like.
+    """The nodal diameter as which the sectors see a wave with `turns` periods around the ring.
 
     >>> folded(3, 24), folded(21, 24), folded(25, 24), folded(-3, 24)
     (3, 3, 1, 3)

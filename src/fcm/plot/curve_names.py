@@ -47,7 +47,7 @@ _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 0.5}
 def label_at_peaks(
     figure: Figure, axes: Axes, lines: Sequence[tuple[FloatArray, FloatArray]], names: Sequence[str]
 ) -> bool:
-    """Write each name at its line's highest point; nothing is written, and False, if one finds no room."""
+    """Write each name at the highest point of its line; if one has no room, write none and return False."""
     figure.draw_without_rendering()
     pixels = np.concatenate([axes.transData.transform(_dense(x, y)) for x, y in lines])
     texts: list[Annotation] = []
@@ -71,8 +71,10 @@ def write_beside(
     lines: Sequence[tuple[FloatArray, FloatArray]],
     names: Sequence[tuple[str, tuple[float, float]]],
 ) -> None:
-    """Write names beside points, where they touch neither each other, a line nor the legend; a name without
-    room is left out."""
+    """Write names beside points where they touch no other name, no line and not the legend.
+
+    A name without room is left out.
+    """
     figure.draw_without_rendering()
     pixels = np.concatenate([axes.transData.transform(_dense(x, y)) for x, y in lines])
     legend = axes.get_legend()
@@ -84,7 +86,7 @@ def write_beside(
 def _find_room(
     axes: Axes, name: str, peak: tuple[float, float], taken: list[Bbox], pixels: FloatArray
 ) -> Annotation | None:
-    """The name at the first offset where it is free, of ticks, too; its box joins those taken."""
+    """Write the name at the first free offset, clear of ticks too, and add its box to `taken`; else None."""
     frame = axes.get_window_extent().padded(-LAYOUT.tick * axes.figure.dpi / 72.0)
     for dx, dy, ha, va in _OFFSETS:
         text = axes.annotate(name, peak, (dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=8)
@@ -119,7 +121,7 @@ def name_at_side(
     parameters: Sequence[Mapping[str, float]],
     units: Mapping[str, str],
 ) -> Legend | None:
-    """Name lines by what was swept, in a legend beside the axes; very many by a bar of their colours."""
+    """Name lines by their swept values in a legend beside the axes; very many by a colour bar."""
     if not parameters[0]:
         return None
     differing, title = varying(parameters, units)
@@ -133,7 +135,10 @@ def name_at_side(
 def varying(
     parameters: Sequence[Mapping[str, float]], units: Mapping[str, str]
 ) -> tuple[list[dict[str, float]], list[str]]:
-    """The swept quantities that differ, with a title naming them; equal ones are in it with their value."""
+    """The swept values that differ between curves, and a title; it gives the values of those that do not.
+
+    If no value differs, all are kept.
+    """
     same = {
         key: value for key, value in parameters[0].items() if all(one[key] == value for one in parameters)
     }

@@ -33,7 +33,7 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
 
 
 def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:
-    """Degrees of freedom that the scene of a file asks for, from its attribute; empty where it has none.
+    """Degrees of freedom that the scene asks for, from an attribute of its file; empty without one.
 
     >>> asked_for('["2x"]', ["1x", "2x"]), asked_for("", ["1x", "2x"])
     (('2x',), ())
@@ -52,12 +52,10 @@ def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:
 def leading_column(
     dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray[np.float64], asked: Sequence[str] = ()
 ) -> int:
-    """Column of a degree of freedom; by default, if there are many, that of the greatest amplitude (any,
-    dof).
+    """Column of a degree of freedom; by default, if there are many, the one of the greatest amplitude.
 
-    Of those that the scene asks for, where it does.
-
-    Displacements come before rotations, which are of another unit.
+    amplitudes is (any, dof). The default is among the degrees of freedom that the scene asks for, if any.
+    Displacements come before rotations, which have another unit.
 
     >>> leading_column(["1x", "2x"], None, np.array([[1.0, 2.0]]))
     0
@@ -72,7 +70,7 @@ def leading_column(
 def greatest_column(
     dofs: Sequence[str], amplitudes: npt.NDArray[np.float64], asked: Sequence[str] = ()
 ) -> int:
-    """Column of the greatest amplitude (any, dof), among those the scene asks for if it does.
+    """Column of the greatest amplitude (any, dof), among those that the scene asks for, if any.
 
     >>> amplitudes = np.array([[1.0, 3.0], [2.0, np.nan]])
     >>> greatest_column(["1x", "2x"], amplitudes), greatest_column(["1x", "2x"], amplitudes, ["1x"])

@@ -21,11 +21,11 @@ _WIDTH = 0.6  # [point]
 
 
 def draw_scatter(panels: Sequence[Axes], found: Sequence[DrawnSpread], peaks: Peaks, key: str) -> None:
-    """The median of the draws, and their scatter: lines across where nothing else was swept.
+    """Draw the median and the scatter of the random draws.
 
-    Against a number that was not drawn there is a median at each value, with a bar for the scatter. Where
-    the axis is of a drawn number and others were swept, there is neither: the colours tell these apart.
-    found: of what each panel draws, the amplitude first.
+    If nothing else was swept, they are lines across the first panel. Against a number that was not drawn,
+    each value has a median, with a bar for the scatter. If the axis is a drawn number and others were swept,
+    nothing is drawn: the colours tell these apart. The spreads of `found` are by panel, the amplitude first.
     """
     if len(peaks.random) == len(peaks.parameters):
         of_all = found[0].spreads[0]
@@ -45,7 +45,10 @@ def draw_scatter(panels: Sequence[Axes], found: Sequence[DrawnSpread], peaks: Pe
 
 
 def say_scatter(axes: Axes, found: Sequence[DrawnSpread], peaks: Peaks, key: str, column: int) -> None:
-    """Writes what was drawn, and what is drawn of its scatter; nobody chooses a draw."""
+    """Title the axes with the numbers drawn at random and the scatter shown.
+
+    No least peak is marked, since nobody chooses a draw.
+    """
     from fcm.results.scatter import draws_beyond
 
     names = ", ".join(symbols(peaks.random))

@@ -27,9 +27,9 @@ def has_errors(curves: Sequence[DrawnCurve]) -> bool:
 
 
 def draw_errors(axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float) -> None:
-    """Lines for what is left out of each curve by harmonics; an area for the table, of all together.
+    """Draw a line for each curve's truncation error, and an area for the greatest table error of all.
 
-    Of many curves there is one line: the greatest error of any.
+    Many curves have one line: the greatest truncation error of any.
     """
     edges, table = _largest(curves, [curve.table_error for curve in curves])
     axes.stairs(
@@ -75,7 +75,7 @@ def name_errors(
 
 
 def _finish(axes: Axes, highest: float = 0.0) -> None:
-    """highest: of what is no line."""
+    """Set scales and limits; highest: the greatest error that is not drawn as a line."""
     from matplotlib.ticker import LogLocator, NullLocator
 
     top = max(
@@ -106,12 +106,12 @@ def greatest_between(
     for place, own in zip(places, errors, strict=True):
         if own is None:
             continue
-        # 0 * place: a piece that leads to another branch has none
+        # 0 * place is NaN between branches, where no error is known
         known = own + 0.0 * place
         error = np.nan_to_num(np.maximum(known[:-1], known[1:]))
         # the bins that each piece of the curve passes through
         at = np.clip(np.searchsorted(edges, place, side="right") - 1, 0, bins - 1)
-        np.maximum.at(largest, at, np.nan_to_num(known))  # of a point without neighbours, too
+        np.maximum.at(largest, at, np.nan_to_num(known))  # isolated points, too
         first, last = np.minimum(at[:-1], at[1:]), np.maximum(at[:-1], at[1:])
         count = last - first + 1
         before = np.cumsum(count) - count

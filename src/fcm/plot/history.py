@@ -27,7 +27,7 @@ _ROMAN = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XI
 def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
     """The figure of every motion, a panel each, within a window of the axis.
 
-    Few cycles are drawn as they move; of many, the extent and the mean of each.
+    Few cycles are drawn as motion; many are drawn as the extent and the mean of each.
     """
     motions = [motion for motion in history.motions if motion.least.size]
     if len(motions) > LAYOUT.history_panels:
@@ -127,7 +127,7 @@ def _name_phases(axes: Axes, history: DrawnHistory, shown: Window) -> None:
 
 
 def _alike(values: FloatArray) -> list[str]:
-    """Numbers of up to six digits with as many decimals each."""
+    """Numbers of up to six digits, all with the same number of decimals."""
     texts = [f"{value:.6g}" for value in values]
     if any("e" in text for text in texts):
         return texts

@@ -49,7 +49,7 @@ class DrawnHistory(Frozen):
 def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> DrawnHistory:
     """Read the motion that ``fcm respond -o`` has written; PlotError if the file has none.
 
-    Without a degree of freedom it is that of the first of the scene's output, or of the first.
+    The default degree of freedom is the first of the scene's output, or else the first of the file.
     """
     with opened(path, "the file of a scene with a schedule", _NEEDED) as data:
         dofs = [str(name) for name in np.atleast_1d(data["dof"][:])]
@@ -71,7 +71,7 @@ def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> Dr
 
 
 def _edges(data: Any, axis: str) -> tuple[FloatArray, FloatArray]:
-    """Begins of the phases, and of the cycles, each with the end: in time, or in cycles passed."""
+    """Starts of the phases and of the cycles, each followed by the end: in time, or in cycles passed."""
     end = floats(data[axis])[-1:]
     if axis == "time":
         phases, cycles = floats(data["schedule_start"]), floats(data["cycle_start"])
@@ -91,7 +91,7 @@ def _motion(
         floats(data[name][curve, :, column]) for name in ("cycle_greatest", "cycle_least", "cycle_mean")
     )
     displacement = floats(data["displacement"][curve, :, column])
-    mean[floats(data["cycle_part"]) < 1.0] = np.nan  # of a part of a cycle it says nothing
+    mean[floats(data["cycle_part"]) < 1.0] = np.nan  # the mean over part of a cycle says nothing
     done, reached = int(np.isfinite(least).sum()), int(np.isfinite(displacement).sum())
     return DrawnMotion(
         parameters, edges[: done + 1], greatest[:done], least[:done], mean[:done],

@@ -1,6 +1,6 @@
-"""Pages to look into a response: every curve, hover for its numbers, zoom, a menu of degrees of freedom.
+"""Interactive pages of a response: every curve, numbers on hover, zoom, a menu of degrees of freedom.
 
-The page is one HTML file that holds all it needs, by plotly; no network is used when it is opened.
+plotly writes each page as one HTML file that needs no network.
 """
 
 from __future__ import annotations
@@ -100,14 +100,14 @@ def contacts_page(
 ) -> None:
     """Write the page of contacts at points of a curve.
 
-    A menu has the frequencies, another what is shown; under the mouse is all that a contact does and bears.
+    One menu selects the frequency, another the contact load. Hovering shows a contact's state and loads.
 
     Parameters
     ----------
     places : ndarray, optional
-        Where each contact is (contact, 2): it is coloured by what is shown. Else its height is that.
+        Coordinates (contact, 2) of the contacts, whose colours show the load. None: heights show it.
     axes : tuple of str
-        What these two coordinates are.
+        Names of the two coordinates.
     """
     go = _plotly()
     figure, names = go.Figure(), np.array(file.contacts)
@@ -164,7 +164,7 @@ _SYMBOLS = ("circle", "triangle-up", "square", "circle-open")  # by state, as in
 def _of_contacts(
     points: Sequence[InterfacePoint], k: int, head: str, top: float, heights: bool
 ) -> dict[str, Any]:
-    """The button that shows the contact loads, by heights or colours."""
+    """The button that shows contact load `k`, by heights or colours."""
     values = [one.contact_loads[k] for one in points]
     change: dict[str, Any] = {"marker.color": values, "marker.cmax": top}
     change |= {"y": values} if heights else {}
@@ -199,7 +199,7 @@ def _write(figure: Any, path: Path) -> None:
 
 
 def _parts(curves: Sequence[DrawnCurve]) -> Iterator[tuple[DrawnCurve, str, BoolArray, bool]]:
-    """The points of each state of stability of each curve, and whether they are the first of the curve."""
+    """Yield curve, state of stability, mask of its points, and whether this part is the curve's first."""
     for curve in curves:
         there = np.isfinite(curve.frequency)
         unstable = np.zeros_like(there) if curve.stable is None else ~curve.stable
@@ -211,14 +211,14 @@ def _parts(curves: Sequence[DrawnCurve]) -> Iterator[tuple[DrawnCurve, str, Bool
 
 
 def _masked(curve: DrawnCurve, rows: BoolArray, column: int) -> FloatArray:
-    """The amplitude at some points and at their neighbours, so that parts meet; NaN elsewhere."""
+    """The amplitude at the points of `rows` and those after them, so that parts meet; NaN elsewhere."""
     drawn = rows.copy()
     drawn[1:] |= rows[:-1]
     return np.where(drawn, curve.amplitude[:, column], np.nan)
 
 
 def _mode(y: FloatArray) -> str:
-    """How a trace is drawn: as lines, with marks where a point stands alone, as of peaks alone."""
+    """Mode of a plotly trace: lines, with marks if a point stands alone, as in files of peaks alone."""
     there = np.concatenate(([False], np.isfinite(y), [False]))
     alone = there[1:-1] & ~there[:-2] & ~there[2:]
     return "lines+markers" if alone.any() else "lines"

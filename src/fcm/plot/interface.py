@@ -63,15 +63,15 @@ class InterfaceFile(Frozen):
     unit: str
     contacts: tuple[str, ...]
     dofs: tuple[str, ...]
-    frequency: FloatArray  # (curve, point) in the file's unit; of levels these
+    frequency: FloatArray  # (curve, point) in the file's unit, or levels of the forces
     amplitude: FloatArray  # (curve, point, dof)
     stable: FloatArray  # (curve, point) 1, 0 or NaN
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     contact_loads: FloatArray  # (3, curve, point, contact): energy, slip path, greatest normal force
-    units: tuple[str, str, str]  # of these, where the file says them
+    units: tuple[str, str, str]  # of contact_loads, where the file says them
     places: FloatArray | None = None  # (contact, 2) in the plane of the contacts, where the file says them
     axes: tuple[str, str] = ("X", "Y")  # what these two coordinates are
-    names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
+    names: tuple[str, ...] = ()  # of the curves of a sweep, by their swept values
     swept: tuple[Mapping[str, float], ...] = ()  # these values, by their short names
     modal_amplitude: FloatArray | None = None  # (curve, point) of nonlinear modes
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
@@ -81,7 +81,7 @@ class InterfaceFile(Frozen):
 class InterfacePoint(Frozen):
     """All contacts at one point of a curve.
 
-    state (contact,) numbers `sticks`, `slips`, `slips and opens`, `open`.
+    state (contact,) counts from 0: `sticks`, `slips`, `slips and opens`, `open`.
     """
 
     frequency: float
@@ -91,7 +91,7 @@ class InterfacePoint(Frozen):
     curve: str = ""  # its name, where there are several
     swept: Mapping[str, float] = field(default_factory=dict)  # of a sweep, by short names
     modal_amplitude: float | None = None  # of a nonlinear mode, which is neither stable nor unstable
-    asked: str = ""  # the place asked for, where the nearest point is beside it
+    asked: str = ""  # the place asked for, if the nearest point is not at it
     solution: Solution | None = None  # which of those that the curve has at this place
 
 
@@ -142,7 +142,7 @@ def read_interface(path: Path) -> InterfaceFile:
 
 
 def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
-    """Coordinates of the contacts in their plane, and their names; none where the file lacks that of one."""
+    """Coordinates of the contacts in their plane, and names of these; None if a contact has no position."""
     if "contact_position" not in variables:
         return None, InterfaceFile.axes
     found = floats(variables["contact_position"])
@@ -162,14 +162,15 @@ def points_of(
 ) -> list[InterfacePoint]:
     """The points of a curve nearest to each frequency or level, or to each modal amplitude.
 
-    There is one for each solution there, or that of a number alone, see `solutions_at`. Without any place it
-    is the point of the greatest amplitude, of the scene's output where it has one.
+    Each solution at a place has a point, or only the numbered `solution`; see `solutions_at`. Without a
+    place, the point is that of the greatest amplitude, of the scene's output if it has one. For nonlinear
+    modes, points with a steady state come first.
 
     Raises
     ------
     PlotError
-        If the curve, a frequency, a modal amplitude or the solution is not in the file, or none of several
-        curves is named.
+        If the curve, a frequency, a modal amplitude or the solution is not in the file, or the file has
+        several curves and none is chosen.
     """
     curve = chosen_curve(file.path, curve, len(file.frequency))
     if not np.isfinite(file.frequency[curve]).any():
@@ -228,14 +229,16 @@ def place_of(file: InterfaceFile, point: InterfacePoint) -> str:
 
 
 def stays_at(point: InterfacePoint) -> str:
-    """What is to be said of the stability of a point; nothing of a nonlinear mode's that is not known."""
+    """Text on the stability of a point; empty if that of a nonlinear mode's point is unknown."""
     said = staying(point.stable)
     return "" if np.isnan(point.stable) and point.modal_amplitude is not None else said
 
 
 def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> list[tuple[str, ...]]:
-    """A row for each of the contacts that take most energy, if any: name, state, energy, its share, slip
-    path and greatest normal force, and where it is if the file says so."""
+    """A row for each of the contacts that take most energy; none for a contact that takes none.
+
+    A row has the name, state, energy, its share, slip path, greatest normal force, and the place if known.
+    """
     energy = np.nan_to_num(point.contact_loads[0])
     total = float(energy.sum()) or 1.0
     order = np.argsort(-energy, kind="stable")[: min(most, np.count_nonzero(energy))]
@@ -262,13 +265,14 @@ def counted_states(point: InterfacePoint) -> str:
 
 @apart
 def read_places(path: Path, contacts: Sequence[str]) -> FloatArray:
-    """Coordinates (contact, 2) of a text file with a line for each contact: its name, then two numbers,
-    parted by commas or blanks; what follows # is a remark.
+    """Read coordinates (contact, 2) from a text file with a line NAME X Y for each contact.
+
+    Commas or blanks separate the three; # begins a remark.
 
     Raises
     ------
     PlotError
-        With all that is wrong: lines that are none, names that are no contacts, contacts without a line.
+        Lists the mistakes: malformed lines, unknown or repeated names, contacts without a line.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -311,8 +315,8 @@ def draw_interface(
 ) -> Figure:
     """The figure: panels for the states, and for energy, slip path and normal force; a column for each point.
 
-    places (contact, 2): where each contact is, and what the two coordinates are; None: in a row, in their
-    order. Contacts on a line have bars along it; others marks, whose colours are the values.
+    places (contact, 2) are the coordinates of the contacts, and axes their names; without them, the contacts
+    stand in a row in their order. Contacts on a line have bars along it; others have coloured marks.
     """
     line = None if places is None else _line(places, axes)
     with house_style():
@@ -324,7 +328,7 @@ def draw_interface(
 
 
 def _line(places: FloatArray, axes: tuple[str, str]) -> tuple[FloatArray, str] | None:
-    """Coordinates along the line that all contacts are on, and the name of it; None if they are on none."""
+    """Coordinates along the line on which all contacts lie, and its name; None if there is no such line."""
     _, sizes, directions = np.linalg.svd(places - places.mean(axis=0), full_matrices=True)
     if len(places) > 2 and sizes[1] > PAIRING.line_tolerance * sizes[0]:
         return None
@@ -376,7 +380,7 @@ def _in_row(file: InterfaceFile, points: Sequence[InterfacePoint], at: FloatArra
 
 
 def _heights(values: FloatArray) -> tuple[float, float, str]:
-    """Ends and kind of the axis of bars, which is logarithmic where `_scale` is."""
+    """Limits and kind of the axis of bars, which is logarithmic if `_scale` is."""
     from matplotlib.colors import LogNorm
 
     scale = _scale(values)
@@ -387,7 +391,7 @@ def _heights(values: FloatArray) -> tuple[float, float, str]:
 
 
 def _name_contacts(grid: Any, names: Sequence[str], at: FloatArray, room: float, label: str) -> None:
-    """Ticks at the contacts with their names, upright or turned as they find room; else those of numbers."""
+    """Label the ticks with the contacts' names, upright or turned as there is room; else with numbers."""
     from matplotlib.ticker import MaxNLocator
 
     height, of_line = float(LAYOUT.small_text), label != _ROW
@@ -452,8 +456,8 @@ def _in_plane(
 def _write_names(axes: Axes, names: Sequence[str], places: FloatArray, size: float, scale: float) -> None:
     """The names of contacts above or below their marks, towards the middle of the panel.
 
-    Those of pairs, as lap_7, are written as their numbers where the names would overlap. Of numbers that
-    would, too, some are left out. scale: points of print for a length of 1.
+    If names would overlap, those of pairs such as lap_7 become their numbers. A name that still overlaps one
+    before it is left out. scale: points of print for a length of 1.
     """
     low, high = _limits(places)
     beside = 0.5 * size**0.5 + 2.0  # [point]
@@ -473,7 +477,7 @@ def _write_names(axes: Axes, names: Sequence[str], places: FloatArray, size: flo
 
 
 def _have_room(names: Sequence[str], places: FloatArray, scale: float) -> list[bool]:
-    """Which names in their order touch none before, each at the height of its mark."""
+    """Whether each name, at the height of its mark, is clear of the earlier ones that have room."""
     taken = list[tuple[float, float, float]]()  # middle, height and half width [point]
     found = list[bool]()
     line = LAYOUT.line_distance * LAYOUT.small_text
@@ -503,10 +507,10 @@ def _legend(figure: Figure, points: Sequence[InterfacePoint], none: bool) -> Non
 
 
 def _scale(values: FloatArray) -> Normalize:
-    """Colours of the values of all columns: by their logarithm where a column would be dark beside another.
+    """Colour scale for all columns; logarithmic if a linear one would leave a column dark beside another.
 
-    A column without a value is dark on either. Of a logarithmic scale what is 0 or far below the greatest
-    value has no place.
+    Columns without a positive value do not count. A logarithmic scale leaves out values that are 0 or far
+    below the greatest.
     """
     from matplotlib.colors import LogNorm, Normalize
 
@@ -519,7 +523,7 @@ def _scale(values: FloatArray) -> Normalize:
 
 
 def _valued(axes: Axes, places: FloatArray, values: FloatArray, scale: Normalize, size: float) -> bool:
-    """Marks coloured by their values; whether some have a cross, as they are 0 or below the scale."""
+    """Draw marks coloured by value, crosses for 0 or below the scale; return whether there are crosses."""
     seen = (values > 0.0) & (values >= (scale.vmin or 0.0))
     x, y = places.T
     colour, mark = NONE
@@ -532,7 +536,7 @@ def _valued(axes: Axes, places: FloatArray, values: FloatArray, scale: Normalize
 
 
 def _bar(figure: Figure, beside: Axes, scale: Normalize) -> None:
-    """The bar of colours as high as the panel that it stands beside."""
+    """Draw the colour bar beside a panel, as high as that panel."""
     from matplotlib.cm import ScalarMappable
 
     width = LAYOUT.bar_width / (72.0 * beside.get_position().width * figure.get_size_inches()[0])
@@ -557,7 +561,7 @@ def _size(places: FloatArray, width: float, columns: int) -> float:
 
 
 def _height(places: FloatArray, width: float, rows: int, columns: int) -> float:
-    """Height [inch] of the figure, so that panels of one scale in both directions fill it."""
+    """Height [inch] of the figure at which panels with one scale in both directions fill it."""
     low, high = _limits(places)
     across, up = (high - low).tolist()
     panel = (width - _BAR) / columns * up / across

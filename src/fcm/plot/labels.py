@@ -1,4 +1,4 @@
-"""Names of quantities as a reader knows them: of ``contact.shroud.n_0`` the symbol n with the subscript 0."""
+"""Names of quantities for readers: ``contact.shroud.n_0`` becomes the symbol n with the subscript 0."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
-_POWER = re.compile(r"10\^\{(-?\d+)\}")  # in what an axis is multiplied by
+_POWER = re.compile(r"10\^\{(-?\d+)\}")  # in the offset text of an axis
 _OF_MODE = re.compile(r"modal\.\w+\.(\d+)(?:\.|$)")
 _SYMBOLS = {"n_0": "$n_{0}$", "k_u": "$k_{u}$", "k_v": "$k_{v}$", "mu": "$\\mu$"}
 _WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping", "level"}
 
 
 def plain(text: str) -> str:
-    """Text of the user's, none of it read as mathematics."""
+    """Escape the user's text so that none of it is read as mathematics."""
     return text.replace("$", r"\$")
 
 
@@ -36,9 +36,9 @@ def short_names(keys: Iterable[str]) -> dict[str, str]:
 
 
 def with_mode(key: str) -> str:
-    """A number of the scene by its path; of a mode with its number, which counts from 1 as in every table.
+    """The path of a number of the scene; for a mode, with its number, which counts from 1 as in every table.
 
-    Entries of lists count from 0 in a path.
+    In a path, entries of lists count from 0.
 
     >>> with_mode("modal.damping.0"), with_mode("modal.shapes.11.u"), with_mode("contact.shroud.mu")
     ('modal.damping.0 (mode 1)', 'modal.shapes.11.u (mode 12)', 'contact.shroud.mu')
@@ -104,9 +104,9 @@ def with_power(text: str, power: int) -> str:
 
 
 def power_to_label(*group: Axis) -> None:
-    """The power of ten of axes that were drawn goes to their labels: beside an axis it would be on that.
+    """Move the power of ten of drawn axes into their labels; beside an axis it would overlap that.
 
-    Several axes have one power, the least of theirs, where any has one.
+    Several axes get one power: the least of theirs, if any has one.
     """
     offsets = (axis.get_major_formatter().get_offset().replace("−", "-") for axis in group)
     powers = [int(found[1]) for found in map(_POWER.search, offsets) if found]
@@ -117,7 +117,7 @@ def power_to_label(*group: Axis) -> None:
 
 
 def staying(stable: float) -> str:
-    """Text beside a peak at which no motion is known to stay.
+    """Text beside a peak: empty if it is stable, else that it is unstable or its stability unknown.
 
     >>> staying(1.0), staying(0.0), staying(float("nan"))
     ('', ', unstable', ', stability unknown')

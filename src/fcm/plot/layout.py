@@ -72,7 +72,7 @@ _TEXTS = {
 
 
 def check_layout(variables: Any, names: Iterable[str]) -> None:
-    """Raise ValueError of those variables that are there with other dimensions, or of another kind."""
+    """Raise ValueError if a variable that is there has other dimensions or another kind (text, numbers)."""
     for name in names:
         if name not in variables:
             continue

@@ -1,4 +1,4 @@
-"""Hysteresis loops beside one another, as figures 5, 6 and 8: the states coloured, the transitions marked."""
+"""Hysteresis loops side by side, as in figures 5, 6 and 8, with coloured states and marked transitions."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _LABELS, _LEGEND, _TITLE = 0.35, 0.75, 0.2  # [inch] of what is around them
 
 
 class DrawnLoop(Frozen):
-    """A loop with its title; displacement and force of its axes are multiples of these."""
+    """A loop with its title, and the factors from its displacement and force to the drawn ones."""
 
     loop: Loop | PeriodicLoop
     title: str
@@ -50,7 +50,7 @@ class LoopAxes(Frozen):
 
     displacement: str = "Displacement $u/a$ (–)"
     force: str = "Friction force $f/k_u a$ (–)"
-    over_angle: str = "Force (–)"  # the same in the lower panel, which has less room
+    over_angle: str = "Force (–)"  # force in the lower panel, which has less room
     limit: str = r"slip limits $\pm\mu n/k_u a$"
     from_greatest: bool = False  # angles count from the greatest displacement, u = a cos(theta)
 
@@ -113,7 +113,7 @@ def _panels(count: int, titled: bool) -> tuple[Figure, list[tuple[Axes, Axes]]]:
 
 
 def _same_scale(loops: Sequence[DrawnLoop]) -> bool:
-    """Whether all loops have the same amplitude and stiffness, and are to be compared."""
+    """Whether all loops have the same amplitude and stiffness, so that they can be compared."""
     return len({(drawn.amplitude, drawn.force) for drawn in loops}) == 1
 
 
@@ -123,7 +123,7 @@ def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:
     for part in parts(drawn.loop):
         poll = STATES[part.state][1]
         u, f = drawn.points(part)
-        if part.state == "S":  # to and fro on one line, whose dashes would fill each other's gaps
+        if part.state == "S":  # to and fro on one line: drawn once, or dashes fill the gaps
             u, f = np.array([u.min(), u.max()]), np.zeros(2)
         axes.plot(u, f, **poll)
         if part.state in "PN":
@@ -131,7 +131,7 @@ def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:
 
 
 def _arrow(axes: Axes, drawn: DrawnLoop, part: Part, colour: str) -> None:
-    """The direction in which the cycle runs, in the middle of a slip."""
+    """Draw the direction of the cycle as an arrow in the middle of a slip."""
     middle = part.theta.size // 2
     if part.theta[-1] - part.theta[0] < 0.5 or middle + 1 >= part.theta.size:
         return
@@ -159,7 +159,7 @@ def _draw_over_angle(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
 
 
 def _name_state(axes: Axes, state: str, angle: Any) -> None:
-    """The letter above the panel, in the middle of what is seen of the state."""
+    """Write the state's letter above the panel, in the middle of the visible part of the state."""
     low, high = max(angle[0], 0.0), min(angle[-1], 360.0)
     if high - low >= LAYOUT.loop_narrowest:
         axes.text(
@@ -169,7 +169,7 @@ def _name_state(axes: Axes, state: str, angle: Any) -> None:
 
 
 def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool) -> None:
-    """The axes' names; those of the forces at the left only, their numbers where they differ."""
+    """Name the axes; forces only with `left`, and their tick numbers only with `numbers`."""
     above.set_xlabel(names.displacement, fontsize=8)
     below.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
     for axes, force in ((above, names.force), (below, names.over_angle)):
@@ -220,7 +220,7 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes, limits:
 
 
 def _mark_transitions(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
-    """A ring at each transition, and its angle where there is room; of very many none could be told apart."""
+    """Draw a ring at each transition, with its angle unless there are too many to be told apart."""
     found = transitions(drawn.loop)
     points = [(drawn.amplitude * t.displacement, drawn.force * t.force) for t in found]
     texts = [f"{names.degrees(t.theta):.1f}°" for t in found]

@@ -48,9 +48,9 @@ class PlanePoint(Frozen):
 
 
 class LinePoint(Frozen):
-    """Arguments of `fcm.periodic_loop` for a contact on a line; u counts from its mean.
+    """Arguments of `fcm.periodic_loop` for a contact on a line; u is without its mean.
 
-    Angles count from where its fundamental is a sine.
+    The origin of the angle makes the fundamental of u a sine.
     """
 
     motion: npt.NDArray[np.complex128]  # (u and v, harmonic), the mean first
@@ -58,7 +58,7 @@ class LinePoint(Frozen):
 
 
 class NormalPoint(Frozen):
-    """The normal motion of a contact without friction, and what its normal force follows from."""
+    """The normal motion of a contact without friction, and the numbers of its normal law."""
 
     motion: npt.NDArray[np.complex128]  # (harmonic,), the mean first
     law: tuple[float, float]  # k_v, n_0
@@ -84,7 +84,7 @@ class MotionFile(Frozen):
     directions: dict[str, Any]  # of each contact in a plane, by x, y and normal
 
     def at(self, index: PointIndex, contact: str) -> PlanePoint | LinePoint | NormalPoint | None:
-        """Motion at a point; None for a contact with friction on a line that moves in one harmonic alone."""
+        """Motion at a point; None for a contact with friction on a line that moves in one harmonic only."""
         names = self.directions.get(contact)
         mean = self.mean[index]
         motion = np.zeros((mean.size, 1 + max(self.harmonics)), dtype=np.complex128)
@@ -122,8 +122,8 @@ class LoopPoint(Frozen):
     amplitude: float  # a, of the tangential motion
     force: float  # k_u a
     harmonics: tuple[int, ...]  # of the motion
-    states: str  # with all of them
-    fundamental: bool  # whether the loop is that of the first of them, as the file has not the others
+    states: str  # with all harmonics
+    fundamental: bool  # whether the loop is that of the first harmonic, because the file lacks the others
     motion: PlanePoint | LinePoint | NormalPoint | None = None  # None: in one harmonic, with friction
     output: str = ""  # the degree of freedom whose peak is the default; see `LoopFile.column`
     displacement: float = float("nan")  # its amplitude
@@ -138,7 +138,7 @@ class PlaceOnCurve(NamedTuple):
     modal: bool = False
 
     def of(self, point: LoopPoint) -> float:
-        """That of a point."""
+        """Frequency, level or modal amplitude of a point, as `modal` says."""
         if not self.modal:
             return point.frequency
         assert point.modal_amplitude is not None  # else there is no place by it
@@ -155,14 +155,14 @@ class LoopFile(Frozen):
     frequency: FloatArray  # (curve, point) in the file's unit
     stable: FloatArray  # (curve, point) 1, 0 or NaN
     loop: FloatArray  # (5, curve, point, contact)
-    energy: FloatArray  # (contact,) that friction takes in a cycle at most; 0 where the file does not say it
+    energy: FloatArray  # (contact,) greatest that friction takes in a cycle; 0 where the file lacks it
     harmonics: tuple[int, ...]
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     units: Mapping[str, str]  # of swept keys, if the file says them
     dimensions: tuple[str, str] | None  # units of length and force, if it says both
     dofs: tuple[str, ...]
     amplitude: FloatArray  # (curve, point, dof)
-    column: int  # of the greatest amplitude, of the degrees of freedom that the scene asks for if it does
+    column: int  # of the greatest amplitude, among the degrees of freedom that the scene asks for, if any
     motions: MotionFile | None = None
     modal_amplitude: FloatArray | None = None  # (curve, point) of nonlinear modes
     steady: FloatArray | None = None  # (curve, point) 0 where these have no steady state
@@ -216,7 +216,7 @@ def _motions(data: Any) -> MotionFile | None:
     law = np.stack([floats(data[name]) for name in _MOTION[4:]])
     mean, amplitude, phase = (floats(data[name]) for name in _MOTION[1:4])
     harmonics = tuple(int(h) for h in orders)
-    unstressed = np.zeros((*mean.shape[:1], *mean.shape[2:]))  # as files without it are
+    unstressed = np.zeros((*mean.shape[:1], *mean.shape[2:]))  # for files without contact_start
     start = floats(data["contact_start"]) if "contact_start" in data.variables else unstressed
     return MotionFile(mean, amplitude, phase, harmonics, law, start, names if isinstance(names, dict) else {})
 
@@ -230,8 +230,8 @@ def points_at(
 ) -> list[LoopPoint]:
     """The points of a curve nearest to a place.
 
-    There is one for each solution there, or that of a number alone, see `solutions_at`. Without a place it is
-    the peak of the scene's output, see `LoopFile.column`. Without a contact it is the `busiest`.
+    Each solution at the place has a point, or only the numbered `solution`; see `solutions_at`. The default
+    place is the peak of the scene's output, see `LoopFile.column`; the default contact is the `busiest`.
 
     Raises
     ------
@@ -290,17 +290,16 @@ def _point(file: LoopFile, index: PointIndex, solution: Solution, peak: bool) ->
 
 
 def _greatest(energy: FloatArray, contacts: int) -> FloatArray:
-    """Greatest value of each contact over all points; 0 where it is nowhere known."""
+    """Greatest value of each contact over all points; 0 if it is known at none."""
     each = energy.reshape(-1, contacts)
     found: FloatArray = np.nanmax(np.where(np.isfinite(each), each, 0.0), axis=0, initial=0.0)
     return found
 
 
 def busiest(file: LoopFile) -> tuple[str, str]:
-    """The contact whose friction takes most energy in a cycle, or, without energies, that which moves most;
-    and how it is said that another can be chosen.
+    """The contact whose friction takes most energy in a cycle, and a message on how to choose another.
 
-    Of a file with one contact, or none, nothing is said.
+    Without energies it is the contact that moves most. With one contact or none the message is empty.
     """
     if len(file.contacts) < 2:
         return (file.contacts[0] if file.contacts else ""), ""
@@ -315,7 +314,7 @@ def busiest(file: LoopFile) -> tuple[str, str]:
 
 
 def _names(file: LoopFile) -> str:
-    """The contacts, of many those that take most energy, first the one that takes most."""
+    """The contacts for a message; of many, those that take most energy, the greatest first."""
     if len(file.contacts) <= READ.contacts_named:
         return ", ".join(f'"{name}"' for name in file.contacts)
     first = np.argsort(-file.energy, kind="stable")[: READ.contacts_named]

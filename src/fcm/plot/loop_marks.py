@@ -24,9 +24,9 @@ _OUTSIDE, _TOUCHED, _CROSSED = 1e6, 1e4, 1e2  # cost: beyond the panel, a text o
 def name_marks(
     axes: Axes, points: Sequence[tuple[float, float]], texts: Sequence[str], curve: FloatArray, size: float
 ) -> None:
-    """Write each text beside its point (x, y); one that finds no room is written where least is covered.
+    """Write each text beside its point (x, y); one without room is written where it covers least.
 
-    The panel has its final size; curve (i, 2) is what the texts should not touch.
+    The panel must have its final size. The texts should not touch the points curve (i, 2).
     """
     if not points:
         return
@@ -53,7 +53,7 @@ class _Panel:
 
 
 def _write(panel: _Panel, point: tuple[float, float], text: str, outward: float) -> tuple[Bbox, FloatArray]:
-    """The text at the first place that is free, nearest first and outward first; its box and leader."""
+    """Write the text at the first free place, nearest and outward first; return its box and leader."""
     axes, taken, size = panel.axes, panel.taken, panel.size
     trial = _text(axes, point, text, (0.0, 0.0), size)
     extent = trial.get_window_extent()
@@ -124,7 +124,7 @@ def _text(
 
 
 def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
-    """Count of what a text there would cover: other texts, frame and ticks, points of the loop (1 each)."""
+    """Cost of what a text there would cover: other texts, frame and ticks, points of the loop (1 each)."""
     frame = axes.get_window_extent().padded(-LAYOUT.tick * axes.figure.dpi / 72.0)
     outside = bool(box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
     others = sum(bool(box.overlaps(other)) for other in taken)

@@ -1,4 +1,4 @@
-"""Measured points over the curves of a response or a mode: those that were fitted, or of a file."""
+"""Measured points over the curves of a response or a mode: those of a fit, or those of a file."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ WORD = "measured"
 class DrawnMeasured(Frozen):
     """Points of one measurement: frequencies in the unit of the curves, displacements."""
 
-    dof: str  # empty: of whichever is drawn
+    dof: str  # empty: whichever is drawn
     frequency: FloatArray
     amplitude: FloatArray
     level: FloatArray | None = None  # of the forces; None where it is not known
@@ -77,7 +77,7 @@ class FittedNumber(Frozen):
         return f"{self.key} = {self.value:.{self._digits()}g} ± {self.error:.2g}{unit}"
 
     def _digits(self) -> int:
-        """As many as reach the second digit of the error, at least four and at most eight."""
+        """Digits of the value down to the second digit of the error, at least four and at most eight."""
         if not (self.value and self.error > 0.0):
             return 4
         size, error = (int(np.floor(np.log10(abs(one)))) for one in (self.value, self.error))
@@ -85,7 +85,7 @@ class FittedNumber(Frozen):
 
 
 def backbones_of(variables: Any) -> tuple[MeasuredBackbone, ...]:
-    """The backbones that a fit was made to, of the variables of a file of modes; none where it has none."""
+    """Backbones that numbers were fitted to, from the variables of a file of modes; empty without a fit."""
     if not all(name in variables for name in BACKBONE):
         return ()
     from fcm.plot.read import floats
@@ -107,7 +107,7 @@ def draw_backbones(upper: Axes, lower: Axes, measured: Sequence[MeasuredBackbone
 
 
 def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:
-    """The responses that a fit was made to, of the variables of a response file; none where it has none."""
+    """Responses that numbers were fitted to, from the variables of a response file; empty without a fit."""
     if not all(name in variables for name in NEEDED):
         return ()
     from fcm.plot.read import floats
@@ -136,8 +136,8 @@ def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:
 def as_measured(response: DrawnResponse, column: int) -> tuple[DrawnResponse, str]:
     """The response in the quantity that was measured at a degree of freedom, and the name of its axis.
 
-    Where all data there are of fundamentals, curves and points are: of the quantity, or of displacements if
-    several were measured. Else all are half peak-to-peak, and the name is empty.
+    If all data there are fundamentals, so are the curves and points: of the quantity, or of displacements if
+    several quantities were measured. Otherwise all are half peak-to-peak, and the name is empty.
     """
     dof = response.dofs[column]
     own = [one for one in response.measured if one.dof in ("", dof)]
@@ -164,10 +164,10 @@ def as_measured(response: DrawnResponse, column: int) -> tuple[DrawnResponse, st
 
 
 def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasured:
-    """Points of a file of measurements, as of [fit]: frequencies in a unit, displacements in that of length,
-    if it is known.
+    """Read the points of a file of measurements, like those of [fit].
 
-    What a file says to be velocities or accelerations is divided by the frequency.
+    Frequencies are in `unit`, displacements in the unit `length` if it is known. Velocities or accelerations,
+    if the file declares them, are converted to displacements.
 
     Raises
     ------
@@ -204,7 +204,7 @@ def draw_measured(
     curves: Sequence[DrawnCurve],
     colours: Sequence[str],
 ) -> bool:
-    """Mark the points of a degree of freedom, in the colours of their curves; whether there are any."""
+    """Mark the points of a degree of freedom in the colours of their curves; return whether there are any."""
     drawn = False
     for one in measured:
         if one.dof not in ("", dof):
@@ -221,7 +221,7 @@ def draw_measured(
 def _by_curve(
     one: DrawnMeasured, curves: Sequence[DrawnCurve]
 ) -> list[tuple[int | None, npt.NDArray[np.intp]]]:
-    """The number of a curve, and the points whose level it has; None for the other points."""
+    """Number of each curve with the points that have its force level; None for the other points."""
     if one.level is None:
         return [(None, np.arange(one.frequency.size))]
     found: list[tuple[int | None, npt.NDArray[np.intp]]] = []
@@ -236,7 +236,7 @@ def _by_curve(
 
 
 def fitted_of(data: Any) -> tuple[FittedNumber, ...]:
-    """The numbers that a fit found, of an open file, as its summary has them; none where it has none."""
+    """The numbers that a fit found, from the summary of an open file; empty without a fit."""
     if not any(name in data.variables for name in ("data_frequency", "data_displacement")):
         return ()
     try:
@@ -262,10 +262,9 @@ def name_measured(
     others: Mapping[str, Artist] | None = None,
     beside: Legend | None = None,
 ) -> Legend:
-    """Say above the axes what the crosses are, and which numbers were found; to the left of a legend beside
-    the axes, if there is one.
+    """Name the crosses and the fitted numbers above the axes, left of a legend beside the axes, if any.
 
-    others : what else is to be named there, by its names
+    others : further artists to be named there, by their names
     """
     from matplotlib.lines import Line2D
 

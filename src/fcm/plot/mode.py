@@ -64,13 +64,13 @@ class DrawnMode(Frozen):
     )  # (point,) relative, NaN where unknown; or (0,)
     resonances: tuple[tuple[float, float, float], ...] = ()  # level of the forces, amplitude, frequency
     steady: BoolArray | None = None  # (point,) where there is a steady state; None: everywhere
-    # what a modal amplitude of 1 is at degrees of freedom, at the least amplitude, if the file says it
+    # of degrees of freedom at a modal amplitude of 1, by the mode at the least amplitude, if the file says it
     displacement: Mapping[str, float] = field(default_factory=dict)
 
     def smooth(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Amplitudes and a line through values of the points, which does not exceed them between two points.
+        """Amplitudes and a line (PCHIP) through the values, which does not overshoot between two points.
 
-        Where the amplitude turns back it is straight.
+        If the amplitude turns back anywhere, the points are returned as they are.
         """
         known = np.isfinite(values)
         amplitude, values = self.amplitude[known], values[known]
@@ -83,7 +83,7 @@ class DrawnMode(Frozen):
         return np.exp(fine), PchipInterpolator(way, values)(fine)
 
     def lost(self, values: FloatArray) -> BoolArray:
-        """Mask, at the places of `smooth`, of places without a steady state there or at a neighbour."""
+        """Mask of the places of `smooth` without a steady state at either of the neighbouring points."""
         known = np.isfinite(values)
         lost = np.zeros(known.sum(), np.bool_) if self.steady is None else ~self.steady[known]
         if not self._is_smooth(known):
@@ -155,9 +155,9 @@ def read_modes(path: Path) -> DrawnModes:
 
 
 def _displacements(data: Any) -> list[dict[str, float]]:
-    """What a modal amplitude of 1 is at degrees of freedom, of each curve, from the file's summary.
+    """Displacements of degrees of freedom at a modal amplitude of 1, for each curve, from the file's summary.
 
-    Of those that the scene asks for, where it does.
+    Only the degrees of freedom that the scene asks for, if it asks for any.
     """
     found = []
     for curve in summary_of(data).get("curves", ()):
@@ -199,14 +199,14 @@ def resonances_of(data: Any) -> list[tuple[DrawnResonance, ...]]:
 
 
 def _number(value: object) -> float:
-    """NaN of what a summary does not know: a mode damped too much has no frequency of a resonance."""
+    """The number, NaN for None: a mode with too much damping has no resonance frequency."""
     return np.nan if value is None else float(value)  # type: ignore[arg-type]
 
 
 def draw_modes(drawn: DrawnModes) -> Figure:
-    """The figure: frequency above, damping below, the modal amplitude on a logarithmic axis; below errors.
+    """The figure: frequency, damping and errors in panels, over the modal amplitude on a logarithmic axis.
 
-    Of a mode alone diamonds are where forces of a level are in resonance.
+    For a single mode, diamonds mark the resonances with forces of given levels.
     """
     modes = drawn.modes
     told = any(_is_line(mode.error) for mode in modes)
@@ -253,7 +253,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
 
 
 def _amplitude_label(drawn: DrawnModes) -> str:
-    """What the modal amplitude is, with what 1 means at a degree of freedom where the file says it."""
+    """Label of the modal amplitude; for a single mode with the displacement that 1 means, if known."""
     said = "Modal amplitude, of the mode of mass 1"
     if len(drawn.modes) != 1 or not (found := drawn.modes[0].displacement):
         return said
@@ -264,7 +264,7 @@ def _amplitude_label(drawn: DrawnModes) -> str:
 
 
 def _notes(panels: Sequence[Axes], modes: Sequence[DrawnMode]) -> dict[str, Line2D]:
-    """What stands for the marks in a legend."""
+    """Legend handles of the marks, by their names."""
     from matplotlib.lines import Line2D
 
     notes = {}
@@ -282,7 +282,7 @@ def _notes(panels: Sequence[Axes], modes: Sequence[DrawnMode]) -> dict[str, Line
 
 
 def _draw_line(axes: Axes, mode: DrawnMode, values: FloatArray, colour: str) -> Line2D:
-    """A line against the amplitude, dotted where there is no steady state; the solid part."""
+    """Draw a line against the amplitude, dotted without a steady state; return the solid part."""
     amplitude, line = mode.smooth(values)
     lost = mode.lost(values)
     held, creeping = split(line, lost)
@@ -302,15 +302,15 @@ def _name_lost(axes: Axes, modes: Sequence[DrawnMode]) -> None:
 
 
 def _is_line(error: FloatArray) -> bool:
-    """Whether errors are known at neighbouring points; of many contacts they are at one or two alone."""
+    """Whether errors are known at neighbouring points; with many contacts one or two points have them."""
     known = error > LAYOUT.linear_error
     return bool((known[1:] & known[:-1]).any())
 
 
 def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
-    """The greatest error, where too few are known for a panel; of none, that it is unknown.
+    """Title the axes with the greatest error if too few are known for a panel, or where it is unknown.
 
-    Where the motion is linear there is nothing to estimate, and rounding is left.
+    Where the motion is linear there is no error to estimate, only rounding.
     """
     every = np.concatenate([mode.error for mode in modes])
     known = every[every > LAYOUT.linear_error]

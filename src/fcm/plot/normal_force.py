@@ -69,7 +69,7 @@ def draw_normal_force(drawn: DrawnNormalForce) -> Figure:
 
 
 def _to_and_fro(v: FloatArray, n: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Points of a line that the cycle goes to and fro, in one direction: dashes would fill their gaps."""
+    """Sort the points of a line along v: drawn to and fro, its dashes would fill the gaps."""
     order = np.argsort(v, kind="stable")
     return v[order], n[order]
 
@@ -82,7 +82,7 @@ def _over_angle(axes: Axes, part: Part, drawn: DrawnNormalForce, look: dict[str,
 
 
 def _mark_contact(axes: Axes, drawn: DrawnNormalForce) -> None:
-    """A ring where the contact closes and opens, with the angles."""
+    """Draw a ring where the contact closes and opens, with the angles unless there are many."""
     angles = drawn.cycle.angles
     if not angles.size:
         return

@@ -1,4 +1,4 @@
-"""The pairs of nodes of contacts, seen along the normal of their plane: how far apart, which are alone."""
+"""Node pairs of contacts, seen along the normal of their plane: their distances, and nodes left alone."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def view_of(interface: Interface) -> FloatArray:
 
 
 def plane_view(places: FloatArray) -> FloatArray:
-    """Two directions (2, 3) in the plane of some places (place, 3); of a line, along and beside it.
+    """Two directions (2, 3) in the plane of some places (place, 3); for a line, along and across it.
 
-    They go along the axes of the coordinates and not against them, by their greatest component.
+    The greatest component of each direction is positive.
 
     >>> along = plane_view(np.array([[0.0, 0, 1], [0, 2, 1]]))
     >>> along[0].tolist()

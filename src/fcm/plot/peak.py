@@ -1,4 +1,4 @@
-"""Peak amplitude and peak frequency against what was swept: of the preload, the curve to design by."""
+"""Peak amplitude and peak frequency against a swept quantity; against the preload, the design curve."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ IntArray = npt.NDArray[np.intp]
 
 _NEEDED = ("dof", "peak_amplitude", "peak_frequency", "complete")
 _MARK = "#c03020"
-# whole numbers, between which there is nothing
+# whole numbers, which no line joins
 _WHOLE = ("cyclic.engine_order", "cyclic.mistuning.draw")
 
 
@@ -70,7 +70,7 @@ class Peaks(Frozen):
         return own + greatest_column(self.blades.names, heights[:, own:], self.blades.asked(self.asked))
 
     def worst(self, column: int) -> int | None:
-        """The number of the blades' degree of freedom that a column is of; None of that of one sector."""
+        """Index of a column among the blades' degrees of freedom; None if the column is of one sector."""
         return None if self.blades is None else self.blades.place(self.dofs, column)
 
 
@@ -136,8 +136,11 @@ def _with_worst(peaks: Peaks, blades: DrawnBlades) -> Peaks:
 
 
 def _of_modes(told: Peaks, found: Sequence[Sequence[DrawnResonance]], path: Path) -> Peaks:
-    """The resonances of nonlinear modes with the scene's forces, as the peaks of a sweep; of several at a
-    level that of the greatest amplitude. Several levels are swept as well."""
+    """The resonances of nonlinear modes with the scene's forces, as the peaks of a sweep.
+
+    Of several resonances at a level, the one of the greatest modal amplitude counts. Several levels become a
+    further swept quantity.
+    """
     levels = sorted({one.level for each in found for one in each})
     if not levels:
         raise PlotError(f"{path}: it has no resonance of a nonlinear mode; try fcm plot mode")
@@ -161,8 +164,10 @@ def _of_modes(told: Peaks, found: Sequence[Sequence[DrawnResonance]], path: Path
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
-    """The figure of one degree of freedom (by default see `leading_column`) against one swept quantity, by
-    default the first."""
+    """The figure of one degree of freedom against one swept quantity.
+
+    The default degree of freedom is that of `Peaks.column`, the default quantity the first.
+    """
     column = peaks.column(dof)
     key = _key(peaks, against)
     known = np.isfinite(peaks.amplitude[:, column]) & peaks.complete
@@ -219,7 +224,7 @@ def _key(peaks: Peaks, against: str | None) -> str:
 
 
 def _lines(peaks: Peaks, key: str, known: BoolArray) -> list[IntArray]:
-    """Curves with the same other swept values, each in the order of the key; none if there are too many."""
+    """Groups of curves with equal other swept values, each sorted by the key; none if there are too many."""
     x = peaks.parameters[key]
     others = [peaks.parameters[name] for name in _others(peaks, key, known)]
     groups: dict[tuple[float, ...], list[int]] = {}
@@ -231,8 +236,11 @@ def _lines(peaks: Peaks, key: str, known: BoolArray) -> list[IntArray]:
 
 
 def _others(peaks: Peaks, key: str, known: BoolArray) -> list[str]:
-    """The other swept keys, without those that rise or fall with this one, as paired ones do, and without
-    random draws, between which nothing is joined."""
+    """The other swept keys that tell lines apart.
+
+    Keys that rise or fall in step with this one, as paired ones do, are left out, and so are random draws,
+    which no line joins.
+    """
     x = peaks.parameters[key][known]
     order = np.argsort(x, kind="stable")
 
@@ -247,7 +255,7 @@ def _others(peaks: Peaks, key: str, known: BoolArray) -> list[str]:
 def _draw(
     axes: Axes, x: FloatArray, y: FloatArray, known: BoolArray, lines: Sequence[IntArray], joined: bool
 ) -> None:
-    """Lines, or their points alone where nothing is between them; a cloud of points where there are none."""
+    """Draw the lines, or only their points if not `joined`; without lines, a cloud of points."""
     if not lines:
         axes.plot(x[known], y[known], "o", color="black", markersize=1.5, markeredgewidth=0.0)
         return
@@ -314,11 +322,11 @@ def ring_over(panels: Sequence[Axes], x: float, y: float, color: str) -> None:
 
 
 def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
-    """A ring around the least peak of all, a thin line down to its frequency, and its values above.
+    """Mark the least peak of all with a ring, a thin line down to its frequency, and its values above.
 
-    What is greatest at an end of the range of frequencies is no peak. At an end of what was swept it is no
-    minimum: a lower one may lie beyond, or between it and the next value. Over the level of the forces there
-    is none to choose.
+    A greatest amplitude at an end of the range of frequencies is no peak. At an end of the sweep the least
+    peak is no minimum: a lower one may lie beyond, or before the next value. Nothing is marked over the level
+    of the forces, which nobody chooses.
     """
     if key == EXCITED:
         return
@@ -364,7 +372,7 @@ def _say_left_out(axes: Axes, peaks: Peaks) -> None:
 
 
 def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
-    """A cross on each peak at which no motion stays, and what it means."""
+    """Mark each unstable peak with a cross, and explain it."""
     if peaks.stable is None or not (at := known & (peaks.stable[:, column] == 0.0)).any():
         return
     for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
@@ -373,7 +381,7 @@ def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int,
 
 
 def _mark_unknown(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
-    """A square on each peak of which it is not known whether its motion stays."""
+    """Mark each peak of unknown stability with a square, and explain it."""
     if peaks.stable is None:
         return
     at = known & np.isnan(peaks.stable[:, column]) & (peaks.amplitude[:, column] > 0.0)
@@ -392,7 +400,7 @@ def _say_mark(axes: Axes, said: str) -> None:
 
 
 def _mark_at_end(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
-    """A triangle on what is greatest at an end of the range of frequencies, and what it means."""
+    """Mark greatest amplitudes at an end of the range of frequencies with a triangle, and explain it."""
     if peaks.at_end is None or not (at := known & peaks.at_end[:, column]).any():
         return
     x = peaks.parameters[key][at]

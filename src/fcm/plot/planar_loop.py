@@ -28,7 +28,7 @@ LIMIT = "0.45"
 class DrawnPlanarLoop(Frozen):
     """A loop with its title, the names of its directions, and units of length and force where known.
 
-    dimensionless: its displacements are parts of an amplitude a, and its forces of k_u a.
+    dimensionless: displacements are in units of an amplitude a, forces in units of k_u a.
     """
 
     loop: PlanarLoop
@@ -42,7 +42,7 @@ class DrawnPlanarLoop(Frozen):
 class DrawnPath(Frozen):
     """A cycle sampled: theta, disc's radius, states (sample,); displacement u, slider w, force f (sample, 2).
 
-    Without tangential stiffness nothing drags the slider: it is where u is, and there is no disc.
+    Without tangential stiffness nothing drags the slider: w = u, and the disc has radius 0.
     """
 
     theta: FloatArray
@@ -54,7 +54,7 @@ class DrawnPath(Frozen):
 
 
 def path_of(loop: PlanarLoop) -> DrawnPath:
-    """Samples, those of the transitions among them; 0 in a direction in which there is rounding alone."""
+    """Sample a cycle, transitions included; values are 0 in a direction that has only rounding."""
     theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, LAYOUT.planar_samples + 1), loop.angles)))
     u, stiff = loop.displacement(theta), loop.k_u > 0.0
     w = loop.slider(theta) if stiff else u
@@ -72,8 +72,8 @@ def _without_rounding(values: FloatArray) -> FloatArray:
 def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
     """Draws the loop of a contact in its plane.
 
-    At the left is the plane with the paths of u and of the slider, and discs. Below it is the path of the
-    force between its limits. At the right is the force over the displacement, for each direction.
+    The left panels show the paths of u and the slider with discs, and below them the path of the force
+    between its limits. The right panels show the force over the displacement, for each direction.
     """
     path = path_of(drawn.loop)
     length, force = (f" ({unit.replace('$', '')})" for unit in drawn.units) if drawn.units else ("", "")
@@ -190,14 +190,14 @@ def _instants(path: DrawnPath, count: int) -> list[int]:
 
 
 def _only(values: FloatArray, which: npt.NDArray[np.bool_]) -> FloatArray:
-    """Values where something is so, up to the first sample after it; NaN elsewhere."""
+    """Values where `which` holds and at the first sample after it; NaN elsewhere."""
     shown = which | np.concatenate((which[:1], which[:-1]))
     found: FloatArray = np.where(shown if values.ndim == 1 else shown[:, None], values, np.nan)
     return found
 
 
 def _of_direction(symbol: str, name: str, unit: str) -> str:
-    """The label of a displacement, as a number of its unit or a part of another; a long name is left out."""
+    """The label of a displacement, with its unit or as a multiple of a; a long name is left out."""
     scaled, short = unit.startswith("$"), len(name) <= LAYOUT.direction_name
     named = f"{unit if scaled else ''} = {plain(name)}" if short else ""
     return f"Displacement {symbol}{named}{unit}"

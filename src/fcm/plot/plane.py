@@ -28,7 +28,7 @@ BOUNDARIES: dict[str, tuple[str, Any]] = {  # name: label, line style
 
 
 def phase_name(phi: float) -> str:
-    """The phase, in degrees where that is the shorter number.
+    """The phase, in degrees if these have at most two decimals, else in radians.
 
     >>> phase_name(math.radians(15.0)), phase_name(0.5)
     ('$\\\\phi$ = 15°', '$\\\\phi$ = 0.5 rad')
@@ -57,7 +57,7 @@ def panels(count: int, height: float, **more: Any) -> tuple[Figure, list[Axes]]:
 
 
 def draw_boundaries(axes: Axes, edges: Edges) -> None:
-    """The lines between the regimes; what is outside the plane is cut off by its limits."""
+    """Draw the lines between the regimes; the limits of the axes cut off what is outside the plane."""
     for name, n0 in edges.n0_bar.items():
         label, style = BOUNDARIES[name]
         axes.plot(n0, edges.b_bar, color="black", linestyle=style, linewidth=1.0, label=label)

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-MARKERS = {"up": "^", "down": "v", "": "o"}  # by the sweep that visited a point; of a traced curve none did
+MARKERS = {"up": "^", "down": "v", "": "o"}  # by the sweep that visited a point; '' for a traced curve
 WORDS = {"up": "exact motion, swept up", "down": "swept down", "": "exact motion"}
-ALONE = {"up": "#0072B2", "down": "#D55E00", "": "#0072B2"}  # of one curve, told apart without colour as well
-NEUTRAL = "#404040"  # of what stands for the markers of several curves
+ALONE = {"up": "#0072B2", "down": "#D55E00", "": "#0072B2"}  # colours for one curve; the markers differ too
+NEUTRAL = "#404040"  # of legend handles for several curves
 SIZE, SMALL = 4.0, 3.0  # [point] of a marker; of several curves' markers
 
 
@@ -56,7 +56,7 @@ def draw_points(
     Raises
     ------
     PlotError
-        If the points are of other degrees of freedom, of other curves, or over the other axis.
+        If the points lack the degree of freedom, belong to other curves, or are over the other axis.
     """
     theirs = points.response
     if (theirs.frequency_unit == LEVEL) != (unit == LEVEL):
@@ -86,7 +86,7 @@ def draw_points(
 
 
 def names_of_points(axes: Axes) -> dict[str, Line2D]:
-    """What line and markers are, by their names."""
+    """Legend handles of the line and the markers, by their names."""
     from matplotlib.lines import Line2D
 
     drawn = {str(line.get_label()): line for line in axes.get_lines()}
@@ -114,7 +114,7 @@ def match(own: Mapping[str, float], curves: Sequence[Mapping[str, float]], what:
     Raises
     ------
     PlotError
-        If none has. A curve alone is theirs, too, where it or they are of a scene without a sweep.
+        If no curve has them. A single curve matches, too, if it or the points are of a scene without a sweep.
     """
     if len(curves) == 1 and not (own and curves[0]):
         return 0
@@ -128,7 +128,7 @@ def match(own: Mapping[str, float], curves: Sequence[Mapping[str, float]], what:
 
 
 def _swept(curves: Sequence[Mapping[str, float]]) -> str:
-    """The values of each swept quantity, of many the first."""
+    """The values of each swept quantity; only the first of many."""
     told = []
     for key, name in short_names(curves[0]).items():
         values = list(dict.fromkeys(f"{values[key]:.6g}" for values in curves))

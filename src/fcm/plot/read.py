@@ -38,7 +38,7 @@ Failures = tuple[type[Exception], ...]
 
 _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
-LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
+LEVEL = "level"  # stands for a unit of frequency: the curves are over the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
 _ALSO = (
     "stable",
@@ -54,7 +54,7 @@ _ALSO = (
     *OF_BLADES,
 )
 NO_NETCDF = "Unknown file format"  # what the library says of other files
-UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
+UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and the checks here
 
 
 class DrawnCurve(Frozen):
@@ -66,8 +66,8 @@ class DrawnCurve(Frozen):
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) in the file's unit, or the level of the forces
     amplitude: FloatArray  # (point, dof)
-    stable: BoolArray | None = None  # (point,) where that is unknown, too
-    unknown: BoolArray | None = None  # (point,) where it is not
+    stable: BoolArray | None = None  # (point,) True also where the stability is unknown
+    unknown: BoolArray | None = None  # (point,) where the stability is unknown
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
     table_error: FloatArray | None = None  # (point,) relative, before the correction
     truncation_error: FloatArray | None = None  # (point,) relative
@@ -93,7 +93,7 @@ class DrawnResponse(Frozen):
     def column(self, dof: str | None, envelope: bool = True) -> int:
         """The place of a degree of freedom; by default that of `leading_column`.
 
-        envelope: whether that of a mistuned ring is an envelope over its sectors.
+        envelope: whether the default for a mistuned ring is an envelope over its sectors.
         """
         if dof is not None:
             return column_of(self.dofs, dof)
@@ -105,7 +105,7 @@ class DrawnResponse(Frozen):
         return own + greatest_column(self.blades.names, amplitudes[:, own:], self.blades.asked(self.asked))
 
     def amplitude_label(self, column: int) -> str:
-        """What the amplitudes of a column are, with their unit."""
+        """Axis label of the amplitudes of a column, with their unit."""
         dof, place = self.dofs[column], self.envelope(column)
         name = f"Amplitude of {dof}"
         if place is not None and self.blades is not None:
@@ -118,7 +118,7 @@ class DrawnResponse(Frozen):
         return self.dofs if self.blades is None else self.dofs[: -len(self.blades.names)]
 
     def envelope(self, column: int) -> int | None:
-        """The number of the envelope over sectors that a column has; None where it has none."""
+        """Index of the envelope over sectors in a column; None if the column is no envelope."""
         return None if self.blades is None else self.blades.place(self.dofs, column)
 
 
@@ -132,7 +132,7 @@ def curves_there(count: int) -> str:
 
 
 def chosen_curve(path: Path, curve: int | None, count: int) -> int:
-    """The number of a curve of a file, or of its only one; PlotError if there is none, or several."""
+    """Check the number of a curve, by default of the only one; PlotError if there is none, or several."""
     if curve is None and count > 1:
         raise PlotError(f"{path}: has {count} curves; say which by --curve 0 to --curve {count - 1}")
     row = 0 if curve is None else curve
@@ -148,7 +148,7 @@ def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
 
 
 def on_curve(along: FloatArray, place: float) -> float:
-    """A place along a curve (point,), or the end that rounding puts it beside; NaN where it is beyond."""
+    """A place along a curve (point,), moved to an end that it equals up to rounding; NaN if it is beyond."""
     for end in (float(np.nanmin(along)), float(np.nanmax(along))):
         if abs(place - end) <= READ.same_level * abs(end):
             return end
@@ -156,7 +156,7 @@ def on_curve(along: FloatArray, place: float) -> float:
 
 
 def asked_beside(wanted: float, there: float, unit: str, digits: int) -> str:
-    """Words on the place asked for, for a title with that of the point; empty if the digits shown agree.
+    """Text on the place asked for, beside the place of the point; empty if the digits shown agree.
 
     >>> asked_beside(120.0, 119.989, "Hz", 6), asked_beside(120.0, 119.989, "Hz", 3)
     ('asked: 120 Hz', '')
@@ -208,8 +208,7 @@ class OpenDataset:
 def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = ()) -> Iterator[Any]:
     """The open netCDF dataset, see `OpenDataset`.
 
-    PlotError if it has not the variables needed, or if they, or others that are read where they are there,
-    are laid out otherwise.
+    PlotError if it lacks a variable of `needed`, or if one of these or of `also` has another layout.
     """
     from netCDF4 import Dataset
 
@@ -233,7 +232,7 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
 
 
 def _cause(error: BaseException) -> str:
-    """Message of a library on a file, without the file's name and error number, which are said before."""
+    """Message of a library on a file, without the file's name and error number, already in the text."""
     said = getattr(error, "strerror", None) or str(error)
     return str(said).partition("\n")[0]
 
@@ -242,7 +241,7 @@ def _cause(error: BaseException) -> str:
 def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
     """Context for reading a file that may be damaged: errors become `PlotError`.
 
-    It says what the file is `otherwise`, and why.
+    The message has the text `otherwise`, and the reason.
     """
     try:
         yield
@@ -259,7 +258,7 @@ def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
 
 
 def _hint(dataset: Any) -> str:
-    """Sentence on the command that draws the file; or why none does, if it only has an optimum or a fit."""
+    """Text on the command that draws the file, or on the interruption of its optimum or fit; or ''."""
     kinds = (
         ("history", {"displacement", "time"}),
         ("response", {"amplitude", "frequency"}),
@@ -286,7 +285,7 @@ def response_in(dataset: Any) -> DrawnResponse:
     blades = blades_of(variables) if ENVELOPE in variables else None
     if blades is not None:
         dofs, amplitude = (*dofs, *blades.names), np.append(amplitude, floats(variables[ENVELOPE]), axis=2)
-    free = "modal_amplitude" in variables  # motion, which is neither stable nor a response over a range
+    free = "modal_amplitude" in variables  # free motion has no stability and no range of frequencies
     names = ("fundamental", *(() if free else ("stable", "table_error", "truncation_error")))
     others = {name: floats(variables[name]) for name in names if name in variables}
     if "regime" in variables:
@@ -318,9 +317,9 @@ def response_in(dataset: Any) -> DrawnResponse:
 def _curve(
     parameters: dict[str, float], frequency: FloatArray, amplitude: FloatArray, others: dict[str, Any]
 ) -> DrawnCurve:
-    """Curve without its padding, with the other variables (point, ...) that the file has of it.
+    """The curve without its padding, with its other variables (point, ...).
 
-    Points of NaN between branches stay, so that no line joins them.
+    Points of NaN between branches stay, so that no line joins the branches.
     """
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
@@ -366,7 +365,7 @@ def swept_values(variables: Any) -> dict[str, FloatArray]:
 
 
 def swept_units(variables: Any, keys: Iterable[str]) -> dict[str, str]:
-    """The units of swept values as they are read, empty where the file does not say them."""
+    """The units of swept values; empty where the file does not give them."""
     held = _swept(variables)
     written = {key: str(getattr(held[key], "units", "")) for key in keys}
     return {key: _READ.get(unit, unit) for key, unit in written.items()}
@@ -379,7 +378,7 @@ def drawn_keys(variables: Any, keys: Iterable[str]) -> tuple[str, ...]:
 
 
 def _swept(variables: Any) -> dict[str, Any]:
-    """The variables of swept values by their keys, which their names may not hold."""
+    """The variables of swept values by their keys, which netCDF names may not be able to hold."""
     return {
         str(getattr(variable, "key", name)): variable
         for name, variable in variables.items()

@@ -1,7 +1,7 @@
-"""Files of results, read by a process of its own: on a damaged one the HDF5 library can end its process.
+"""Read files of results in a separate process, because the HDF5 library can crash on a damaged file.
 
-Whatever becomes of that process, here there is what was read, or `PlotError`. While it reads, this one loads
-what it will draw with, so that a picture takes no longer.
+Whatever happens to the reader process, its caller gets the data or `PlotError`. Meanwhile the caller imports
+matplotlib, so that a picture takes no longer.
 """
 
 from __future__ import annotations
@@ -33,15 +33,14 @@ _NAMED = "FCM_READS_APART"  # set in the environment of the process that reads
 
 
 def apart(reader: Callable[P, T], options: ReadOptions = READ) -> Callable[P, T]:
-    """A function that reads a file, which is its first argument, done by a process of its own.
+    """Run a function that reads a file, its first argument, in a separate process.
 
-    It has the processor time of the options. What it is given and what it returns are pickled; so are the
-    exceptions that it raises.
+    The options limit its processor time. Arguments, return value and exceptions are pickled.
 
     Raises
     ------
     PlotError
-        Also if that process ended without an answer.
+        Also if the process ended without an answer.
     """
 
     @wraps(reader)
@@ -60,14 +59,14 @@ def apart(reader: Callable[P, T], options: ReadOptions = READ) -> Callable[P, T]
 
 
 def _answer(seconds: int, reader: tuple[str, str], args: Any, named: Any) -> tuple[bool, Any]:
-    """Whether it was read, and what was; else the exception."""
+    """Whether the file was read, with the data, or else the exception."""
     places = [str(Path(fcm.__file__).parents[1]), *filter(None, sys.path)]
     given = {"PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1", _NAMED: "1"}
     with subprocess.Popen(
         [sys.executable, "-P", "-c", _CODE],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,  # where the C library says that its memory is damaged
+        stderr=subprocess.DEVNULL,  # the C library reports damaged memory there
         env=os.environ | given,
     ) as process:
         try:
@@ -90,13 +89,13 @@ def _answer(seconds: int, reader: tuple[str, str], args: Any, named: Any) -> tup
 
 
 def child() -> None:
-    """Read a file and write what was read to standard output, in a process that may die of it."""
+    """Read a file and write the pickled data to standard output; the process may die while it reads."""
     faulthandler.disable()
     seconds, module, name, args, named = pickle.loads(sys.stdin.buffer.read())
     _limit_time(seconds)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of numbers that are none, which are said of the file
+            warnings.simplefilter("ignore")  # of invalid numbers, which are reported for the file
             answer = pickle.dumps((True, getattr(import_module(module), name)(*args, **named)), protocol=5)
     except Exception as error:
         if not isinstance(error, PlotError | OSError | MemoryError):
@@ -104,7 +103,7 @@ def child() -> None:
         answer = pickle.dumps((False, error), protocol=5)
     sys.stdout.buffer.write(answer)
     sys.stdout.buffer.flush()
-    os._exit(0)  # the memory of a damaged library is not tidied up
+    os._exit(0)  # without cleaning up the library's possibly damaged memory
 
 
 def _seconds(path: Any, options: ReadOptions) -> int:
@@ -114,7 +113,7 @@ def _seconds(path: Any, options: ReadOptions) -> int:
 
 
 def _limit_time(seconds: int) -> None:
-    """End this process after so much processor time; where the system has no such limit, never."""
+    """Limit the processor time of this process, if the system has such a limit."""
     with suppress(ImportError):
         import resource
 
