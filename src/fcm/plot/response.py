@@ -1,4 +1,4 @@
-"""Amplitude against frequency: one line a curve, labelled with what was swept; their errors below."""
+"""Amplitude against frequency: one line per curve, labelled with its swept values; errors below."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ if TYPE_CHECKING:
     from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
 
-DRAWS = "#31688e"  # of random draws, which need no names
+DRAWS = "#31688e"  # colour of random draws, which need no names
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
 _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
-# what is said of both kinds of faded stretches
+# legend text for both reasons why a stretch is faded
 _FADED = f"may err by more than {100 * LAYOUT.doubtful_error:g} %, or by an unknown amount"
-_STABLE = "stable curve"  # what is a solid line, where others are not
-_NOT_STABLE = "unstable"  # what is dashed
-_UNKNOWN = "stability unknown"  # what is dotted
-_HOLLOW = "a point, unstable or of unknown stability"  # what is a hollow dot
+_STABLE = "stable curve"  # solid line, if there are others
+_NOT_STABLE = "unstable"  # dashed line
+_UNKNOWN = "stability unknown"  # dotted line
+_HOLLOW = "a point, unstable or of unknown stability"  # hollow dot
 _UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
 
 
@@ -61,12 +61,12 @@ def draw_response(
     backbone: DrawnResponse | None = None,
     window: Window | None = None,
 ) -> Figure:
-    """The figure of one degree of freedom (by default see `leading_column`); unstable parts are dashed, those
-    of which that is unknown dotted.
+    """The figure of one degree of freedom, by default that of `DrawnResponse.column`.
 
-    Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
-    motion are drawn over the curves, and a backbone: nonlinear modes. A window is the part of the axis drawn.
-    Of a mistuned ring it is the envelope over its sectors, unless dof is that of one.
+    Unstable parts are dashed, parts of unknown stability dotted. Errors that the file knows have a panel
+    below the curves, unless errors is false. Points of the exact motion and a backbone of nonlinear modes
+    are drawn over the curves. window is the part of the axis to draw. For a mistuned ring, the envelope over
+    its sectors is drawn, unless dof is that of one sector.
     """
     alone = points is None and backbone is None
     column = (response if window is None else within(response, window)).column(dof, alone)
@@ -106,7 +106,7 @@ def draw_response(
             draw_errors(below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        look = colours[0] if len(set(colours)) == 1 else NEUTRAL  # of what stands for all curves
+        look = colours[0] if len(set(colours)) == 1 else NEUTRAL  # of legend handles for all curves
         notes = of_blades | _notes(axes, curves, column, look, width)
         if backbone is not None:
             notes[BACKBONE] = draw_backbone(axes, backbone, response, column, curves, colours)
@@ -114,7 +114,7 @@ def draw_response(
             name_errors(figure, curves, look, width, notes)
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
-        # last: whether there is room at the peaks hangs on how high the axes have become
+        # last: the height of the axes decides whether names have room at the peaks
         if draws:
             _name_draws(figure, axes, response, draws, lines)
             return figure
@@ -141,8 +141,7 @@ def _drawable(response: DrawnResponse, column: int, log: bool) -> tuple[list[int
 
 
 def _draws(response: DrawnResponse, curves: list[DrawnCurve]) -> list[DrawnCurve]:
-    """The curves without what was drawn at random, if they are so many that names of each would tell nothing;
-    else none."""
+    """The curves without their randomly drawn values, if there are too many to be named; else none."""
     if len(curves) <= LAYOUT.bar_names or not set(curves[0].parameters) & set(response.drawn):
         return []
     kept = [{k: v for k, v in one.parameters.items() if k not in response.drawn} for one in curves]
@@ -159,7 +158,7 @@ def _colours_of_draws(draws: Sequence[DrawnCurve]) -> list[str]:
 def _name_draws(
     figure: Figure, axes: Axes, response: DrawnResponse, draws: Sequence[DrawnCurve], lines: Sequence[Line2D]
 ) -> None:
-    """Says what was drawn, above the axes, and names the other values that were swept beside them."""
+    """Name the randomly drawn quantities above the axes, and the other swept values beside them."""
     first = {tuple(one.parameters.values()): i for i, one in reversed(list(enumerate(draws)))}
     places = sorted(first.values())
     names = ", ".join(symbols(key for key in response.curves[0].parameters if key in response.drawn))
@@ -184,11 +183,10 @@ def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
 
 
 def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Line2D:
-    """A solid line where the curve is stable or the file knows of no stability, a dashed one where it is
-    unstable, a dotted one where that is unknown.
+    """Draw a curve: solid where stable, dashed where unstable, dotted where its stability is unknown.
 
-    Faded is what may err by more than a fifth, or by what is not known. A point without neighbours, as one
-    of peaks alone, is a dot, hollow unless it is stable.
+    Without stability in the file the curve is solid. Parts are faded where they are `doubtful`. A point
+    without neighbours, as in files of peaks only, is a dot, hollow unless it is stable.
     """
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
@@ -217,7 +215,7 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Lin
 
 
 def _alone(curve: DrawnCurve, column: int) -> BoolArray:
-    """Points that no line leads to."""
+    """Mask of points without neighbours, which no line reaches."""
     there = np.isfinite(curve.frequency) & np.isfinite(curve.amplitude[:, column])
     around = np.concatenate(([False], there, [False]))
     alone: BoolArray = there & ~around[:-2] & ~around[2:]
@@ -225,9 +223,9 @@ def _alone(curve: DrawnCurve, column: int) -> BoolArray:
 
 
 def _notes(axes: Axes, curves: list[DrawnCurve], column: int, colour: str, width: float) -> dict[str, Line2D]:
-    """Why parts of curves are faded, dashed or dotted: lines like theirs, by what is to be said of them.
+    """Legend handles, by their texts, that explain faded, dashed and dotted parts of curves.
 
-    Nothing of parts that are too short to be seen.
+    Parts that are too short to be seen have none.
     """
     from matplotlib.lines import Line2D
 
@@ -247,7 +245,7 @@ def _notes(axes: Axes, curves: list[DrawnCurve], column: int, colour: str, width
 
 
 def _seen(axes: Axes, curve: DrawnCurve, column: int, which: BoolArray) -> bool:
-    """Whether a stretch of a curve is long enough that its line is seen as what it is."""
+    """Whether a stretch of a curve is long enough for its line style to be seen."""
     if not which.any():
         return False
     drawn = split(curve.amplitude[:, column], which)[1]  # with its neighbours
@@ -267,9 +265,10 @@ def _not_stable(curve: DrawnCurve) -> BoolArray:
 
 
 def doubtful(curve: DrawnCurve) -> BoolArray:
-    """Mask of points where the error by harmonics left out exceeds a fifth, or is unknown for long.
+    """Mask of points where the truncation error exceeds a fifth, or is unknown over a wide stretch.
 
-    Beside a fold it is never known; a curve of which it is nowhere, as of exact motions, has none.
+    Short stretches without an error do not count: it is never known beside a fold. If the error is known
+    nowhere, as for exact motions, no point is doubtful.
     """
     error = curve.truncation_error
     if error is None or not np.isfinite(error).any():
@@ -295,7 +294,7 @@ def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) ->
     axes.minorticks_on()
     if log:
         logarithmic_axis(axes)
-    else:  # a curve without ups and downs would be drawn on the frame
+    else:  # a flat curve would be drawn on the frame
         axes.set_ylim(0.0, max(axes.get_ylim()[1], LAYOUT.headroom * axes.dataLim.y1))
 
 

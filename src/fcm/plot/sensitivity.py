@@ -1,4 +1,4 @@
-"""Sensitivities of a peak to numbers of a scene: relative derivatives as bars, the greatest first."""
+"""Sensitivities of a peak to numbers of a scene: bars of relative derivatives, the greatest first."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class DrawnSensitivity(Frozen):
     dofs: tuple[str, ...]
     numbers: tuple[str, ...]
     parameters: tuple[dict[str, float], ...]  # of each curve
-    height: FloatArray  # (curve, dof, number) share of the peak by share of the number
-    frequency: FloatArray  # (curve, dof, number) the same of the peak's frequency
+    height: FloatArray  # (curve, dof, number) relative change of the peak per relative change of the number
+    frequency: FloatArray  # (curve, dof, number) of the peak's frequency likewise
     kind: tuple[tuple[str, ...], ...]  # of each curve and dof
     units: dict[str, str]  # of the swept values
-    stable: FloatArray  # (curve, dof) whether the motion at the peak is, 1, 0 or NaN
-    peak: FloatArray  # (curve, dof) its height
+    stable: FloatArray  # (curve, dof) whether the motion at the peak is stable: 1, 0 or NaN
+    peak: FloatArray  # (curve, dof) height of the peak
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for; empty where it does not
 
 
@@ -100,7 +100,7 @@ def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int
 
 
 def _greatest(height: FloatArray, frequency: FloatArray) -> np.ndarray:
-    """The numbers that do most, the greatest first."""
+    """Indices of the numbers with the greatest sensitivities, those of the peak's height in falling order."""
     size = np.nan_to_num(np.maximum(np.abs(height), np.abs(frequency)))
     order = np.argsort(-np.nan_to_num(np.abs(height)), kind="stable")
     return np.array(

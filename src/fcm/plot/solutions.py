@@ -1,4 +1,4 @@
-"""The solutions that a curve has at a frequency, a level or a modal amplitude: of a folded one several."""
+"""The solutions of a curve at a frequency, a level or a modal amplitude; a folded curve has several."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from fcm.plot.read import FloatArray
 
 
 class Solution(NamedTuple):
-    """A point of a curve, one of those that it has at a place."""
+    """A point of a curve: one of its solutions at a place."""
 
     point: int
-    number: int  # 1 for that of the greatest amplitude
+    number: int  # 1 for the solution of the greatest amplitude
     among: int  # how many solutions are there
 
     def __str__(self) -> str:
@@ -27,8 +27,8 @@ def solutions_at(
 ) -> list[Solution]:
     """The points of a curve nearest to a place within it, one for each solution, greatest amplitude first.
 
-    along, amplitude: (point,). Of each piece that passes the place it is the nearer end. A number takes that
-    solution alone; PlotError if there are fewer.
+    along, amplitude: (point,). Each piece of the curve that passes the place gives its nearer end. A number
+    selects one solution; PlotError if there are fewer.
     """
     start, end = along[:-1] - place, along[1:] - place
     passing = np.flatnonzero(start * end <= 0.0)

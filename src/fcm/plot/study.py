@@ -18,7 +18,7 @@ DASHES = {"linear": "--", "cubic": "-"}
 
 
 def draw_study(rows: list[Row]) -> Figure:
-    """The figure: a line for each layout and interpolation, rms strong and greatest error pale."""
+    """The figure: lines for each layout and interpolation, the rms strong and the greatest error pale."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     figure = new_figure(1.35 * LAYOUT.width, 1.05 * LAYOUT.height)
@@ -48,6 +48,6 @@ def _line(axes: Axes, at: list[float], rows: list[Row], look: dict[str, Any]) ->
 
 
 def write_study_figure(rows: list[Row], path: Path) -> None:
-    """Draw and save; the ending of path says as what."""
+    """Draw and save the figure in the format of the path's ending."""
     with house_style():
         save(draw_study(rows), path)

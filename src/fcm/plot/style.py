@@ -1,4 +1,4 @@
-"""The look of every picture: type, widths, colours, and files that come out the same each time."""
+"""The look of every picture: type, widths, colours, and reproducible files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-DOTS = (0.0, (1.0, 1.0))  # of the lines of what is not known, or does not stay
+DOTS = (0.0, (1.0, 1.0))  # line style where stability is unknown, or no steady state exists
 
 
 class PictureLayout(Frozen):
@@ -38,45 +38,45 @@ class PictureLayout(Frozen):
     direction_name: int = 30  # characters of a direction that fit beside an axis
     planar_height: float = 6.1  # [inch] of a planar loop and its forces
     normal_force_height: float = 4.6  # [inch] of a normal force over its motion and over a cycle
-    loop_alone: float = 1.25  # how much higher a loop alone is than one of a row
+    loop_alone: float = 1.25  # height of a loop alone, relative to that of one in a row
     plane_alone: float = 1.4  # height of a picture of one panel, relative to that of a row of two
-    band_opacity: float = 0.28  # of a band, so that those of several curves are seen through one another
+    band_opacity: float = 0.28  # of a band, so that bands of several curves show through
     doubtful_opacity: float = 0.3  # of a stretch of a curve whose error is large
-    below_reference: float = 0.14  # decades below the error of a reference, where it is named, of those above
+    below_reference: float = 0.14  # room below the error of a reference for its name, of the decades above it
     doubtful_error: float = 0.2  # estimated error beyond which a curve is faded
-    # of its frequency: a stretch whose error is not known, as far as a fold may be moved
+    # relative width in frequency up to which a stretch without a known error counts as that of a fold
     fold_width: float = 1e-2
     headroom: float = 1.05  # of an axis, at least, above the highest amplitude
-    campbell_top: float = 2.5  # times the range's end: so far up modes are shown
+    campbell_top: float = 2.5  # modes are shown up to this multiple of the range's end
     campbell_headroom: float = 1.08  # above the highest mode that is shown
     campbell_harmonics: int = 5  # of an engine order that are marked, at most
     campbell_orders: int = 6  # that have a line each, at most
     campbell_bar: float = 0.018  # of the axis: width of the bar of an engine order
     campbell_filled: float = 0.75  # of the distance of two diameters, by bars beside one another
-    campbell_labelled: float = 0.95  # of the axis: up to there the numbers of harmonics
+    campbell_labelled: float = 0.95  # of the axis: upper limit of the numbers of harmonics
     halo: float = 2.0  # [point] of white around a mark that stands on lines
-    bar_names: int = 20  # of more lines than this, a colour bar names some
+    bar_names: int = 20  # with more lines than this, a colour bar names some of them
     bar_ticks: int = 9  # of a colour bar, at most
-    bar_width: float = 7.0  # [point] of one beside maps, and of the way to it
-    dark: float = 0.1  # of the greatest value of all columns: one of less would be dark on a linear scale
-    least_colour: float = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
-    line_places: int = 16  # of a smooth line, between two points
+    bar_width: float = 7.0  # [point] of a colour bar beside maps, and of the gap to it
+    dark: float = 0.1  # of the greatest value: columns that stay below are dark on a linear scale
+    least_colour: float = 1e-4  # of the greatest value: smaller ones have no colour on a logarithmic scale
+    line_places: int = 16  # places of a smooth line per piece between two points
     shortest_stretch: float = 2.5  # [point] of a dashed or faded line that a legend names
     fitted_of_row: int = 2  # numbers of a fit beside one another
-    great_error: float = 0.05  # relative, of a peak, above which it is told beside it
-    meaning_letters: int = 80  # of a line that explains lines of tracked curves
+    great_error: float = 0.05  # relative error of a peak above which it is written beside the peak
+    meaning_letters: int = 80  # in a line of text that explains tracked curves
     same_end: float = 1e-6  # of the extent: two points of a curve nearer than this are one
-    letters_of_inch: float = 20.0  # small ones, of a line above the axes
+    letters_of_inch: float = 20.0  # small letters per inch of a line above the axes
     lines_above: int = 3  # of text above the axes
-    touch_roundings: float = 8.0  # of a coordinate, by which partners at one place are apart at most
+    touch_roundings: float = 8.0  # roundings of a coordinate up to which the nodes of a pair coincide
     least_weight: float = 1e-9  # of an axis in the name of a direction; less is a rounding error
     name_leader: int = 10  # [point] a name this far from its peak has a thin line to it
     name_margin: float = 2.0  # [pixel] around a name, at 100 to the inch
-    name_points: int = 12  # points between two of a curve at which a touch is looked for
-    mark_directions: int = 16  # of a text from its mark that are tried
+    name_points: int = 12  # checks for contact with a name, per piece of a curve
+    mark_directions: int = 16  # directions from a mark to its text that are tried
     mark_leader: float = 9.0  # [point] a text this far from its mark has a thin line to it
-    mark_leader_points: int = 12  # of that line, at which it may touch a text
-    mark_steep: float = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
+    mark_leader_points: int = 12  # points of that line that are checked for contact with a text
+    mark_steep: float = 2.5  # slope of an offset beyond which the text is centred towards its mark
     tick: float = 3.5  # [point] length of the ticks inside the frame
     linear_error: float = 1e-12  # estimated errors below are rounding: the motion is linear there
     error_bins: int = 120  # over the frequencies
@@ -84,45 +84,45 @@ class PictureLayout(Frozen):
     least_error: float = 1e-30  # drawn in the place of 0, far below the panel
     history_panels: int = 6  # one for each curve: more do not fit a page
     history_cycles: int = 60  # drawn as a line; more would be a solid area
-    history_boundaries: int = 40  # between phases: of more the lines would be a solid area, too
-    letter: float = 0.026  # width of a letter of a label and of some space, relative to the axes
+    history_boundaries: int = 40  # lines between phases; more would be a solid area, too
+    letter: float = 0.026  # width of a letter of a label with some space, relative to the axes
     interface_room: float = 0.06  # around the interface, as part of its greater extent
-    few_contacts: int = 6  # in a row: up to so many have a picture of one column
-    named_contacts: int = 20  # in a plane: up to so many have their names
+    few_contacts: int = 6  # most contacts in a row for a picture of one column
+    named_contacts: int = 20  # most contacts in a plane that are named
     row_of_contacts: float = 5.6  # [inch] height of a picture of contacts on a line
     thickest_bar: float = 0.12  # of the axis: a bar of one contact in a row
     line_distance: float = 1.3  # of two lines of text, relative to its size
-    letter_width: float = 0.55  # of the size of a text: that of a letter in the mean
+    letter_width: float = 0.55  # mean width of a letter, relative to the size of the text
     panels: int = 6  # points of an interface, or contacts, in a picture
-    loop_columns: int = 4  # of loops beside one another
+    loop_columns: int = 4  # loops side by side
     small_text: int = 7  # [point] texts within a picture
     loop_room: float = 0.18  # beside a loop, relative to its extent
     loop_named: int = 60  # transitions whose angles still find room beside them
     loop_narrowest: float = 11.0  # [degree] a state shorter than this has no letter
-    mistakes: int = 5  # of a file of places that are listed; the rest are counted
-    same_circle: float = 0.99  # of the radius of another: a circle that is greater is drawn as one with it
+    mistakes: int = 5  # mistakes of a file of places that are listed; the rest are counted
+    same_circle: float = 0.99  # ratio of two radii from which only the greater circle is drawn
     planar_room: float = 0.56  # of the extent of a planar loop, to each side of the middle
     planar_samples: int = 1440  # of a cycle of a planar loop
-    # of the motion in a plane: less than that along a direction is none. Displacements across a contact are
-    # differences of greater ones, and have fewer digits
+    # of the motion in a plane: smaller displacements along a direction count as none. Displacements across a
+    # contact are differences of greater ones, and have fewer digits
     planar_rest: float = 1e-9
     planar_instants: int = 4  # of a cycle at which the disc is drawn
-    seen_end: float = 1e-2  # of the axis of a number: a line that ends further from its ends is explained
+    seen_end: float = 1e-2  # of the axis of a number: a line that ends further from both ends is explained
     short_track: float = (
         0.05  # of the axis of a number: a shorter low line does not make the other logarithmic
     )
     swept_span: float = 30.0  # positive swept values of a greater ratio are on a logarithmic axis
     narrow_scatter: float = 2.0  # ratio of drawn peaks below which their axis does not begin at 0
-    scatter_room: float = 0.15  # below and above them then, of their extent
+    scatter_room: float = 0.15  # then the room below and above the peaks, of their extent
     peak_lines: int = 12  # more combinations of the other swept values than this are a cloud of points
-    marked_points: int = 60  # values or points on a line that are marked; of more, none is or some are
+    marked_points: int = 60  # values or points on a line that are marked; with more, none or some are
     point_edge: float = 0.7  # [point] of a marked point
     wide_frequencies: float = 30.0  # ratio of frequencies from which their axis is logarithmic
     bars: int = 20  # of sensitivities, at most
     negligible_bar: float = 1e-3  # of the greatest: numbers that do less are not drawn
     surface_ticks: int = 5  # intervals of an axis in space, at most
     surface_levels: int = 12  # bands of filled contours, at most
-    table_error: float = 1e-300  # in the place of 0, which has no logarithm
+    table_error: float = 1e-300  # replaces 0, which has no logarithm
 
 
 LAYOUT = PictureLayout()
@@ -132,10 +132,10 @@ COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 STYLE: dict[Any, Any] = {
     "axes.formatter.limits": (-3, 4),
     "axes.formatter.use_mathtext": True,
-    "axes.formatter.useoffset": False,  # a frequency is read from its tick, not from a sum
+    "axes.formatter.useoffset": False,  # ticks show whole frequencies, not offsets
     "axes.linewidth": 0.6,
     "axes.unicode_minus": True,
-    "font.family": ["STIXGeneral", "DejaVu Serif"],  # a character that the first lacks is of the second
+    "font.family": ["STIXGeneral", "DejaVu Serif"],  # the second has characters that the first lacks
     "font.size": 9,
     "legend.fontsize": 8,
     "legend.title_fontsize": 8,
@@ -165,7 +165,7 @@ _UNDATED = {
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """The look, whatever matplotlib's own configuration says; characters that no font has are boxes."""
+    """Set the look regardless of matplotlib's own configuration; characters that no font has are boxes."""
     import matplotlib
 
     with matplotlib.rc_context(), warnings.catch_warnings():
@@ -199,8 +199,9 @@ def sequence_colours(count: int) -> list[str]:
 def split(
     values: npt.NDArray[np.float64], apart: npt.NDArray[np.bool_]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """The values of a line and those of its parts that are drawn apart, NaN elsewhere; these reach to their
-    neighbours.
+    """Split a line into the values outside and inside the mask `apart`, each NaN elsewhere.
+
+    The second part includes the neighbours of masked points.
 
     >>> here, there = split(np.arange(4.0), np.array([False, False, True, True]))
     >>> here.tolist(), there.tolist()
@@ -219,16 +220,16 @@ def logarithmic_axis(axes: Axes) -> None:
 
 
 def swept_axis(axes: Axes, lowest: float, highest: float) -> None:
-    """The axis of a number between two values, logarithmic with plain ticks where they are far apart."""
+    """Make the axis of a number logarithmic, with plain ticks, if its two ends are far apart."""
     if highest > LAYOUT.swept_span * lowest > 0.0:
         axes.set_xscale("log")
         plain_ticks(axes.xaxis, 1e3)
 
 
 def plain_ticks(axis: Axis, widest: float) -> None:
-    """Ticks of a logarithmic axis as numbers: 0.5, 1, 2, 5, 10; where its ends have a greater ratio 1, 10.
+    """Write the ticks of a logarithmic axis as numbers: 0.5, 1, 2, 5, 10; beyond the ratio `widest` 1, 10.
 
-    Of small or great numbers all are of one kind, as 5e-5 and 1e-4.
+    If numbers are small or great, all are written as powers, such as 5e-5 and 1e-4.
     """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -246,7 +247,7 @@ def plain_ticks(axis: Axis, widest: float) -> None:
 
 
 def has_decades(heights: Sequence[float]) -> bool:
-    """Whether they differ so much that on a linear axis the lowest would lie on its foot."""
+    """Whether heights differ so much that the lowest would lie at the foot of a linear axis."""
     return bool(max(heights) > LAYOUT.decade * min(heights) > 0.0)
 
 
@@ -264,7 +265,7 @@ def lacking(figure: Figure) -> str:
 def save(figure: Figure, path: Path, dpi: int = LAYOUT.dpi) -> None:
     """Write the picture in the format of its ending: the same bytes for the same figure.
 
-    Drawn in memory first: on a full disk, a PDF would end by what its compression says of itself.
+    It is drawn in memory first: on a full disk, a PDF would fail with an error of its compression.
     """
     ending, drawn = path.suffix.lower(), BytesIO()
     with house_style():
@@ -273,7 +274,7 @@ def save(figure: Figure, path: Path, dpi: int = LAYOUT.dpi) -> None:
 
 
 def colour_bar(figure: Figure, names: Sequence[str], title: str) -> None:
-    """The colours of lines in their order, with the names of some of them."""
+    """Draw a colour bar of the lines in their order, with the names of some."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import BoundaryNorm, ListedColormap
 

@@ -1,4 +1,4 @@
-"""The summary that a response file carries, for what its variables do not have."""
+"""The summary in a response file, which holds data that its variables lack."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def summary_of(data: Any) -> dict[str, Any]:
-    """The summary that a response file has as JSON; empty without one. ValueError of another thing."""
+    """The JSON summary of a response file, empty without one; ValueError if it is no dictionary."""
     found = json.loads(str(getattr(data, "summary", "{}")))
     if not isinstance(found, dict):
         raise ValueError("its attribute summary is not of a response")
@@ -15,7 +15,7 @@ def summary_of(data: Any) -> dict[str, Any]:
 
 
 def jumps_of(data: Any) -> list[list[tuple[str, float]]]:
-    """The jumps of each curve: the way of the sweep, and the frequency. ValueError of another thing."""
+    """The jumps of each curve: direction of the sweep and frequency; ValueError if the summary has others."""
     try:
         return [
             [(str(one["sweep"]), float(one["frequency"])) for one in curve.get("jumps", ())]

@@ -41,9 +41,9 @@ def draw_regions(axes: Axes, found: Regions) -> None:
 
 
 def name_regions(axes: Axes, found: Regions) -> None:
-    """Writes each sequence in the middle of its region, unless that is too small.
+    """Write each sequence in the middle of its region, unless that is too small.
 
-    The panel has its final size then.
+    The panel must have its final size.
     """
     frame, dpi = axes.get_window_extent(), axes.figure.dpi
     for name, where in found.where.items():
@@ -55,7 +55,7 @@ def name_regions(axes: Axes, found: Regions) -> None:
 
 
 def _place(where: FloatArray, size: tuple[float, float]) -> tuple[int, int] | None:
-    """The cell with most room around it for a box of a size, a share of the panel; None if nowhere."""
+    """The cell with most room for a box whose size is a share of the panel; None if it fits nowhere."""
     cells = [max(1, round(share * count)) for share, count in zip(size, where.shape, strict=True)]
     fits = minimum_filter(where, size=cells, mode="constant", cval=0.0)
     if not fits.any():
@@ -107,7 +107,7 @@ def _range(surfaces: Sequence[CoefficientSurface], coefficient: str) -> tuple[fl
 
 
 def _colours(signed: bool) -> Colormap:
-    """Told apart by the colour-blind, and light enough for black lines and names."""
+    """Colours that are safe for the colour-blind and light enough for black lines and names."""
     import matplotlib
     from matplotlib.colors import ListedColormap
 

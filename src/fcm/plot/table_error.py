@@ -1,4 +1,4 @@
-"""The error of a table over (n0_bar, b_bar), its worst point named."""
+"""The error of a table over (n0_bar, b_bar), with its worst point."""
 
 from __future__ import annotations
 

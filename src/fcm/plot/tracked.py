@@ -1,4 +1,4 @@
-"""Peaks and folds followed in a number: the peak to design by, and the window of several solutions."""
+"""Peaks and folds tracked over a number: the design peak, and the window with several solutions."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _OPTIMUM = (
     "optimum_kind",
 )
 _MARK, _SHADE, _TRIED = "#c03020", "#c0d4ea", "0.4"
-_WIDTH, _BELOW = 1.1, 0.9  # [point] of a line; by which each is thicker than the next above it
+_WIDTH, _BELOW = 1.1, 0.9  # [point] of a line; added for each line drawn above it
 
 
 class DrawnTrack(Frozen):
@@ -56,8 +56,8 @@ class DrawnTrack(Frozen):
     frequency: FloatArray  # (point,) in the file's unit
     amplitude: FloatArray  # (point, dof)
     turn: FloatArray  # (point,) 1 where the number turns back
-    trough: FloatArray  # (point,) 1 where a peak is none
-    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is unknown
+    trough: FloatArray  # (point,) 1 where the tracked extremum is a trough, no peak
+    stable: FloatArray  # (point,) 1 where the motion is stable, 0 where unstable, NaN where unknown
     swept: tuple[float, ...] = ()  # values of the curve of the scene that it belongs to
 
 
@@ -69,18 +69,20 @@ class DrawnTracking(Frozen):
     frequency_unit: str
     tracks: tuple[DrawnTrack, ...]
     optimum: tuple[float, float] | None = None  # the number, and the peak
-    stays: str = ""  # what is to be said of the stability of that
+    stays: str = ""  # text on the stability at the optimum
     length: str = ""
     unit: str = ""  # of the number
     at_bound: bool = False  # whether the optimum is at an end of the range of the number
-    tried: FloatArray = field(default_factory=lambda: np.empty((0, 2)))  # (value, 2) number, and peak there
+    tried: FloatArray = field(
+        default_factory=lambda: np.empty((0, 2))
+    )  # (value, 2) number, and greatest peak there
     swept: Mapping[str, str] = field(default_factory=dict)  # keys of what was swept, with their units
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
 
 
 @apart
 def read_tracked(path: Path) -> DrawnTracking | None:
-    """Read what ``fcm respond`` has written with --track, or of an [optimum]; None of another file."""
+    """Read what ``fcm respond`` has written with --track or for an [optimum]; None for another file."""
     with opened(path, "a response file", (), (*_NEEDED, *_ALSO, *_OPTIMUM)) as data:
         variables = data.variables
         if any(name not in variables for name in _NEEDED):
@@ -128,7 +130,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
 
 
 def _tried(data: Any) -> FloatArray:
-    """Values of the number at which an optimum was sought by trials, with the greatest peak of each."""
+    """Numbers (value, 2) tried in the search for an optimum, each with its greatest peak."""
     try:
         (found,) = summary_of(data).get("optimum", [{}])
         tried = np.array(found.get("tried", []), dtype=np.float64).reshape(-1, 2)
@@ -148,7 +150,10 @@ def _stays(variables: Any) -> str:
 
 
 def draw_tracked(drawn: DrawnTracking, dof: str | None = None, folds: bool = False) -> Figure:
-    """Folds: their frequencies with the window between them shaded; peaks or onsets: height and frequency."""
+    """Draw frequencies of folds with shaded windows; or height and frequency of peaks or onsets.
+
+    Folds are drawn if the file has any; PlotError if `folds` is set and it has none.
+    """
     is_fold = [track.what == "fold" for track in drawn.tracks]
     if folds and not any(is_fold):
         raise PlotError("the file holds no folds that were tracked; run fcm respond with --track folds")
@@ -181,8 +186,8 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
 def _windows(tracks: Sequence[DrawnTrack]) -> list[tuple[FloatArray, FloatArray]]:
     """Numbers and frequencies around the windows with several solutions.
 
-    A curve that turns back comes to the number where it began, and has its window in it. Others go from end
-    to end: in the order of their frequencies two and two of one swept value have a window between them.
+    A curve that returns to its first number encloses a window. The other curves go from end to end: sorted
+    by frequency, each two of one swept value have a window between them.
     """
     found, across = list[tuple[FloatArray, FloatArray]](), dict[tuple[float, ...], list[DrawnTrack]]()
     for track in tracks:
@@ -212,10 +217,12 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
     dof = None if dof is None else drawn.dofs[column_of(drawn.dofs, dof)]
     peaks = [one for one in drawn.tracks if one.what.startswith("peak of ")] or list(drawn.tracks)
     onsets = not any(one.what.startswith("peak of ") for one in peaks)
-    if onsets:  # which are of contacts
+    if onsets:  # onsets belong to contacts, not to degrees of freedom
         heights_of = np.concatenate([one.amplitude for one in peaks])
         dof = drawn.dofs[leading_column(drawn.dofs, dof, heights_of, drawn.asked)]
-    if of_sweep := _colours_of_sweep(peaks):  # which take the colours, so that it is one degree of freedom
+    if of_sweep := _colours_of_sweep(
+        peaks
+    ):  # the colours show swept values, so that one degree of freedom is drawn
         dof = dof or peaks[0].what.removeprefix("peak of ")
     wanted = [one for one in peaks if dof is None or one.what == f"peak of {dof}"] or peaks
     with house_style():
@@ -223,7 +230,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
         unnamed = list(names)
-        # thicker below thinner: peaks that are nearly equal would hide one another
+        # thick lines below thin ones: nearly equal peaks would hide one another
         widths = {name: _WIDTH + _BELOW * k for k, name in enumerate(reversed(names))}
         colours = (
             {id(track): of_sweep[track.swept] for track in wanted} if of_sweep else _colours(wanted, names)
@@ -243,7 +250,9 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             unnamed = [one for one in unnamed if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
                 _line(axes, track, values, colours[id(track)], text, widths[track.what])
-        tried = len(drawn.tried) > 0 and len(wanted) == len(peaks)  # of several peaks they are the greatest
+        tried = len(drawn.tried) > 0 and len(wanted) == len(
+            peaks
+        )  # trials hold the greatest of several peaks
         if tried:
             upper.plot(*drawn.tried.T, "x", color=_TRIED, markersize=4.0)
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
@@ -272,9 +281,9 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
 
 
 def _colours(tracks: Sequence[DrawnTrack], names: Sequence[str]) -> dict[int, str]:
-    """Colour of each track, by its id: that of its name, or its own where all share one name.
+    """Colour of each track, by its id: one per name, or one per track if all share a name.
 
-    Own colours show which height and which frequency belong together.
+    Colours per track show which height and which frequency belong together.
     """
     if len(names) > 1:
         of_name = dict(zip(names, sequence_colours(len(names)), strict=True))
@@ -284,7 +293,7 @@ def _colours(tracks: Sequence[DrawnTrack], names: Sequence[str]) -> dict[int, st
 
 
 def _colours_of_sweep(tracks: Sequence[DrawnTrack]) -> dict[tuple[float, ...], str]:
-    """A colour for the curves of each swept value; none where nothing was swept."""
+    """A colour for the curves of each swept value; empty if nothing was swept."""
     swept = list(dict.fromkeys(track.swept for track in tracks))
     return dict(zip(swept, sequence_colours(len(swept)), strict=True)) if len(swept) > 1 else {}
 
@@ -302,7 +311,7 @@ def _name_swept(figure: Figure, drawn: DrawnTracking, colours: Mapping[tuple[flo
 def _line(
     axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None, width: float = _WIDTH
 ) -> None:
-    """Solid where the motion is stable, dashed where it is not, dotted where that is unknown."""
+    """Draw a track: solid where stable, dashed where unstable, dotted where its stability is unknown."""
     stable = track.stable == 1.0
     axes.plot(track.number, np.where(stable, y, np.nan), color=colour, linewidth=width, label=label)
     for there, style in ((track.stable == 0.0, "--"), (np.isnan(track.stable), ":")):
@@ -314,7 +323,7 @@ def _line(
 
 
 def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack], tried: bool = False) -> None:
-    """Explains colours, dashed and dotted lines, where there are some."""
+    """Explain colours, dashed and dotted lines, gaps, ends and crosses, where there are some."""
     stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
     peaks = {track.what for track in tracks if track.what != "fold"}
     alike = len(peaks) == len({track.swept for track in tracks}) == 1
@@ -335,7 +344,7 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack], tried: bool = False) -
 
 
 def _has_gap(track: DrawnTrack) -> bool:
-    """Whether it is a trough between two parts that are peaks; what is one to its end is not seen."""
+    """Whether a trough lies between two parts that are peaks; a trough up to an end leaves no gap."""
     at = np.flatnonzero(track.trough != 1.0)
     return at.size > 0 and int(at[-1] - at[0]) >= at.size
 
@@ -351,7 +360,7 @@ def _end_within(tracks: Sequence[DrawnTrack]) -> bool:
 
 
 def _of_note(tracks: Sequence[DrawnTrack], heights: Sequence[tuple[float, float]]) -> list[float]:
-    """Those lowest and highest values that choose the kind of an axis: without those of short low lines."""
+    """Lowest and highest values that decide if an axis is logarithmic, without those of short low lines."""
     every = np.concatenate([track.number for track in tracks])
     long = [np.ptp(track.number) > LAYOUT.short_track * np.ptp(every) for track in tracks]
     top = max(high for _, high in heights)

@@ -25,7 +25,9 @@ class Unfinished(Frozen):
     """Reasons why curves of a file are unfinished, in their order."""
 
     reasons: tuple[str, ...] = ()  # (curve,) empty where a curve is whole
-    span: tuple[float, float] = NO_SPAN  # sought, in the file's unit; NaN where the file does not say it
+    span: tuple[float, float] = (
+        NO_SPAN  # range sought, in the file's unit; NaN where the file does not say it
+    )
     fit: str = ""  # why the numbers of a fit are not final; empty if they are, or there are none
 
     def reason(self, number: int) -> str:
@@ -70,9 +72,7 @@ def _of_fit(fitted: Any) -> str:
 def open_ends(x: FloatArray, y: FloatArray, span: tuple[float, float]) -> list[int]:
     """Ends of an unfinished curve: ends of branches neither at the span's ends nor on another branch.
 
-    A closed branch has no end.
-
-    Without a span the last point of each branch counts.
+    A closed branch has no end. Without a span only the last point of each branch is considered.
 
     >>> x = np.array([1.0, 1.5, np.nan, 3.0, 2.5])
     >>> open_ends(x, x, (1.0, 3.0)), open_ends(x, x, (np.nan, np.nan))
@@ -97,7 +97,7 @@ def open_ends(x: FloatArray, y: FloatArray, span: tuple[float, float]) -> list[i
 
 
 def mark_unfinished(axes: Axes, curves: Sequence[tuple[FloatArray, FloatArray]], told: Unfinished) -> None:
-    """A cross where each unfinished curve ends; the axis then has all that was sought."""
+    """Draw a cross where each unfinished curve ends; the axis then covers the whole range sought."""
     for number, (x, y) in enumerate(curves):
         if told.reason(number) and (ends := open_ends(x, y, told.span)):
             axes.plot(
@@ -116,7 +116,7 @@ def mark_unfinished(axes: Axes, curves: Sequence[tuple[FloatArray, FloatArray]],
 
 
 def say_unfinished(axes: Axes, told: Unfinished) -> None:
-    """Above the axes, that and why curves are unfinished; nothing where all are whole."""
+    """Write above the axes that curves are unfinished, and why; nothing if all are complete."""
     if said := sentence(told):
         width = axes.get_figure().get_size_inches()[0] * LAYOUT.letters_of_inch  # type: ignore[union-attr]
         lines = textwrap.wrap(said, int(width), max_lines=LAYOUT.lines_above, placeholder=" ...")
@@ -126,7 +126,7 @@ def say_unfinished(axes: Axes, told: Unfinished) -> None:
 
 
 def sentence(told: Unfinished) -> str:
-    """Sentence that curves, or a fit, are unfinished, and why the first is; empty where all are complete.
+    """Sentence that curves or a fit are unfinished, with the first curve's reason; empty if none is.
 
     >>> sentence(Unfinished(("", "")))
     ''

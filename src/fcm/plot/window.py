@@ -51,7 +51,7 @@ def within(response: DrawnResponse, window: Window) -> DrawnResponse:
 
 
 def _cut(curve: DrawnCurve, low: float, high: float) -> DrawnCurve:
-    """NaN beyond the ends, but for the first point there, which is moved to the end that its line passes."""
+    """The curve with NaN beyond the ends; the first point beyond moves to the end that its line crosses."""
     x, y = curve.frequency.copy(), curve.amplitude.copy()
     inside = (curve.frequency >= low) & (curve.frequency <= high)
     x[~inside] = y[~inside] = np.nan

@@ -1,7 +1,7 @@
-"""Sweeps: many items computed in batches, here, in processes or on a cluster; kept until written.
+"""Compute many items in batches, here, in processes or on a cluster, and keep results until written.
 
-Knows nothing of what is computed. `compute_batches` is given the batches and a function that computes one;
-`CheckpointFile` keeps what is finished; `fingerprint` says of what the results depend.
+The package does not depend on what is computed. `compute_batches` takes the batches and a function that
+computes one. `CheckpointFile` keeps finished batches. `fingerprint` identifies all that results depend on.
 """
 
 from typing import TYPE_CHECKING

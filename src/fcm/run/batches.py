@@ -1,4 +1,4 @@
-"""Batches, all computed somewhere, kept as they are finished, and interrupted without loss."""
+"""Compute batches at a place, keep each finished one, and lose nothing at an interruption."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ DIED = "its process ended unexpectedly, perhaps for want of memory; try fewer --
 
 @dataclass
 class Outcome:
-    """The results of each batch that is there, `Lost` in the place of those that could not be had."""
+    """The results of each finished batch, with `Lost` in place of those that failed."""
 
     results: dict[int, list[Any]] = field(default_factory=dict)
     parts: dict[int, list[Any]] = field(default_factory=dict)  # of batches that were interrupted
     interrupted: bool = False
-    lost: str = ""  # why, where it was the place that took nothing any more
+    lost: str = ""  # why the place took no more batches, if it did not
 
     def of(self, number: int) -> list[Any]:
-        """Results of a batch, or the part that there is."""
+        """Results of a batch, or its finished part."""
         return list(self.results.get(number, self.parts.get(number, ())))
 
 
@@ -44,7 +44,7 @@ def place_for(jobs: int) -> Factory:
 
 
 def place_of(executor: Executor) -> Factory:
-    """An executor of the caller's, who ends it."""
+    """Factory of the place for an executor, which the caller shuts down."""
     from fcm.run.executor_place import ExecutorPlace
 
     return lambda compute, _count: ExecutorPlace(compute, executor)
@@ -57,28 +57,28 @@ def compute_batches(
     kept: Results | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
-    """Computes all batches.
+    """Compute all batches.
 
     Parameters
     ----------
     compute
-        Computes a batch: one result for each item. It calls its report now and then, from which an
-        interruption is raised; it may answer with `Interrupted` and a part of its results, and save what it
-        can go on from. For processes all of these are pickled.
+        Computes a batch: one result for each item. It calls its report now and then, which may raise an
+        interruption. It may then raise `Interrupted` with a part of its results, and save states from which
+        it can continue. For processes all of these are pickled.
     batches
-        Their results do not depend on where and in which order they are computed.
+        Their results do not depend on the place and the order of computation.
     at
         Where to compute: `place_for(jobs)`, `place_of(executor)`, or a cluster (`fcm.run.cluster.connected`);
         by default this process.
     kept
-        What is finished already, and where every batch goes that is finished from now on.
+        Finished results; every batch that is finished from now on is added.
 
     Raises
     ------
     KeyboardInterrupt
-        If it is interrupted before anything is finished; later, what is finished is returned.
+        If it is interrupted before any result is there; later, the finished results are returned.
     PlaceClosed
-        If the place takes nothing any more before anything is finished; later, as an interruption.
+        If the place closes before any result is there; later, the finished results are returned.
     """
     with one_here():
         return _BatchRun(compute, batches, at or place_for(1), kept or Results(), progress).run()
@@ -97,7 +97,7 @@ class _BatchRun:
         self.outcome = Outcome(dict(kept.finished))
         self.bar = Bar([len(batch) for batch in batches], kept.finished, progress)
         self.waiting: dict[Future[Attempt], int] = {}
-        self.done: SimpleQueue[Future[Attempt]] = SimpleQueue()  # of those, as they come
+        self.done: SimpleQueue[Future[Attempt]] = SimpleQueue()  # futures of `waiting`, as they finish
         self.states: deque[tuple[int, Any]] = deque()  # not kept yet
 
     def run(self) -> Outcome:
@@ -112,7 +112,7 @@ class _BatchRun:
         return outcome
 
     def _at_once(self, left: Sequence[int]) -> list[int]:
-        """Compute batches at one place; those whose process has died."""
+        """Compute batches at one place; return those whose process has died."""
         if not left:
             return []
         place, died = self.at(self.compute, len(left)), []
@@ -161,7 +161,7 @@ class _BatchRun:
         future.add_done_callback(self.done.put)
 
     def _arrived(self) -> list[Future[Attempt]]:
-        """The futures that are done, waited for a little; what was saved meanwhile is kept."""
+        """Wait briefly for finished futures and return them; keep the states saved meanwhile."""
         found = []
         try:
             found.append(self.done.get(timeout=RUN.poll))
@@ -172,7 +172,7 @@ class _BatchRun:
         return found
 
     def _saver(self, number: int, at_once: bool) -> Callable[[Any], None]:
-        """Function that saves a state of a batch; in other threads it leaves this to the main one."""
+        """Function that saves a state of a batch; unless `at_once`, it leaves this to the main thread."""
         if at_once:
             return lambda state: self.kept.save(number, state)
         return lambda state: self.states.append((number, state))
@@ -187,14 +187,13 @@ class _BatchRun:
 
     def _keep(self, number: int, results: list[Any]) -> None:
         self.outcome.results[number] = results
-        if not any(isinstance(one, Lost) for one in results):  # what is lost is tried again by the next run
+        if not any(isinstance(one, Lost) for one in results):  # the next run tries lost results again
             self.kept.add(number, results)
 
     def _hand_over(self, place: Place) -> None:
-        """Ask everybody for what they have; whoever has no answer in time has none.
+        """Stop the place and collect what its batches have within the grace time.
 
-        Who interrupts once more does not wait for it. Progress, which may interrupt again, is not shown any
-        more.
+        A second interruption ends the wait. Progress is no longer shown, because it may interrupt again.
         """
         place.stop()
         with suppress(KeyboardInterrupt):

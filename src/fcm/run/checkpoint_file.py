@@ -1,7 +1,7 @@
-"""Finished work of a run, in a file beside its output until that is written.
+"""Keep finished work of a run in a file beside its output, until the output is written.
 
-The file is never emptied, and locked, so that no second run works on the same output (`fcm.run.lock`). Every
-record says for itself of what it is (`fcm.run.records`).
+A lock keeps a second run off the same output (`fcm.run.lock`). Files with work are never emptied. Every
+record holds the fingerprint of its work (`fcm.run.records`).
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from fcm.run.options import RUN, RunOptions
 from fcm.run.records import Record, packed, unpacked, whole
 from fcm.signals import undisturbed
 
-_STATE = -1  # and less are the numbers of records with states of batch 0 and more
-_WRITTEN = bytes(32)  # in the place of a fingerprint: how many points of all this a file has, and its name
+_STATE = -1  # number of a record with a state of batch 0; -2 for batch 1, and so on
+_WRITTEN = bytes(32)  # instead of a fingerprint: the record has the points and the name of a written output
 
 Fits = Callable[[int, Any], bool]  # whether results can be those of a batch
 
@@ -39,7 +39,7 @@ class Results:
         self.finished[number] = results
 
     def save(self, number: int, state: Any) -> None:
-        """Keeps the state of an unfinished batch; here none is kept."""
+        """Keep the state of an unfinished batch; this class keeps none."""
 
 
 class CheckpointFile:
@@ -48,14 +48,14 @@ class CheckpointFile:
     Parameters
     ----------
     path : Path
-        The file; it is made if there is none.
+        The file; it is created if there is none.
     resume : bool
-        Whether what it holds is continued; else it is moved aside.
+        Whether to continue the work in it; otherwise it is moved aside.
 
     Raises
     ------
     CheckpointError
-        If another run is at work on it, or it is no file of its own.
+        If another run works on it, or the path is a link or no regular file.
     OSError
         If it cannot be written.
     """
@@ -63,7 +63,7 @@ class CheckpointFile:
     def __init__(self, path: Path, resume: bool = False, options: RunOptions = RUN) -> None:
         self.options = options
         self.path, self.failed, self.used, self.spent = path, False, False, False
-        self.set_aside = False  # whether what there was is beside it now
+        self.set_aside = False  # whether an older file was moved aside
         self._marks = {_WRITTEN}  # of all that this run has worked on
         self._file = -1
         try:
@@ -76,7 +76,7 @@ class CheckpointFile:
             raise OSError(error.errno, error.strerror, str(path)) from None
 
     def results(self, mark: bytes, kinds: tuple[type, ...], fits: Fits) -> Results:
-        """Saved results of the work with a fingerprint; what is finished later is appended to the file.
+        """Saved results of the work with a fingerprint; those added later are appended to the file.
 
         A file that holds only other work is moved aside, with a warning.
         """
@@ -98,7 +98,7 @@ class CheckpointFile:
         return found
 
     def append(self, mark: bytes, number: int, results: Any) -> None:
-        """Keep what is finished; if that fails, say so once and go on."""
+        """Append results to the file; if that fails, warn once and go on."""
         if self.failed:
             return
         data = packed(Record(mark, number, pickle.dumps(results, protocol=5)))
@@ -113,20 +113,20 @@ class CheckpointFile:
             )
 
     def written(self, output: Path) -> int | None:
-        """How many points an output has of what is kept here; None if it has nothing of it."""
+        """Number of points of this work that an output has; None if it has none."""
         records = whole(self._file, os.fstat(self._file).st_size, LENGTH)
         notes = (one for one in records if one.fingerprint == _WRITTEN)
         own = [one.number for one in notes if unpacked(one.payload, ()) == output.name]
         return own[-1] if own else None
 
     def wrote(self, output: Path, points: int) -> None:
-        """An output is written, with so many points of what is kept here."""
+        """Record that an output is written, with its number of points of this work."""
         self.append(_WRITTEN, points, output.name)
 
     def done(self) -> list[Path]:
-        """The output is written: nothing is to be kept any more, and those that were moved aside neither.
+        """Remove the file after the output is written, and files moved aside that hold only this run's work.
 
-        Of these the ones that are removed: all their work is of this run. Others are somebody's.
+        Returns the removed files that were moved aside; others may be somebody else's.
         """
         aside = [path for path in _aside(self.path, self.options.max_set_aside) if self._has(path)]
         for path in aside:
@@ -136,7 +136,7 @@ class CheckpointFile:
         return aside
 
     def _has(self, path: Path) -> bool:
-        """Whether a file that was moved aside kept nothing but work that this run has done."""
+        """Whether a file that was moved aside holds only work that this run has done."""
         try:
             file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
         except OSError:
@@ -149,7 +149,7 @@ class CheckpointFile:
             os.close(file)
 
     def close(self) -> None:
-        """Let go of the file; one that holds no work is removed."""
+        """Close the file; remove it if it holds no work or is no longer needed."""
         if self._file < 0:
             return
         if (self.spent or not self.resumable) and same(self._file, self.path):
@@ -165,7 +165,7 @@ class CheckpointFile:
 
     @property
     def resumable(self) -> bool:
-        """Whether it holds work, and not only which outputs are written."""
+        """Whether the file holds work, and not only records of written outputs."""
         records = whole(self._file, os.fstat(self._file).st_size, LENGTH)
         return any(record.fingerprint != _WRITTEN for record in records)
 
@@ -173,7 +173,7 @@ class CheckpointFile:
         return os.pread(self._file, len(TITLE), 0) == TITLE
 
     def _not_continued(self, resume: bool) -> str:
-        """Why what the file holds is not continued; empty if it is."""
+        """Why the work in the file is not continued; empty if it is."""
         if not self._known():
             return "it is not of this fcm"
         if self._damaged():
@@ -181,17 +181,17 @@ class CheckpointFile:
         return "" if resume else "without --resume it is not continued"
 
     def _damaged(self) -> bool:
-        """Whether something is there of which no record is whole."""
+        """Whether there is content without any whole record."""
         size = os.fstat(self._file).st_size
         return size > LENGTH and next(iter(whole(self._file, size, LENGTH)), None) is None
 
     def _sign(self) -> None:
-        """Name the process that works; nothing after it is touched."""
+        """Write the name of the working process at the start; the records stay."""
         text = TITLE + f"{os.getpid()} on {platform.node()[:16]}".encode("ascii", "replace")
         os.pwrite(self._file, text.ljust(LENGTH - 1) + b"\n", 0)
 
     def _empty(self, reason: str) -> None:
-        """Begin a new file; what the old one has goes aside, if it is anything."""
+        """Begin a new file; the old one is moved aside unless it holds no work."""
         if self._known() and not self.resumable and not self._damaged():
             os.ftruncate(self._file, 0)
             return
@@ -216,13 +216,13 @@ class _Kept(Results):
 
 
 def unfinished(output: Path) -> Path:
-    """Path of the file for unfinished work on an output: beside the file itself, links resolved."""
+    """Path of the file for unfinished work on an output: beside the output, with links resolved."""
     place = real(output) if output.is_symlink() else output
     return place.with_name(f"{place.name}.unfinished")
 
 
 def _write(file: int, data: bytes) -> None:
-    """Write at the end, all of it."""
+    """Write all data at the end of the file."""
     os.lseek(file, 0, os.SEEK_END)
     view = memoryview(data)
     while view:
@@ -230,12 +230,12 @@ def _write(file: int, data: bytes) -> None:
 
 
 def _aside(path: Path, most: int) -> list[Path]:
-    """Paths to which files of its name are moved aside, `most` - 1 of them."""
+    """The `most` - 1 paths to which a file may be moved aside."""
     return [path.with_name(f"{path.name}.{number}") for number in range(1, most)]
 
 
 def _free(path: Path, most: int) -> Path:
-    """A name beside it that nobody has, of so many."""
+    """The first of these paths that does not exist; CheckpointError if all do."""
     for aside in _aside(path, most):
         if not os.path.lexists(aside):
             return aside

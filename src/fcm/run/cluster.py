@@ -1,8 +1,7 @@
 """The workers of a `dask.distributed` scheduler, as a place where batches are computed.
 
-`distributed` is imported here only, and only when a cluster is asked for; what it logs and warns of is kept
-from the user's terminal. A worker that dies has its batches done elsewhere by the scheduler; one that has
-another fcm is given none.
+`distributed` is imported only here, and only when a cluster is requested; its logs and warnings are
+suppressed. If a worker dies, the scheduler gives its batches to others. A worker with another fcm gets none.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ class ClusterError(Exception):
 
 @contextmanager
 def connected(address: str, options: RunOptions = RUN) -> Iterator[Factory]:
-    """The cluster of the scheduler at an address, as ``tcp://127.0.0.1:8786``, for one or more sweeps.
+    """Connect to the scheduler at an address such as ``tcp://127.0.0.1:8786``, for one or more sweeps.
 
     Raises
     ------
@@ -101,8 +100,8 @@ class Workers:
     def __init__(self, client: Any, address: str, options: RunOptions = RUN) -> None:
         self.options = options
         self.client, self.address, self.lost = client, address, f"the scheduler at {address} was lost"
-        self.threads: dict[str, int] = {}  # of those that are there, by address
-        self.fits: dict[str, bool] = {}  # of all that were asked
+        self.threads: dict[str, int] = {}  # of the present workers, by address
+        self.fits: dict[str, bool] = {}  # whether a worker has this fcm, for all that were asked
         self._looked, self._last = -options.worker_interval, time.monotonic()
         try:
             client.wait_for_workers(1, timeout=options.first_worker)
@@ -116,12 +115,12 @@ class Workers:
 
     @property
     def good(self) -> list[str]:
-        """The addresses of those that have this fcm."""
+        """The addresses of the workers that have this fcm."""
         return [address for address in self.threads if self.fits[address]]
 
     @property
     def width(self) -> int:
-        """Batches for them at a time; none as long as there is nobody to compute one."""
+        """Number of batches given to the workers at a time; 0 without a worker that has this fcm."""
         return self.options.batches_ahead * sum(self.threads[address] for address in self.good)
 
     def poll(self) -> None:
@@ -129,7 +128,7 @@ class Workers:
         if (now := time.monotonic()) - self._looked < self.options.worker_interval:
             return
         self._looked = now
-        with suppress(Exception):  # that the scheduler is lost is told by every batch it has
+        with suppress(Exception):  # every batch reports the loss of the scheduler
             threads = self.client.nthreads(callback_timeout=self.options.scheduler_answer)
             self._ask([address for address in threads if address not in self.fits])
             self.threads = {address: count for address, count in threads.items() if address in self.fits}
@@ -142,11 +141,11 @@ class Workers:
             )
 
     def look_again(self) -> None:
-        """Makes the next poll look for workers at once, as a new one has come."""
+        """Make the next poll look for workers at once, because a new one has come."""
         self._looked = -self.options.worker_interval
 
     def _ask(self, new: list[str]) -> None:
-        """Whether new ones have this fcm; of those that have not a warning says why they are refused."""
+        """Ask new workers whether they have this fcm; a warning says why others are refused."""
         if not new:
             return
         asked_by = identity()
@@ -181,7 +180,7 @@ class Cluster(ExecutorPlace):
 
     def result(self, future: Future[Attempt]) -> Attempt:
         try:
-            if isinstance(future.exception(), Refused):  # by one that has just come, or was there to take it
+            if isinstance(future.exception(), Refused):  # by a worker that has just come, or took over
                 del self._sizes[future]
                 self.workers.look_again()
                 raise NotComputed

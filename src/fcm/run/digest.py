@@ -1,4 +1,4 @@
-"""SHA-256, loaded when it is first needed: it brings a library of its own, for checkpoints only."""
+"""SHA-256, imported on first use: only checkpoints need it, and it loads a library of its own."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def sha256(data: bytes) -> _Hash:
-    """The digest of some bytes, to be updated or read, see `hashlib`."""
+    """The SHA-256 object of some bytes, see `hashlib`."""
     import hashlib
 
     return hashlib.sha256(data)

@@ -1,4 +1,4 @@
-"""Options on how a calculation of many curves is run: where, what is kept of it, and its progress."""
+"""Options of how a calculation of many curves is run: its place, its checkpoint and its progress."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.run.tasks import Progress
 
 
 class Execution(Frozen):
-    """Options on how a calculation is run; no result depends on them.
+    """Options of how a calculation is run; no result depends on them.
 
     Attributes
     ----------
@@ -26,10 +26,10 @@ class Execution(Frozen):
         Place where curves are computed instead: `fcm.run.place_of` an executor, or
         `fcm.run.cluster.connected`.
     keep : Path or CheckpointFile, optional
-        File for what is finished. Of a path it is there only while the calculation is not finished; a
-        checkpoint is the caller's, to be kept until the response is written.
+        File for finished work. For a path, it exists only until the calculation is finished. The caller owns
+        a checkpoint, and keeps it until the response is written.
     resume : bool
-        Whether what is finished already is taken from the file `keep`.
+        Whether to take finished work from the file `keep`.
     progress : optional
         Function that is called now and then with the finished fraction and a text.
     """
@@ -47,7 +47,7 @@ class Execution(Frozen):
 
     @contextmanager
     def checkpoint(self) -> Iterator[CheckpointFile | None]:
-        """The checkpoint: the caller's, who knows when it is not needed any more, or one of its own."""
+        """The caller's checkpoint, which stays open, or a new one for a path, which is closed at the end."""
         if not isinstance(self.keep, Path):
             yield self.keep
             return
@@ -60,7 +60,7 @@ class Execution(Frozen):
             checkpoint.done()
 
     def stage(self, begin: float, end: float) -> Execution:
-        """A part of the calculation, from one share of its progress to another."""
+        """Options of a part of the calculation, from one share of the progress to another."""
         return replace(self, progress=part(self.progress, begin, end))
 
 

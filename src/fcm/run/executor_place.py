@@ -1,6 +1,6 @@
-"""Batches given to an executor of the user's: processes, threads, machines, whatever it has.
+"""Give batches to an executor of the user: processes, threads or machines.
 
-Where it computes, the same fcm has to be installed: a batch that meets another one comes back uncomputed.
+The same fcm must be installed where it computes: another one refuses the batch.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ class Refused(Exception):  # noqa: N818
 
 
 def identity() -> tuple[str, bytes]:
-    """The version of this fcm, and the digest of its sources and of what they are run by."""
+    """The version of this fcm, and the digest of its sources and of the versions of Python and libraries."""
     return fcm.__version__, program(Path(fcm.__file__).parent)
 
 
 def there(compute: Compute, task: bytes, asked_by: tuple[str, bytes]) -> Attempt:
-    """Computes a batch in a process of the executor, with one thread of linear algebra.
+    """Compute a batch where the executor runs, with one thread of linear algebra.
 
     task : pickled batch and saved states, so that no executor looks into them.
-    asked_by : `identity` of the fcm whose results these are to be.
+    asked_by : `identity` of the fcm that needs the results; `Refused` if it differs here.
     """
     if (own := identity()) != asked_by:
         raise Refused(other_fcm(own, asked_by))
@@ -48,7 +48,7 @@ def other_fcm(own: tuple[str, bytes], asked_by: tuple[str, bytes]) -> str:
 
 
 class ExecutorPlace(Place):
-    """An executor of `concurrent.futures`; its owner ends it. Work that has begun cannot be stopped there."""
+    """An executor of `concurrent.futures`, which its owner shuts down; begun work cannot be stopped."""
 
     def __init__(self, compute: Compute, executor: Executor) -> None:
         self.compute, self.executor, self.asked_by = compute, executor, identity()
@@ -72,7 +72,7 @@ class ExecutorPlace(Place):
             raise PlaceClosed(_broken(error)) from error
         except Refused as refusal:
             raise PlaceClosed(f"a worker of the executor was refused: {refusal}") from None
-        except Exception as error:  # what is computed there never raises: it did not get there, or back
+        except Exception as error:  # `there` itself never raises: transport failed
             return Attempt([Lost(self._not_back(error))] * size)
 
     def stop(self) -> None:

@@ -1,8 +1,8 @@
 """Fingerprint (32 bytes) of all that results depend on: the request, and the program.
 
-On one machine the program is known by the sizes of its files and when they were changed, as Python knows of
-which source its bytecode is. That takes a millisecond; to read them all would take twenty. Between machines
-it is known by what the files say.
+On one machine, sizes and times of change of its files identify the program, as Python matches bytecode to
+sources. That takes a millisecond; to read all files would take twenty. Between machines, the contents of
+the files identify it.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def fingerprint(*parts: Any) -> bytes:
 
 @cache
 def installed(folder: Path) -> bytes:
-    """Digest of the sources in a folder, by their sizes and times of change, and of what they are run by."""
+    """Digest of sizes and times of change of the sources in a folder, and of Python and library versions."""
     files = [(file.path, file.stat().st_size, file.stat().st_mtime_ns) for file in _files(str(folder))]
     scipy = find_spec("scipy")  # to import it takes 15 ms
     where = scipy.origin if scipy is not None else None
@@ -58,7 +58,7 @@ def _files(folder: str) -> Iterator[os.DirEntry[str]]:
 
 @cache
 def program(folder: Path) -> bytes:
-    """Digest of the sources in a folder, as they are, and of what they are run by."""
+    """Digest of the contents of the sources in a folder, and of Python and library versions."""
     import scipy
 
     versions = (
@@ -83,7 +83,7 @@ def _end(path: Path) -> bytes:
 
 
 def _digest(value: Any, seen: dict[int, bytes]) -> bytes:
-    """Digest of a value; of those that curves share it is computed once."""
+    """Digest of a value; values that curves share are digested once."""
     if id(value) in seen:
         return seen[id(value)]
     name = type(value).__qualname__

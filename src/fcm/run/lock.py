@@ -1,4 +1,4 @@
-"""A file that one process at a time works on: opened in place, and locked as long as its process lives."""
+"""A file for one process at a time: opened in place, and locked as long as its process lives."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class CheckpointError(Exception):
 
 
 def locked(path: Path) -> int:
-    """The file, made if there is none, open and locked by this process."""
+    """Open the file, created if there is none, and lock it for this process; return its descriptor."""
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
     while True:
         try:
@@ -35,7 +35,7 @@ def locked(path: Path) -> int:
             if not stat.S_ISREG(os.fstat(file).st_mode):
                 raise CheckpointError(f"{path}: {_NO_FILE}")
             _lock(file, path)
-            if same(file, path):  # and not removed by the one who had it, just before
+            if same(file, path):  # not removed meanwhile by its last owner
                 return file
         except BaseException:
             os.close(file)

@@ -1,4 +1,4 @@
-"""Frames between a process and its workers: a letter, a length, that many bytes."""
+"""Frames between a process and its workers: a letter, a length and that many bytes."""
 
 from __future__ import annotations
 

@@ -18,8 +18,8 @@ class RunOptions(Frozen):
     leave_time: float = 5.0  # [s] time for parting from a scheduler
     # number of batches that each worker has: one that it computes, one that waits for it
     batches_ahead: int = 2
-    unknown_workers: int = 32  # number of workers that is assumed of an executor which does not tell it
-    almost_done: float = 0.999  # greatest share that is shown of a batch which is not known to be finished
+    unknown_workers: int = 32  # number of workers assumed for an executor that does not tell it
+    almost_done: float = 0.999  # greatest share shown of an unfinished batch
     poll: float = 0.1  # [s] between two looks at the progress of others
     # [s] time within which processes that are asked to stop may hand over what they have
     grace_time: float = 5.0

@@ -1,4 +1,4 @@
-"""Places where batches are computed: their interface, and this process as the nearest one."""
+"""Places where batches are computed: their interface, and the place in this process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class WorkerDied(Exception):  # noqa: N818
 
 
 class NotComputed(Exception):  # noqa: N818
-    """A batch has not been computed, and is to be given to the place once more."""
+    """A batch has not been computed, and must be submitted again."""
 
 
 class PlaceClosed(Exception):  # noqa: N818
@@ -26,13 +26,13 @@ Gone = PlaceClosed  # its name until version 0.2
 
 
 class Place(ABC):
-    """Somewhere to compute: batches are given to it, results fetched as they come, the rest cancelled."""
+    """A place that computes: it takes batches, returns results as they come, and can stop the rest."""
 
     width = 1  # batches that are given to it at a time
 
     @abstractmethod
     def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
-        """Begin to compute a batch; the report is called now and then, from whatever thread."""
+        """Begin to compute a batch; any thread may call the report now and then."""
 
     def result(self, future: Future[Attempt]) -> Attempt:
         """Result of a batch whose future is done; raises `WorkerDied`, `NotComputed` or `PlaceClosed`."""
@@ -42,7 +42,7 @@ class Place(ABC):
         """Checks the place now and then; raises `PlaceClosed` when it is gone."""
 
     def stop(self) -> None:  # noqa: B027
-        """Ask everybody to stop; their futures then have the part that is finished."""
+        """Ask running batches to stop; their futures then have the finished part."""
 
     def close(self) -> None:
         """Stops the place, and leaves nothing running."""
@@ -62,7 +62,7 @@ class SerialPlace(Place):
 
 
 def until(stopped: threading.Event, report: Report) -> Report:
-    """The report of work that is interrupted once the event is set."""
+    """A report that raises KeyboardInterrupt once the event is set."""
 
     def show(fraction: float, text: str) -> None:
         if stopped.is_set():

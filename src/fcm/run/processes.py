@@ -1,7 +1,7 @@
-"""Processes on this machine, one batch at a time each; one that dies takes no other with it.
+"""Processes on this machine that compute one batch at a time each; if one dies, the others go on.
 
-A worker is a program of its own, not a copy of this one. It imports nothing of the caller's, shows nothing
-and takes no signal. It ends when this process does, be that by ``kill -9`` (see `fcm.run.worker`).
+A worker is a separate program, not a copy of this one. It does not import the caller's main module, prints
+nothing and takes no signal. It ends when this process does, even by ``kill -9`` (see `fcm.run.worker`).
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Processes(Place):
                 worker.release()
 
     def _compute(self, batch: Batch, report: Report) -> Attempt:
-        """Has one batch computed by a worker; runs in a thread of this process."""
+        """Let a worker compute one batch; runs in a thread of this process."""
         worker = self._taken()
         try:
             done = worker.compute(batch, report)
@@ -92,7 +92,7 @@ class _Worker:
         self.send(WORK, work)
 
     def send(self, kind: bytes, data: bytes = b"") -> None:
-        with self._sending, suppress(OSError, ValueError):  # that it is gone is seen when it is listened to
+        with self._sending, suppress(OSError, ValueError):  # `receive` reports a dead worker
             send(cast("BinaryIO", self.process.stdin), kind, data)
 
     def compute(self, batch: Batch, report: Report) -> Attempt | None:
@@ -122,6 +122,6 @@ class _Worker:
 
 
 def _take_no_signal() -> None:
-    """A process takes over what its starter blocks: signals are for the one that began it all."""
+    """Block all signals in this thread; workers inherit this, so that only the main process gets signals."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_BLOCK, signals.ALL)

@@ -1,4 +1,4 @@
-"""Progress bar of a whole run, of parts that never go back."""
+"""Progress of a whole run, as the sum of parts that never decrease."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fcm.run.tasks import Progress
 
 
 class Bar:
-    """How much of each batch is finished, shown as the progress of all."""
+    """Finished share of each batch, shown as the progress of all."""
 
     def __init__(self, sizes: Sequence[int], finished: Iterable[int], progress: Progress | None) -> None:
         self.sizes, self.shares, self.progress = sizes, [0.0] * len(sizes), progress
@@ -18,7 +18,7 @@ class Bar:
             self._set(number, 1.0)
 
     def of(self, number: int, draw: bool) -> Progress:
-        """The progress of one batch; draw if it comes from the thread that may draw."""
+        """The progress function of one batch; `draw` if the calling thread may draw."""
 
         def show(fraction: float, text: str) -> None:
             self._set(number, RUN.almost_done * min(fraction, 1.0))
@@ -46,7 +46,7 @@ class Bar:
 
 
 def part(progress: Progress | None, begin: float, end: float) -> Progress | None:
-    """The progress of one of several calculations, as a part of all."""
+    """The progress function of one of several calculations, from `begin` to `end` of all."""
     if progress is None:
         return None
     return lambda fraction, text: progress(begin + (end - begin) * fraction, text)

@@ -1,4 +1,4 @@
-"""Records in a file that grows at its end; what a kill cut off, or others changed, is passed over."""
+"""Records in a file that grows at its end; truncated or changed records are skipped."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NUMPY = {
 
 
 class Record(NamedTuple):
-    """A number and the bytes of its results, sealed together with what they depend on."""
+    """A number, the bytes of its results, and the fingerprint of what they depend on, sealed together."""
 
     fingerprint: bytes
     number: int
@@ -44,7 +44,7 @@ def _seal(record: Record) -> bytes:
 
 
 def whole(descriptor: int, size: int, begin: int) -> Iterator[Record]:
-    """The whole records of a file of that size, from a place on."""
+    """Yield the intact records of a file of a size, from the offset `begin` on."""
     if size <= begin:
         return
     with mmap.mmap(descriptor, size, access=mmap.ACCESS_READ) as data:
@@ -65,12 +65,12 @@ def unpacked(payload: bytes, kinds: Iterable[type]) -> Any:
     """The results of a record; None if it holds anything but arrays, plain values and these kinds."""
     try:
         return _Reader(payload, kinds).load()
-    except Exception:  # whatever a damaged or forged pickle makes of itself
+    except Exception:  # a damaged or forged pickle may raise anything
         return None
 
 
 class _Reader(pickle.Unpickler):
-    """Reads nothing that could do anything."""
+    """Unpickler that loads only the allowed types, so that a forged file cannot run code."""
 
     def __init__(self, payload: bytes, kinds: Iterable[type]) -> None:
         super().__init__(io.BytesIO(payload))

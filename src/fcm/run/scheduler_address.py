@@ -1,7 +1,7 @@
-"""Whether there can be a scheduler at an address, and whether anything listens there: told at once.
+"""Check quickly whether an address can be that of a scheduler, and whether anything listens there.
 
-A host name is looked up and a connection is made in a thread of its own, as neither heeds a signal: the main
-thread waits for it, which a signal ends at once.
+The host name is looked up and the connection made in a separate thread, because signals interrupt neither.
+The main thread waits for that thread; a signal ends the wait at once.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ _FORM = re.compile(r"(?:(?P<scheme>[a-z]+)://)?(?:\[(?P<six>[^\]]+)\]|(?P<host>[
 
 
 def answering(address: str, until: float) -> str:
-    """Why no scheduler can answer at an address; empty where something listens there.
+    """Why no scheduler can answer at an address; empty if something listens there.
 
     Parameters
     ----------
     until : float
-        The time, of `time.monotonic`, to which it is waited for.
+        The end of the wait, a time of `time.monotonic`.
     """
     found = _FORM.fullmatch(address.strip().rstrip("/"))
     if found is None or (found["scheme"] or "tcp") not in SCHEMES:
@@ -49,7 +49,7 @@ def answering(address: str, until: float) -> str:
 
 
 def unfit_host(host: str) -> str:
-    """Why no program can listen at a host, by its number alone; empty for names and for all others.
+    """Why no program can listen at a host, from its number only; empty for names and all other hosts.
 
     >>> unfit_host("255.255.255.255"), unfit_host("127.0.0.1"), unfit_host("node7")
     ('255.255.255.255 is the address of no single host', '', '')
@@ -75,9 +75,9 @@ def _listens(host: str, port: int, until: float) -> None:
 
 
 def within(call: Callable[[], Any], until: float) -> tuple[Any, BaseException | None]:
-    """Result or exception of a call run in a thread; LATE where it has not ended by a time.
+    """Result and exception of a call run in a thread; LATE if it has not ended by the time `until`.
 
-    The thread is left to itself then, and does not keep the process from its end.
+    The thread then goes on as a daemon, which does not keep the process alive.
     """
     found: list[Any] = [None, LATE]
 

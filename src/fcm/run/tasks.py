@@ -1,4 +1,4 @@
-"""Computes one batch: a failure loses its item only, and an interruption returns what there is."""
+"""Compute one batch: a failure loses only its item, and an interruption returns the finished part."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Batch = Sequence[Any]
 class Report:
     """Progress report of a running computation, and its states from which it can go on.
 
-    ``saved`` are the states that the same computation has saved before it was interrupted, in order: it goes
-    on from them, to the same result, or leaves them be.
+    ``saved`` are the states that the computation saved before an interruption, in order. It may continue from
+    them, to the same result, or ignore them.
     """
 
     def __init__(
@@ -32,17 +32,17 @@ class Report:
         self.show(fraction, text)
 
     def begins(self, text: str) -> None:
-        """Names what the next steps are part of."""
+        """Name the stage that the next steps belong to."""
         self._said, self._steps = (self._said[0], text), 0
 
     def again(self) -> None:
-        """A step further, and no more finished than was said: so a long part is seen to go on."""
+        """Report a further step at the same fraction, to show that a long stage goes on."""
         self._steps += 1
         fraction, text = self._said
         self.show(fraction, f"{text}, step {self._steps}" if text else f"step {self._steps}")
 
     def save(self, state: Any) -> None:
-        """Keep a state, in addition to those before."""
+        """Save a state, in addition to earlier ones."""
         if self._save is not None:
             self._save(state)
 
@@ -51,7 +51,7 @@ Compute = Callable[[Batch, Report], list[Any]]  # one result for each item of a 
 
 
 class Interrupted(KeyboardInterrupt):
-    """Raised by a `Compute` that was interrupted and has a part of its results to show."""
+    """Raised by a `Compute` that was interrupted and has a part of its results."""
 
     def __init__(self, results: list[Any]) -> None:
         super().__init__()
@@ -59,7 +59,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Lost(Frozen):
-    """Takes the place of a result that could not be had, with the reason."""
+    """Stands for a result that could not be computed, with the reason."""
 
     reason: str
     defect: str = ""  # the traceback, if the reason is a defect of the program
@@ -69,11 +69,11 @@ class Attempt(Frozen):
     """Outcome of computing a batch."""
 
     results: list[Any]
-    interrupted: bool = False  # the results are then a part, or none
+    interrupted: bool = False  # then the results are a part, or empty
 
 
 def attempt(compute: Compute, batch: Batch, report: Report) -> Attempt:
-    """Compute a batch; if that fails each of its items alone, and those that fail then are lost."""
+    """Compute a batch; if that fails, compute each item alone, and mark those that fail as `Lost`."""
     try:
         return Attempt(compute(batch, report))
     except Interrupted as stopped:

@@ -1,7 +1,7 @@
 """A process that computes batches for another: ``python -m fcm.run.worker``.
 
-Batches come by its standard input, results go by its standard output. When the input ends, the process that
-started it is gone, however that came about, and so is this one: at once, in the middle of a batch.
+It reads batches from standard input and writes results to standard output. The input ends when the process
+that started it is gone, for whatever reason. The worker then ends at once, even in the middle of a batch.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from fcm.run.tasks import Lost, Report, attempt
 
 
 def main() -> None:
-    """Compute what comes, until nothing comes any more."""
+    """Compute batches until the input ends."""
     results = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a library may print is no result
+    os.dup2(2, 1)  # prints of libraries must not mix with results
     tasks: SimpleQueue[bytes] = SimpleQueue()
     stopped = threading.Event()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks, stopped), daemon=True).start()
@@ -54,7 +54,7 @@ def _listen(stream: BinaryIO, tasks: SimpleQueue[bytes], stopped: threading.Even
 
 
 class _Said:
-    """Progress, said now and then."""
+    """Progress, sent at most once per `progress_interval`."""
 
     def __init__(self, results: BinaryIO) -> None:
         self.results, self.last = results, 0.0
@@ -66,7 +66,7 @@ class _Said:
 
 
 class _Unknown:
-    """Takes the place of a function that cannot be loaded; raises when called."""
+    """Stands for a function that cannot be loaded; raises when called."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
