@@ -1,6 +1,6 @@
-"""The program ``fcm``: one file a command, each imported only when it is called.
+"""The program ``fcm``: one file for each command, imported only when the command is called.
 
-Not even click is imported before it is needed: an interruption in the first moments would show where.
+Even click is imported only on use: an interruption during its import would show a traceback.
 """
 
 from __future__ import annotations

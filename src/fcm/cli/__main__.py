@@ -1,8 +1,8 @@
 """The script ``fcm``, and ``python -m fcm.cli`` where it is not installed.
 
-Python turns Ctrl-C into an exception from its own first moment on, which nothing can catch until the program
-is reached. So this module imports nothing, and the first thing that the program does needs no file: from then
-on Ctrl-C ends it in silence, until there is someone to say so.
+From its start, Python turns Ctrl-C into an exception that nothing can catch before the program is reached.
+So this module imports nothing, and the first step of the program reads no file. After that step Ctrl-C ends
+the program silently, until the program can print a message.
 """
 
 from __future__ import annotations
@@ -13,14 +13,13 @@ if TYPE_CHECKING:
 
     from fcm.cli.messages import Messages
 
-YOUNG = 100_000  # objects between two looks for garbage: of what is loaded, some 70 000, nothing is
+YOUNG = 100_000  # objects between two garbage collections; the 70 000 loaded ones hold no garbage
 
 
 def run(messages: Callable[[], Messages] | None = None) -> None:
-    """The program, for which signals are interruptions from its first moment to its last.
+    """Run the program, with signals as interruptions from its first moment to its last.
 
-    messages: makes what it says beside its results, with settings of its own (`fcm.cli.settings`), once
-    signals are heeded.
+    messages: creates the `Messages`, with settings of its own (`fcm.cli.settings`), once signals are handled.
     """
     import _signal  # type: ignore[import-not-found]  # built in
 
@@ -46,9 +45,9 @@ def run(messages: Callable[[], Messages] | None = None) -> None:
 
 
 def _leave(code: int) -> None:
-    """End the process, unless something is left to be done that only the interpreter does.
+    """End the process at once, unless the interpreter still has work to do.
 
-    To take apart what numpy, scipy and HDF5 have built would cost 40 ms, and serve nobody.
+    The regular end would spend 40 ms to dismantle numpy, scipy and HDF5, to no use.
     """
     import atexit
     import os
@@ -61,7 +60,7 @@ def _leave(code: int) -> None:
     try:
         sys.stdout.flush()
         sys.stderr.flush()
-    except (OSError, ValueError):  # the interpreter says so
+    except (OSError, ValueError):  # the interpreter reports it
         return
     os._exit(code)
 

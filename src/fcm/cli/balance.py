@@ -1,4 +1,4 @@
-"""``--harmonics`` and ``--accuracy``: how many harmonics a balance has, or what decides it."""
+"""``--harmonics``, ``--accuracy`` and related options of a balance, and checks of their combinations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ WRONG = "is not a number of harmonics from 1 to 50, nor some of them such as 1,2
 
 
 def harmonics(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tuple[int, ...] | None:
-    """The harmonics named by an option, also as tables of curves have them (1-3,9); None without it."""
+    """The harmonics given by an option, in the form of tables of curves (1-3,9) too; None without it."""
     if text is None:
         return None
     from fcm.scene.rules import harmonics_fault, harmonics_up_to
@@ -72,8 +72,10 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
 def check_level(
     span: tuple[float, float] | None, at: tuple[float, ...] | None, method: str, mode: int | None = None
 ) -> None:
-    """A usage error if a span of levels of the forces lacks its frequency, is given with what means nothing
-    then, or is out of range; with a mode the levels are modal amplitudes."""
+    """Raise a usage error if a span of force levels lacks its frequency, conflicts, or is out of range.
+
+    With a mode the levels are modal amplitudes, which are not checked here.
+    """
     if span is None or mode is not None:
         return
     if at is None:
@@ -91,7 +93,7 @@ def check_level(
 
 
 def check_peaks_only(wanted: bool, span: tuple[float, float] | None, csv: object) -> None:
-    """A usage error if only peaks are wanted of what has none, or where there is a row for each point."""
+    """Raise a usage error if --peaks-only is combined with --level, which has no peaks, or with --csv."""
     if wanted and span is not None:
         raise click.UsageError("--peaks-only is of no use with --level, whose curves have no peaks.")
     if wanted and csv is not None:
@@ -101,7 +103,7 @@ def check_peaks_only(wanted: bool, span: tuple[float, float] | None, csv: object
 def check_options(
     chosen: tuple[int, ...] | None, error: float | None, method: str, table: str | None
 ) -> None:
-    """A usage error if these options exclude one another, or mean nothing with the method."""
+    """Raise a usage error if these options exclude one another, or are of no use with the method."""
     if chosen is not None and error is not None:
         raise click.UsageError("--accuracy chooses the harmonics; give it or --harmonics, not both.")
     if method == "exact" and (chosen is not None or error is not None):

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep: Any) -> Response:
-    """The response that is asked for, with its sensitivities and the motion of its schedule.
+    """Calculate the requested response, with its sensitivities and the motion of its schedule.
 
-    Sweeps of curves run at a place, and what of them is finished is kept.
+    Sweeps of curves run at `place`, and `keep` holds their finished curves.
     """
     from fcm.run import Execution
 
@@ -58,12 +58,12 @@ def _response(messages: Messages, scene: Scene, asked: Asked, execution: Executi
 
 
 def _before_schedule(scene: Scene, execution: Execution) -> Execution:
-    """Curves take half of the progress, where a schedule is simulated after them."""
+    """The execution of curves: half of the progress if a schedule is simulated after them."""
     return execution.stage(0.0, 0.5) if scene.schedule else execution
 
 
 def _options(messages: Messages, asked: Asked) -> ResponseOptions:
-    """Tolerances and limits, with those that options of the command say."""
+    """Tolerances and limits, with those given by options of the command."""
     from fcm.response.options import RESPONSE, leaving_out
 
     options = messages.settings.response or RESPONSE
@@ -129,7 +129,7 @@ def _method(asked: Asked) -> Any:
 
 
 def _say_outside(messages: Messages, path: str | None, table: Any) -> None:
-    """Says how often a table was asked for points that it does not hold."""
+    """Report how often a table was asked for points that it does not hold."""
     if outside := getattr(table, "outside", 0):
         messages.info(
             f"{path}: {outside} look-ups outside the part it holds were answered by the closed form"

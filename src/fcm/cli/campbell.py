@@ -1,4 +1,4 @@
-"""``fcm plot campbell SCENE``: what an engine order meets around a ring of sectors."""
+"""``fcm plot campbell SCENE``: frequencies by nodal diameter and engine orders of a ring of sectors."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from fcm.cli.curves import shown_dofs
 from fcm.cli.jump_table import resolution_of
 from fcm.cli.limits import SENTENCES
 
-_LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
+_LINEAR = {  # keys of curves on which no contact changes its state: statement and remedy
     "all_stick": ("no contact slips or opens {}", "less preload or more force"),
     "all_open": ("no contact touches {}", "a smaller gap (a higher n_0) or more force"),
     "all_stick_or_open": (
@@ -26,7 +26,7 @@ _BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequenc
 
 
 def short_of_accuracy(summary: Mapping[str, Any]) -> str:
-    """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
+    """How many curves miss the requested accuracy, and why the worst does; empty if none does."""
     short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
     if tracked := summary.get("tracked", {}).get("short_of_accuracy"):
         return f"what is tracked misses the accuracy that was asked for. {tracked[:1].upper()}{tracked[1:]}"
@@ -43,15 +43,15 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
 
 
 def _greatest_error(curve: Mapping[str, Any]) -> float:
-    """The greatest error of the peaks of a curve; of one that is unknown, more than any."""
+    """The greatest error of the peaks of a curve; infinite if one is unknown."""
     errors = [one.get("error") for one in curve.get("peak", {}).values() if one and one.get("amplitude")]
     return max((inf if error is None else error for error in errors), default=0.0)
 
 
 def linear(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:
-    """Caveat that every contact sticks, or is open, all along each curve, which may not be meant; or ''.
+    """Caveat that the response is linear because no contact ever changes its state; or ''.
 
-    constant : names of the contacts that no motion loads, as their k_v is 0
+    constant : names of the contacts that no motion loads, because their k_v is 0
     """
     curves = summary["curves"]
     found = {key for curve in curves for key in _LINEAR if curve.get(key)}
@@ -73,7 +73,7 @@ def linear(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:
 
 
 def _greatest_use(summary: Mapping[str, Any]) -> str:
-    """Sentence on the contact that sticks with the greatest friction beside its normal force; or ""."""
+    """Sentence on the sticking contact with the greatest ratio of friction to normal force; or ""."""
     found = [
         (loads["greatest_friction_force"]["greatest"], loads["greatest_normal_force"]["greatest"], name)
         for curve in summary["curves"]
@@ -92,7 +92,7 @@ def _greatest_use(summary: Mapping[str, Any]) -> str:
 def never_closed(summary: Mapping[str, Any], constant: Collection[str] = ()) -> str:
     """Caveat on contacts that never touch on any curve, beside others that do; or ''.
 
-    Empty as well if `linear` says so. Of those with a constant load the remedy is another.
+    It is also empty if `linear` is not. Contacts with a constant load have another remedy.
     """
     curves = summary["curves"]
     if not curves or linear(summary) or not all(curve.get("contacts") for curve in curves):
@@ -116,7 +116,7 @@ def never_closed(summary: Mapping[str, Any], constant: Collection[str] = ()) -> 
 
 
 def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
-    """Caveat that sticking contacts would slip if they began unstressed, so that other motions may exist."""
+    """Caveat that sticking contacts would slip from an unstressed start, so that other motions may exist."""
     unit = summary["frequency_unit"]
     how = _how(summary).replace("--at F", f"--at {at:.5g}")
     looks = f". {how} looks for them" if how else ""
@@ -127,8 +127,7 @@ def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
 
 
 def branches_uncertain(summary: Mapping[str, Any]) -> str:
-    """Caveat on frequencies where the search for solutions was cut short, so branches may be missing; or
-    ''."""
+    """Caveat on frequencies where branches may be missing, because their search was cut short; or ''."""
     what = "other branches may be missing at {}: there the level of the forces was not followed to its end"
     helps = f"{_BY_LEVEL} {{}} looks there: amplitudes at the level 1 that the curve lacks are such a branch"
     return _may_be_missing(summary, "branches_unsure_at", what, helps)
@@ -150,8 +149,9 @@ def folds_uncertain(summary: Mapping[str, Any]) -> str:
 
 
 def of_more_harmonics(summary: Mapping[str, Any]) -> str:
-    """That branches of more harmonics than are given were not looked for; empty where errors of peaks are
-    small. Of curves over the frequency by a balance alone.
+    """Caveat that branches with more harmonics than given were not searched; '' if errors of peaks are small.
+
+    Only curves of a balance over the frequency count.
 
     >>> peak = {"peak": {"u": {"amplitude": 1.0, "error": 0.012}}, "harmonics": [1]}
     >>> unknown = {"peak": {"u": {"amplitude": 1.0, "error": None}}, "harmonics": [1]}
@@ -183,10 +183,9 @@ def of_more_harmonics(summary: Mapping[str, Any]) -> str:
 
 
 def large_errors(summary: Mapping[str, Any]) -> str:
-    """Caveat on the widest range in which points have large errors, of curves that have their accuracy; or
-    ''.
+    """Caveat on the widest range of points with large errors, on curves that reach their accuracy; or ''.
 
-    Of a curve that misses it, the errors of its peaks say as much.
+    Curves that miss it are left out, because the errors of their peaks tell as much.
 
     >>> curve = {"large_errors": [{"from": 59.5, "to": 60.6, "error": 0.286}], "parameters": {}}
     >>> print(large_errors({"curves": [curve], "frequency_unit": "Hz"}).split(". ")[0])
@@ -211,7 +210,7 @@ def large_errors(summary: Mapping[str, Any]) -> str:
 
 
 def symmetry_lost(summary: Mapping[str, Any]) -> str:
-    """Caveat on symmetric motions that lose their symmetry by harmonics left out, with places; or ''."""
+    """Caveat on places where even harmonics left out break the symmetry of the motion; or ''."""
     what = (
         "unsymmetric branches may be missing at {}: there the motion loses its symmetry, by even harmonics "
         "that are not balanced"
@@ -222,7 +221,7 @@ def symmetry_lost(summary: Mapping[str, Any]) -> str:
 
 
 def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str) -> str:
-    """Sentence on what may be missing where, and on remedies, each with the first frequency."""
+    """Sentence `what` on missing branches and `helps` on remedies, with the first frequency; or ''."""
     curves, unit = summary["curves"], summary["frequency_unit"]
     uncertain_at = [curve for curve in curves if curve.get(key)]
     if not uncertain_at:
@@ -247,12 +246,12 @@ def _side(at: float, span: Sequence[float] | None) -> str:
 
 
 def _given(curve: Mapping[str, Any]) -> str:
-    """The numbers of a sweep that a curve is for."""
+    """The swept values of a curve, as text."""
     return ", ".join(f"{key} = {value:.6g}" for key, value in curve.get("parameters", {}).items())
 
 
 def not_confirmed(summary: Mapping[str, Any]) -> str:
-    """Caveat on the number of points of unconfirmed stability, as there are many contacts; or ''."""
+    """Caveat on the number of points whose stability many contacts leave unconfirmed; or ''."""
     count = sum(curve.get("stability_not_confirmed", 0) for curve in summary["curves"])
     if not count:
         return ""
@@ -267,7 +266,7 @@ def not_confirmed(summary: Mapping[str, Any]) -> str:
 
 
 def mirrored(summary: Mapping[str, Any]) -> str:
-    """How many branches have a mirror image that is not traced; empty if none."""
+    """Remark on the number of branches whose mirror images are not traced; or ''."""
     count = sum(curve.get("mirrored_branches", 0) for curve in summary["curves"])
     if not count:
         return ""
@@ -299,9 +298,9 @@ def tracked_uncertain(summary: Mapping[str, Any]) -> str:
 
 
 def peaks_not_followed(summary: Mapping[str, Any]) -> str:
-    """Towards which end of its range an optimum's number has no peak that was followed; empty if none.
+    """Caveat on the ends of the optimum's range of its number to which no peak was followed; or ''.
 
-    A peak that is lower than another to be minimised need not be followed.
+    A peak that is lower than another peak to be minimised need not be followed.
     """
     tracked = summary.get("tracked", {})
     if tracked.get("what") != "optimum" or not tracked["over"]:  # of several numbers there is no one range
@@ -381,7 +380,7 @@ def _not_searched(curve: Mapping[str, Any]) -> str:
 
 
 def kept_friction(summary: Mapping[str, Any]) -> str:
-    """Caveat on the effect of residual friction that contacts keep which never slip; or ''."""
+    """Caveat on the effect of the residual friction of contacts that never slip; or ''."""
     of_peaks, elsewhere = residual_friction(summary), maybe_not_unique(summary)
     if of_peaks and elsewhere:
         return f"{of_peaks}. {elsewhere[:1].upper()}{elsewhere[1:]}"
@@ -412,7 +411,7 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
 
 
 def _not_estimated(curves: Sequence[Mapping[str, Any]], shown: Sequence[str]) -> str:
-    """Amplitudes whose range is unknown: those of some peaks, where others are known; or all."""
+    """Text on the amplitudes of unknown range: some peaks if others are known, else all amplitudes."""
     from fcm.scene.errors import several
 
     peaks = [(dof, one) for curve in curves for dof, one in curve.get("peak", {}).items() if one]
@@ -424,13 +423,12 @@ def _not_estimated(curves: Sequence[Mapping[str, Any]], shown: Sequence[str]) ->
 
 
 def _completed(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The curves that were not interrupted before that was looked for."""
+    """The curves that were not interrupted before the search."""
     return [curve for curve in summary["curves"] if curve.get("cause") != "interrupted"]
 
 
 def _range_is_known(curve: Mapping[str, Any], shown: Sequence[str]) -> bool:
-    """Whether it is known of every peak that is shown how far it ranges with residual friction; not of every
-    level."""
+    """Whether the change by residual friction is known for every shown peak; False for curves over levels."""
     if "level_folds" in curve:
         return False
     peaks = [one for dof, one in curve.get("peak", {}).items() if one and dof in shown]
@@ -438,11 +436,11 @@ def _range_is_known(curve: Mapping[str, Any], shown: Sequence[str]) -> bool:
 
 
 def residual_friction(summary: Mapping[str, Any]) -> str:
-    """How far the peaks range with the friction that contacts which always stick keep; empty if none do."""
+    """Caveat on how far peaks may change with the residual friction of contacts that never slip; or ''."""
     open_to_past = [one for one in _completed(summary) if one.get("may_not_be_unique")]
     if not any("peak" in one for one in open_to_past):
         return ""
-    shown = shown_dofs(summary)  # one that hardly moves may change by any part of that
+    shown = shown_dofs(summary)  # one that hardly moves may have any relative change
     curves = [one for one in open_to_past if _range_is_known(one, shown)]
     if not curves:
         return ""
@@ -464,10 +462,10 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
 
 
 def _how(summary: Mapping[str, Any]) -> str:
-    """Hint on the option by which the exact motion at a frequency F is visited.
+    """Hint on the option that computes the exact motion at a frequency F.
 
-    Empty where it is not computed, as for a nonlinear mode, which has no forces, or takes long, as with many
-    contacts.
+    It is empty if there is no exact motion, as for a nonlinear mode, which has no forces, or if it takes
+    long, as with many contacts.
     """
     from fcm.model.scene import InTime
     from fcm.response.options import SENTENCES as OF_RESPONSE

@@ -77,7 +77,7 @@ def _panels(
     n0_range: tuple[float, float],
     b_range: tuple[float, float],
 ) -> list[tuple[str, ParameterPlane]]:
-    """Coefficient and plane of each panel: two phases side by side, else two coefficients of a phase."""
+    """Coefficient and plane of each panel: with two phases, these side by side; else by phase."""
     from fcm.contact.surface import ParameterPlane
 
     coefficients, phases = tuple(dict.fromkeys(coefficients)), tuple(dict.fromkeys(phases))

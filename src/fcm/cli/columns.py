@@ -1,4 +1,4 @@
-"""Columns of a table on a terminal, and what stands in their cells."""
+"""Columns of a table on a terminal, and the text of their cells."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from fcm.frozen import Frozen
 UNSTABLE = "!"  # beside a peak where the motion is not stable
 DOES_NOT_STAY = "unstable: with these harmonics the motion is not stable there, and leaves this peak"
 EXACT_DOES_NOT_STAY = "unstable: the motion is not stable there, and leaves this peak"
-UNKNOWN = "?"  # beside that of which it is unknown whether it is stable
+UNKNOWN = "?"  # beside a motion of unknown stability
 STABILITY_UNKNOWN = "stability is unknown there: "
 HARMONICS_HELP = "more harmonics may show it"
 STABILITY_NOT_YET_KNOWN = "stability is unknown there: the run was interrupted before"
 
 
 def remedy_of_unknown_stability(summary: Mapping[str, Any]) -> str:
-    """What may show a stability that is unknown: more harmonics, or why none was looked for."""
+    """Remedy for unknown stability: more harmonics, or a hint on why none was looked for."""
     return 'none is looked for, "left out" says why' if summary.get("without_stability") else HARMONICS_HELP
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
-    """Columns of equal width: numbers to the right, the last ``left`` to the left."""
+    """Align the cells in columns: to the right, but the last ``left`` columns to the left."""
     rows = [[plain(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     right = len(widths) - left
@@ -41,10 +41,10 @@ def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
 class DofTable(Frozen):
     """A table with some columns for each degree of freedom.
 
-    They stand beside each other where a line has room for all; else each degree of freedom has a line.
+    The columns stand side by side if a line has room for all. Otherwise each degree of freedom has a line.
 
-    left, right: heads of what a row has once; heads: of a degree of freedom's columns, {} in the place of its
-    name; rows: cells of these, (left, one list for each degree of freedom, right).
+    left, right: heads of columns that a row has once. heads: of the columns of a degree of freedom, with {}
+    for its name. rows: their cells, (left, one list for each degree of freedom, right).
     """
 
     left: list[str]
@@ -85,7 +85,7 @@ class DofTable(Frozen):
                 own = ["" if one[i] == ABSENT else one[i] for i in shown]
                 lines.append([*left, dof, *own, *(right if k == 0 else [""] * len(right))])
         if not self.right:
-            # nothing that the lines of a row share: those of a degree of freedom stay together
+            # the lines of a row share nothing: sort by degree of freedom
             order = {dof: d for d, dof in enumerate(self.dofs)}
             first = {tuple(left): k for k, (left, _, _) in reversed(list(enumerate(self.rows)))}
             count = len(self.left)
@@ -94,7 +94,7 @@ class DofTable(Frozen):
 
 
 def greatest_of(sizes: Sequence[float], curves: int) -> list[int]:
-    """Places, in order, of the greatest of a curve's rows: as many as a table of so many curves has room for.
+    """Indices, in order, of the greatest rows of a curve, as many as the table has room for.
 
     >>> greatest_of([3.0, 1.0, 2.0, 5.0], curves=30), len(greatest_of(range(40), curves=1))
     ([0, 2, 3], 12)
@@ -103,7 +103,7 @@ def greatest_of(sizes: Sequence[float], curves: int) -> list[int]:
     return sorted(sorted(range(len(sizes)), key=lambda i: -sizes[i])[:room])
 
 
-ABSENT = "\0"  # a cell that there is none of, though others of its column have one
+ABSENT = "\0"  # a cell that does not exist, although others of its column do
 
 
 def _width(text: str) -> int:
@@ -127,13 +127,13 @@ def ratio(value: float, digits: int = 4) -> str:
 
 
 NOT_COMPLETE = "NOT COMPLETE"
-BEYOND = "> 100 %"  # an error that is greater than what it is the error of
+BEYOND = "> 100 %"  # an error greater than the quantity itself
 
 
 def short(value: float | None) -> str:
     """A relative error, two digits, or a dash where it is not known.
 
-    Beyond 1 it is no measure any more, and its digits tell nothing.
+    An error beyond 1 is no measure any more, so that its digits are left out.
 
     >>> short(0.0123), short(1.7), short(None)
     ('1.2e-02', '> 100 %', '-')
@@ -163,7 +163,7 @@ def share_of(change: float) -> str:
 
 
 def ranges(harmonics: Sequence[int]) -> str:
-    """Harmonics as a range and those beyond it.
+    """Harmonics as a range from 1 on, and those beyond it.
 
     >>> ranges([1]), ranges([1, 2, 3]), ranges([1, 2, 3, 9])
     ('1', '1-3', '1-3,9')
@@ -190,7 +190,7 @@ def number(value: float | None) -> str:
 
 
 def not_complete(curves: Sequence[Mapping[str, Any]], names: Sequence[str]) -> list[str]:
-    """A line for each reason for which curves are not complete, with the first of them.
+    """A line for each reason why curves are not complete, with the first such curve.
 
     >>> lost = [{"parameters": {"n_0": n}, "complete": False, "reason": "no point"} for n in (1.0, 2.0, 3.0)]
     >>> not_complete([*lost, lost[0] | {"reason": "interrupted"}, {"complete": True}], ["n_0"])

@@ -11,7 +11,7 @@ from fcm.cli.lazy import LazyGroup
 from fcm.threads import one_by_default
 
 one_by_default()
-os.environ["MPLBACKEND"] = "agg"  # pictures are files, whatever shows those of other programs
+os.environ["MPLBACKEND"] = "agg"  # pictures are written to files, never shown
 
 COMMANDS = {
     "respond": ("fcm.cli.respond:respond", "Trace the response curves of a scene."),
@@ -19,7 +19,7 @@ COMMANDS = {
     "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),
 }
 
-INSTEAD = {  # of commands that there are not: what does that
+INSTEAD = {  # for commands that do not exist: the one that does the task
     "fit": "fcm respond SCENE, with a table [fit] in the scene",
     "optimum": "fcm respond SCENE, with a table [optimum] in the scene",
     "sweep": "fcm respond SCENE, with a table [sweep] in the scene",

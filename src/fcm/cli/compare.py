@@ -16,7 +16,7 @@ from fcm.cli.messages import Messages
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
 
-OF_NO_USE = {  # with --compare, and why
+OF_NO_USE = {  # options of no use with --compare, and the reasons
     "method": "it runs every method",
     "at": "it compares whole curves",
     "only": "it compares whole curves",
@@ -40,7 +40,7 @@ OF_NO_USE = {  # with --compare, and why
 
 
 def refuse_other_options() -> None:
-    """A usage error if an option was given that has no meaning with --compare."""
+    """Raise a usage error if an option was given that is of no use with --compare."""
     context = click.get_current_context()
     for param in context.command.params:
         given = context.get_parameter_source(param.name or "") is click.core.ParameterSource.COMMANDLINE
@@ -51,7 +51,7 @@ def refuse_other_options() -> None:
 def write_comparison(
     messages: Messages, scene: Scene, table: str | None, tolerance: float, output: Path | None, to_json: bool
 ) -> None:
-    """Runs a comparison, prints it and writes it."""
+    """Run a comparison, write it and print it."""
     if not scene.has_range:
         raise click.UsageError(f"--compare needs curves; {scene.name} has no [response] frequency.")
     from fcm.compare import IncomparableError, compare
@@ -85,7 +85,7 @@ def as_text(summary: dict[str, Any]) -> str:
 
 
 def _to_the_left(rows: list[list[str]]) -> list[list[str]]:
-    """The first column filled up, so that it is aligned to the left among columns aligned to the right."""
+    """Pad the first column, so that it is aligned to the left among columns aligned to the right."""
     width = max(len(row[0]) for row in rows)
     return [[row[0].ljust(width), *row[1:]] for row in rows]
 

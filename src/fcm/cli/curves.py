@@ -1,4 +1,4 @@
-"""Output of a response run for a reader: tables of curves and jumps, and lines on cost and error."""
+"""Text output of a response run: tables of curves and jumps, and lines on cost and error."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NO_PEAK = (
     "at an end of the range, and no peak: of the worst blade the amplification may be greater than this, of "
     "the tuned ring less"
 )
-_ISOLATED = "^"  # beside that of a peak on an isolated branch
+_ISOLATED = "^"  # beside the frequency of a peak on an isolated branch
 _OF_ISOLATED = (
     f"{_ISOLATED} on an isolated branch: closed, and crossed by no other. A sweep comes to it by a jump, or "
     "never"
@@ -48,7 +48,7 @@ _UNKNOWN = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
     "More --harmonics, or --accuracy, may give it"
 )
-_THERE = "~"  # beside an error at the frequency of a peak, where that of the peak is not known
+_THERE = "~"  # beside an error at the frequency of a peak, if the error of the peak is not known
 _OF_THERE = (
     f"{_THERE} the error of the motion at that frequency. Of the peak it is unknown: with more harmonics "
     "none is near, or a higher one is elsewhere. More --harmonics, or --accuracy, may give it"
@@ -67,7 +67,7 @@ _OF_RESIDUAL = "residual: the friction that stuck contacts keep may change the p
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
-    """Table with one line for each curve; then one with a line for each jump of a slow sweep, if any."""
+    """Table of the curves, then tables of lower peaks, stable motions, jumps and unknown stability."""
     from fcm.plot.labels import short_names
 
     curves = summary["curves"]
@@ -103,9 +103,9 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
 
 
 def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
-    """The peaks of curves that have several of a degree of freedom, in order of frequency; empty if none has.
+    """Table, by frequency, of the peaks of curves with several of a degree of freedom; empty if none has.
 
-    Columns are those of the highest peaks.
+    The columns are those of the table of highest peaks.
     """
     rows, lower = [], 0
     several = [curve for curve in curves if any(curve.get("peaks", {}).get(dof) for dof in dofs)]
@@ -127,7 +127,7 @@ def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit
 
 
 def _at_level_1(curves: Sequence[Curve], names: list[str], dofs: list[str], length: str) -> str:
-    """The motions at the level 1 that curves of levels pass; empty if there is none."""
+    """Table of the motions at the force level 1 on curves of levels; empty if there is none."""
     found = [(swept(curve), one) for curve in curves for one in curve.get("at_level_1", ())]
     if not found:
         return ""
@@ -147,12 +147,12 @@ def _at_level_1(curves: Sequence[Curve], names: list[str], dofs: list[str], leng
 
 
 def _peak_heads(over: str) -> list[str]:
-    """Heads of columns of peaks on curves over the frequency, by its unit, or over the level."""
+    """Heads of the columns of peaks; `over` is the unit of the frequency, or the level."""
     return ["peak {}", f"at {over}", "error"]
 
 
 def _error(peak: Mapping[str, Any]) -> str:
-    """Error of a peak; where it is unknown, that of the motion at its frequency, with a mark."""
+    """Error of a peak; if unknown, the error of the motion at its frequency, with a mark."""
     there = peak.get("error_at_frequency")
     if peak.get("error") is None and there is not None:
         return f"{short(there)}{_THERE}"
@@ -160,14 +160,14 @@ def _error(peak: Mapping[str, Any]) -> str:
 
 
 def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
-    """Amplitude, frequency, or level on a curve over it, and error, with their marks."""
+    """Amplitude, frequency (or level, on a curve over levels) and error of a peak, with marks."""
     marks = (_EDGE if peak.get("at_edge") else "") + (_ISOLATED if peak.get("on_isolated_branch") else "")
     at = number(peak["level"] if "level" in peak else peak.get("frequency")) + marks
     return [number(peak.get("amplitude")) + _mark_of(peak), at, _error(peak)]
 
 
 def _blades(curves: Sequence[Curve], names: list[str], unit: str, length: str) -> str:
-    """The worst blade of each curve of a mistuned ring, and how much more it moves than in the tuned one."""
+    """Table of the worst blade of each curve of a mistuned ring, with its amplification."""
     head = ["worst", "amplitude", f"at {unit}", "tuned", f"at {unit}", "amplification"]
     rows = []
     for curve in curves:
@@ -245,7 +245,7 @@ def _spread(found: Mapping[str, Any], what: str) -> list[str]:
 
 
 def _outwards(end: float | None, word: str) -> str:
-    """An end of an interval with three digits, which leave the interval no narrower.
+    """An end of an interval with three digits, rounded outwards.
 
     >>> _outwards(3.1419, "from"), _outwards(3.1419, "to"), _outwards(5e-05, "to"), _outwards(None, "to")
     ('3.14', '3.15', '5.00e-05', '-')
@@ -259,7 +259,7 @@ def _outwards(end: float | None, word: str) -> str:
 
 
 def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
-    """What the intervals of percentiles of peaks mean, and of which there are too few draws."""
+    """Lines on the meaning of the intervals of percentiles of peaks, and on percentiles of too few draws."""
     peaks = [found["peak"][dof] for dof in dofs]
     ends = [end for peak in peaks for both in peak["interval"].values() for end in both]
     lines, count, sure = [], found["curves"], f"{100.0 * found['confidence']:g} %"
@@ -287,7 +287,7 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
 
 
 def _of_large_errors(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
-    """That peaks of some draws err so much that the percentiles are not to be relied on."""
+    """Line that the errors of peaks are too large to rely on the percentiles; empty if they are not."""
     worst = max(found["peak"][dof]["greatest_error"] or 0.0 for dof in dofs)
     if worst <= SENTENCES.doubtful_error:
         return []
@@ -298,7 +298,7 @@ def _of_large_errors(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
-    """How many of the peaks are unstable, or may be."""
+    """Shares of the peaks that are unstable or of unknown stability, as text."""
     shares = ((peak["unstable"], "unstable"), (peak["untold"], "of unknown stability"))
     return ", ".join(f"{100.0 * share:.0f} % {what}" for share, what in shares if share)
 
@@ -310,15 +310,15 @@ def _of_how_many(jump: Mapping[str, Any]) -> str:
 
 
 def _minimised(summary: Mapping[str, Any]) -> list[str]:
-    """The degrees of freedom whose peaks an [optimum] makes least."""
+    """The degrees of freedom whose peaks an [optimum] minimises."""
     return [name.partition(".")[2] for one in summary.get("optimum", ()) for name in one["minimise"]]
 
 
 def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
     """Degrees of freedom shown: those with the greatest peaks, and those minimised, in the file's order.
 
-    Of those that the scene asks for, where it says so by `output`.
-    Rotations, which are of another unit, come after all displacements.
+    If the scene asks for some by `output`, only these and those minimised are shown. Rotations, which have
+    another unit, come after all displacements.
     """
     curves, minimised = summary["curves"], _minimised(summary)
 
@@ -425,7 +425,7 @@ def _curves(
 
 
 def visited_frequencies(curves: Sequence[Curve]) -> str:
-    """How many frequencies were visited where no curve was followed; empty where it was.
+    """Number of frequencies visited, as text, if no curve was followed; else empty.
 
     >>> visited_frequencies([{"visited": 5}, {"visited": 4}]), visited_frequencies([{"points": 9}])
     ('5 frequencies', '')
@@ -467,7 +467,7 @@ def _lower_peaks(curves: Sequence[Curve], dofs: Sequence[str]) -> list[Mapping[s
 
 
 def _stability(curve: Curve, dof: str) -> str:
-    """A mark beside the highest peak of a degree of freedom of which it is not known that it is stable."""
+    """Mark beside the highest peak of a degree of freedom, if it is not known to be stable."""
     return _mark_of(curve["peak"].get(dof) or {})
 
 
@@ -514,8 +514,10 @@ def _curve_row(
 
 
 def _seen_folds(curve: Curve, dofs: list[str], least: float) -> tuple[list[float | None], int]:
-    """The folds of a curve, and how many beside them are in hooks: pairs nearer than what is seen, at which
-    no jump is."""
+    """The folds of a curve without its hooks, and the number of folds in hooks.
+
+    A hook is a pair of folds too close to be seen, at which no jump is.
+    """
     folds = list(curve.get("level_folds", curve["folds"]))
     jumps = [one["frequency"] for one in curve.get("jumps", ()) if is_seen(one, curve, dofs, least)]
     kept: list[float | None] = []
@@ -530,7 +532,7 @@ def _seen_folds(curve: Curve, dofs: list[str], least: float) -> tuple[list[float
 
 
 def _folds(folds: Sequence[float | None], hooks: int = 0) -> str:
-    """Folds of a curve as text: all, or of many their number and range; and those in close pairs.
+    """Folds of a curve as text: all, or the number and range of many; and the number in close pairs.
 
     >>> _folds([]), _folds([1.0, 2.0]), _folds([1.0, 4.0, 2.0, 3.0, 5.0])
     ('none', '1.00000  2.00000', '5: 1.00000 to 5.00000')
@@ -567,7 +569,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
             errors.append(f"{closure:.1e} by which a period does not close{_of_lower_peaks(summary)}")
     if harmonic is not None:
         unknown = any(_unknown_error(curve, dof) for curve in curves for dof in curve["peak"])
-        shown = shown_dofs(summary)  # of which the table has the peaks
+        shown = shown_dofs(summary)  # the table has their peaks
         peaks, lower, others = [], [0.0], []
         for curve in curves:
             told = {dof: one for dof, one in curve["peak"].items() if one and one.get("error")}
@@ -604,7 +606,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
 
 
 def of_table(summary: Mapping[str, Any]) -> str:
-    """How far solutions by the table alone are from the points of curves, which are none of them; or ''.
+    """Line on how far solutions by the table alone are from the points of curves, which do not use it; or ''.
 
     >>> of_table({"method": "table", "curves": [{"harmonics": [1], "table_error": 2.9e-5}]})
     'the table: solutions by it alone would be off by up to 2.9e-05; these points are not'
@@ -617,7 +619,7 @@ def of_table(summary: Mapping[str, Any]) -> str:
 
 
 def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[tuple[str, dict[str, Any]]]:
-    """The greatest peaks of some degrees of freedom, with these, where they are known."""
+    """The known greatest peaks of some degrees of freedom, as pairs (dof, peak)."""
     return [(dof, one) for curve in curves for dof, one in curve["peak"].items() if one and dof in dofs]
 
 
@@ -636,7 +638,7 @@ def _of_lower_peaks(summary: Mapping[str, Any]) -> str:
 
 
 def _amount(error: float) -> str:
-    """An error as a sentence says it."""
+    """An error as text for a sentence."""
     return short(error).replace(BEYOND, "more than 100 %")
 
 
@@ -659,7 +661,7 @@ def _known_of_modes(curves: Sequence[Curve]) -> str:
 
 
 def _where(summary: Mapping[str, Any], error: float) -> str:
-    """Clause on the frequency at which a curve's error is greatest; empty where that is unknown."""
+    """Clause on the frequency at which a curve's error is greatest; empty if that is unknown."""
     at = [one.get("truncation_error_at") for one in summary["curves"] if one.get("truncation_error") == error]
     return f", most at {at[0]:.6g} {summary['frequency_unit']}" if at and at[0] is not None else ""
 
@@ -687,7 +689,7 @@ def incomplete(summary: Mapping[str, Any]) -> str:
 
 
 def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:
-    """Whether no curve came out, each for a defect of fcm: the program failed, and not the calculation."""
+    """Whether a defect of fcm lost every curve: the program failed, not the calculation."""
     from fcm.results.cause import Cause
 
     curves = summary["curves"]

@@ -1,4 +1,4 @@
-"""Messages of wrong usage with values in double quotes, as those of scenes and files have them."""
+"""Put values in messages on wrong usage in double quotes, as messages on scenes and files do."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SINGLE = re.compile(r"(?<!\w)'([^'\n]*)'(?!\w)")  # no apostrophe, as of a cont
 
 
 def double_quoted(text: str) -> str:
-    """A text whose single quotes are double.
+    """The text with double quotes in place of single ones; apostrophes stay.
 
     >>> double_quoted("Invalid value for '-o' / '--output': the contact's name")
     'Invalid value for "-o" / "--output": the contact\\'s name'
@@ -22,7 +22,7 @@ def double_quoted(text: str) -> str:
 
 @contextmanager
 def double_quotes() -> Iterator[None]:
-    """Wrong usage that is found inside is said with double quotes."""
+    """Context in which messages on wrong usage get double quotes."""
     try:
         yield
     except click.UsageError as wrong:

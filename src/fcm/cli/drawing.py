@@ -1,4 +1,4 @@
-"""Shared by the commands that draw: angles on the command line, and writing a picture whole."""
+"""Shared parts of the commands that draw: angles on the command line, and writing of pictures."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ solution_option = click.option(
 
 
 def picture_of(file: Path, output: Path | None, ending: str, *read: Path | None, page: bool = False) -> Path:
-    """Path of the picture of a result file, which is none of the files that are read."""
+    """Path of the picture of a result file, checked not to be one of the files that are read."""
     if output is None and file.suffix == ending:
         raise click.UsageError(
             f"{str(file)!r} is not a netCDF file of results; fcm respond SCENE -o {file.stem}.nc writes one."
@@ -53,12 +53,12 @@ def picture_of(file: Path, output: Path | None, ending: str, *read: Path | None,
 
 
 def is_page(output: Path) -> bool:
-    """Whether what is to be written is a page to look into."""
+    """Whether the output is an interactive page."""
     return output.suffix.lower() == PAGE
 
 
 def angles(ctx: click.Context, param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
-    """Callback of an option for angles [rad]; more than a turn without a unit is asked about."""
+    """Callback of an option for angles [rad]; warns of large angles without a unit."""
     from fcm.units import ANGLES  # which takes numpy
 
     found = tuple(map(angle, texts))
@@ -92,7 +92,7 @@ def shorten(name: str, most: int) -> str:
 
 
 def save_picture(figure: Figure, output: Path) -> None:
-    """Write the picture; the file appears only when it is whole. Characters that no font has are said."""
+    """Write the picture; the file appears only when complete. Warns of characters that no font has."""
     from fcm.plot.style import lacking, save
 
     if letters := lacking(figure):
@@ -106,21 +106,21 @@ def save_picture(figure: Figure, output: Path) -> None:
 
 
 def save_picture_of(drawn: Callable[[], Figure], output: Path) -> None:
-    """Draw a file of results, whose numbers are checked when they are read, and write the picture."""
+    """Draw the picture of a result file, whose numbers are already checked, and write it."""
     with drawing():
         save_picture(drawn(), output)
 
 
 @contextmanager
 def drawing() -> Iterator[None]:
-    """Context for drawing what was read from a file, whose numbers may be too far apart to be summed."""
+    """Context for drawing data from a file; ignores RuntimeWarning, as numbers may overflow when summed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         yield
 
 
 def not_at(wanted: float, there: Sequence[float], unit: str) -> str:
-    """Message on points of a file drawn in place of one that is asked for between them; empty without any."""
+    """Message that the nearest points of a file are drawn instead of the requested place; empty if at it."""
     off = [f"{at:.6g}" for at in there if abs(at - wanted) > SENTENCES.resolution * 1e-3 * abs(wanted)]
     if not off:
         return ""

@@ -1,4 +1,4 @@
-"""``--method exact`` and ``--at``: the frequencies to visit, and which other options have a meaning then."""
+"""``--method exact`` and ``--at``: the frequencies to visit, and checks of the other options."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from fcm.run import Execution
 
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41; of several, --at for each"
-_DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
-OF_NO_USE = {  # with --method exact, and why
+_DOES = {"E": "closed all through", "S": "open all through"}  # without slip; otherwise states are named
+OF_NO_USE = {  # options of no use with --method exact, and the reasons
     "table": "it needs no coefficients",
     "peaks_only": "its points say which of them are not unique",
 }
@@ -60,7 +60,7 @@ def _values(text: str) -> list[float]:
 def check_options(
     method: str, at: tuple[float, ...] | None, only: str | None, periods: int, level: object = None
 ) -> None:
-    """A usage error if an option was given that has no meaning with the method."""
+    """Raise a usage error if an option was given that is of no use with the method."""
     if periods > 1 and (method != "exact" or at is not None or only is not None):
         raise click.UsageError(
             "--periods needs --method exact, and whole curves: no --only; --at finds such motions by itself."
@@ -122,7 +122,7 @@ def _several_periods(found: Sequence[Orbits]) -> Iterator[str]:
 
 
 def _doubles(found: Sequence[Orbits], unit: str) -> Iterator[str]:
-    """Remark on where the period doubles to motions that are not followed, and what follows them."""
+    """Remark on period doublings whose branches are not followed, and on the option that follows them."""
     import numpy as np
 
     from fcm.units import in_unit
@@ -146,7 +146,7 @@ def _irregular(found: Sequence[Orbits]) -> Iterator[str]:
 
 
 def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
-    """Points of which residual friction makes more than one, and how far apart these are."""
+    """Remarks on points where residual friction allows several motions, and on their spread."""
     import numpy as np
 
     families = [orbits for orbits in found if np.isfinite(orbits.family_greatest).any()]
@@ -168,7 +168,7 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
 
 
 def _spread(orbits: Orbits) -> float:
-    """The greatest share of an amplitude by which residual friction changes it."""
+    """The greatest relative change of an amplitude by residual friction."""
     import numpy as np
 
     moves = orbits.family_greatest > 0.0
@@ -186,7 +186,7 @@ def _uncertain(found: Sequence[Orbits]) -> Iterator[str]:
 
 
 def _unknown(orbits: Orbits) -> int:
-    """Points of which no other motion was found, but not every residual friction was tried."""
+    """Number of points without another motion found, where not every residual friction was tried."""
     import numpy as np
 
     none = np.isnan(orbits.family_greatest).all(axis=1)
@@ -194,7 +194,7 @@ def _unknown(orbits: Orbits) -> int:
 
 
 def _unreached(response: Response) -> list[str]:
-    """How many lasting motions no sweep came to, and the first few of them."""
+    """Remark on the number of stable motions that no sweep reached, with the first few."""
     from fcm.units import in_unit
 
     found = [(curve, one, k) for curve in response.curves if (one := curve.orbits) for k in one.unreached]
@@ -215,14 +215,14 @@ def _unreached(response: Response) -> list[str]:
 
 
 def _again(periods: int) -> str:
-    """How a motion repeats, if it does not after every period."""
+    """Text on how a motion repeats; empty if it does after one period."""
     if periods == 1:
         return ""
     return f" one of {periods} periods" if periods else " one that is quasi-periodic or irregular"
 
 
 def _stuck(response: Response) -> list[str]:
-    """The first of the motions that no point is of, how many there are, and what leads to it."""
+    """Remark on motions beside the curves in which a contact never slips: the first, and how to reach it."""
     from fcm.units import in_unit
 
     stuck = [(curve, one) for curve in response.curves if curve.orbits for one in curve.orbits.stuck]

@@ -62,7 +62,7 @@ def export_options(command: Any) -> Any:
 
 
 def check_options(asked: Asked) -> None:
-    """A usage error where options exclude or need one another."""
+    """Raise a usage error if options exclude or need one another."""
     given = {
         "--export": asked.export is not None,
         "--contact-forces": asked.contact_forces is not None,
@@ -99,7 +99,7 @@ def check_options(asked: Asked) -> None:
 
 @dataclass
 class Exporting:
-    """Export of a scene with every row, once its response is known."""
+    """Export of a scene with all its rows, after its response is known."""
 
     messages: Messages
     scene: Scene
@@ -114,7 +114,7 @@ class Exporting:
         return [(path, write) for path, write in found if path is not None]
 
     def take(self, response: Response, scene: Scene) -> None:
-        """The motions of a response, of a scene at the degrees of freedom in use."""
+        """Take the motions of a response; `scene` has only the degrees of freedom in use."""
         from fcm.export import motions_of
         from fcm.results.motions import ResponseMotions
 
@@ -156,9 +156,9 @@ class Exporting:
 
 
 def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | None:
-    """The export that was asked of a scene with every row; None for nothing.
+    """The requested export of a scene with all its rows; None if there is none.
 
-    Whatever stands in the way of it is said before anything is calculated.
+    Raises ExportError for any obstacle before the calculation begins.
     """
     if asked.export is None and asked.contact_forces is None and not asked.modal_amplitudes:
         return None
@@ -193,7 +193,7 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
 
 
 def _check_motion_at(scene: Scene, asked: Asked) -> None:
-    """An error where a frequency, or with --mode a modal amplitude, is not among those that are followed."""
+    """Raise ExportError if a frequency, or with --mode a modal amplitude, is outside the range."""
     from fcm.export.rows import ExportError
     from fcm.units import UNIT, in_unit
 

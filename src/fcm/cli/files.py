@@ -1,4 +1,4 @@
-"""Files that a command writes, refused before the calculation if they cannot be written."""
+"""Output files of a command, checked for writing before the calculation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.cli.terminal import plain
 from fcm.files import NOT_THERE, no_file, partial_of, real, same_file
 from fcm.signals import undisturbed
 
-_BEFORE = "fcm.cli.files.before"  # of a click context: outputs that were there before its command
+_BEFORE = "fcm.cli.files.before"  # key of a click context: outputs that existed before the command
 
 
 def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> Callable[..., Any]:
@@ -31,7 +31,7 @@ def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> C
 
 
 def check_output(path: Path, endings: tuple[str, ...]) -> None:
-    """A file with one of the endings, in a folder that exists and can be written; or a usage error."""
+    """Raise a usage error unless the file has one of the endings, and its folder exists and is writable."""
     try:
         problem = _problem(path, endings)
     except UnicodeEncodeError:
@@ -46,9 +46,9 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
 
 
 def wrote(path: Path, since_then: bool = False) -> str:
-    """Message that a file is written, and whether one from before the command was replaced.
+    """Message that a file is written, and whether it replaced one from before the command.
 
-    since_then: whether it is an earlier part of the same result.
+    since_then: whether the replaced file is an earlier part of the same result.
     """
     context = click.get_current_context(silent=True)
     before = set() if context is None else context.meta.get(_BEFORE, set())
@@ -56,7 +56,7 @@ def wrote(path: Path, since_then: bool = False) -> str:
 
 
 def check_different(paths: dict[str, Path | None]) -> None:
-    """A usage error if two options name the same file to write, in whatever spelling."""
+    """Raise a usage error if two options name the same file to write, in whatever spelling."""
     given = [(option, path) for option, path in paths.items() if path is not None]
     for (other, first), (option, path) in combinations(given, 2):
         if same_file(first, path):
@@ -64,7 +64,7 @@ def check_different(paths: dict[str, Path | None]) -> None:
 
 
 def check_not_read(outputs: Mapping[str, Path | None], inputs: Iterable[str | Path | None]) -> None:
-    """A usage error if a file to write is one that is read, by whatever name."""
+    """Raise a usage error if a file to write is also read, under whatever name."""
     read = [path for path in inputs if path is not None]
     for option, path in outputs.items():
         if path is not None and (one := next((one for one in read if same_file(path, one)), None)):
@@ -104,7 +104,7 @@ def _problem(path: Path, endings: tuple[str, ...]) -> str:
 
 
 def _try(path: Path) -> None:
-    """Creates and removes the temporary file of a path: permissions alone do not show that writing works."""
+    """Create and remove the temporary file of a path: permissions alone do not show that writing works."""
     target = real(path)
     probe = partial_of(target)
     os.close(os.open(probe, os.O_CREAT | os.O_WRONLY))

@@ -1,4 +1,4 @@
-"""Scenes with a [fit]: what is asked for, and what is said of the numbers found."""
+"""Scenes with a [fit]: checks of the options, and text output of the fitted numbers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def check_scene(scene: Scene, asked: Asked) -> None:
-    """A usage error if a scene with a [fit] is asked for what has no meaning with it."""
+    """Raise a usage error if an option is of no use with a [fit]."""
     if asked.method == "exact":
         raise click.UsageError(
             "--method exact is of no use with [fit]: numbers are fitted by harmonic balance."
@@ -129,13 +129,13 @@ def _searches(found: Mapping[str, Any]) -> str:
 
 
 def caveats(result: Mapping[str, Any]) -> list[str]:
-    """Caveats on numbers that are undetermined, and on what would determine them."""
+    """Caveats on undetermined numbers, and advice on what would determine them."""
     found = result.get("fitted")
     return [] if found is None else [*found["problems"], *found["advice"]]
 
 
 def incomplete(result: Mapping[str, Any]) -> str:
-    """Why the numbers are not the best; empty if they are."""
+    """Line that the fit was interrupted, before or after its numbers were found; empty if it was not."""
     found = result.get("fitted")
     if found is None or not found["interrupted"]:
         return ""

@@ -36,11 +36,11 @@ _EXIT_CODES = (
     ("fcm.run", "PlaceClosed", NOT_COMPLETED),
 )
 _NO_MEMORY = "error: not enough memory to complete the calculation"
-_NO_ROOM = ("failed to map", "cannot allocate memory", "failed to create thread")  # says who loads a library
+_NO_ROOM = ("failed to map", "cannot allocate memory", "failed to create thread")  # of the loader
 
 
 def guarded(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
-    """``run(ctx)``; whatever it raises ends the program as the exit codes promise."""
+    """Call ``run(ctx)``; any exception ends the program with the documented exit code."""
     if ctx.parent is not None:  # a command of a command: the outer one watches
         return run(ctx)
     taken = signals.take()
@@ -81,7 +81,7 @@ def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
 
 
 def _check_memory() -> None:
-    """Raise MemoryError where the libraries would end the program in the middle of being loaded."""
+    """Raise MemoryError if memory is so short that the libraries would crash while they are loaded."""
     try:
         import resource
     except ImportError:  # a system without limits
@@ -108,7 +108,7 @@ def _exit_code_and_line(error: BaseException) -> tuple[int, str]:
 
 
 def outdated_kernels(package: Path | None = None) -> str:
-    """Remedy where a kernel of a package (fcm) is not compiled, or older than its source."""
+    """Remedy if a kernel of the package (fcm by default) is not compiled, or older than its source; or ''."""
     from pathlib import Path
 
     package = package or Path(__file__).parents[1]
@@ -125,7 +125,7 @@ def outdated_kernels(package: Path | None = None) -> str:
 
 
 def _no_room(error: BaseException) -> bool:
-    """Whether a library could not be loaded for want of memory."""
+    """Whether a library could not be loaded because memory was short."""
     return isinstance(error, ImportError) and any(text in str(error).lower() for text in _NO_ROOM)
 
 
@@ -145,6 +145,6 @@ def _shown_by(messages: Messages) -> Callable[..., None]:
 
 
 def _discard_output() -> None:
-    """Discards standard output once nobody reads it, so that the interpreter's last flush cannot fail."""
+    """Discard standard output after its reader is gone, so that the interpreter's last flush cannot fail."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -23,7 +23,7 @@ from fcm.cli.options import FiniteRange
 from fcm.files import replacing
 
 HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
-OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file's
+OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # index of the unit in the file
 
 
 @click.command()
@@ -130,7 +130,7 @@ def contacts(
 def _too_many(
     count: int, at: tuple[float, ...], amplitude: tuple[float, ...], curves: tuple[int, ...], asked: int
 ) -> str:
-    """Message on more points than a picture has room for, and what takes fewer."""
+    """Message that a picture has no room for so many points, and how to draw fewer."""
     from fcm.plot.style import LAYOUT
 
     options = (("--at", at), ("--amplitude", amplitude), ("--curve", curves))

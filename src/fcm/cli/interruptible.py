@@ -1,4 +1,4 @@
-"""A long calculation that can be interrupted, and then says what remains of it."""
+"""A long calculation that reports, if interrupted, what remains of it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fcm.cli.messages import Messages
 
 
 class Interruptible:
-    """Progress of a calculation; if it is interrupted, says how far it was and what remains."""
+    """Progress of a calculation; an interruption reports the share done and what remains."""
 
     def __init__(self, messages: Messages, remains: str) -> None:
         self.messages, self.remains, self.share = messages, remains, 0.0

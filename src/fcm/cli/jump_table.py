@@ -1,6 +1,6 @@
-"""Tables of jumps, where a slow sweep of the frequency leaves a curve's stable part, or may leave it.
+"""Tables of jumps, where a slow sweep of the frequency leaves a curve's stable part.
 
-It may where stability is unknown.
+Where stability is unknown, a sweep may jump; another table lists these ranges.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from fcm.cli.limits import SENTENCES
 
 _LOST = "\n- the curve has no stable part there to land on"
 _UNKNOWN = f"\n{UNKNOWN} after a jump: stability is unknown there"
-# the sweep, where it begins, the cells between swept values and degrees of freedom, the cells of these
+# sweep, its start, cells between those of swept values and degrees of freedom, cells of the latter
 Row = tuple[str, float, list[str], list[list[str]]]
 
 
 def jump_table(
     curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str, resolution: float = 0.0
 ) -> str:
-    """A line for each jump; empty if there is none. Jumps that nobody could see are counted.
+    """Table with a line for each jump; empty if there is none. Jumps too small to be seen are only counted.
 
-    resolution: within which, in the unit, nothing is seen.
+    resolution: width of a range, in the unit, below which nothing is seen.
     """
 
     seen = [
@@ -60,13 +60,13 @@ def jump_table(
 
 
 def _landing(jump: Mapping[str, Any], dof: str) -> str:
-    """The amplitude after a jump, marked where it is unknown whether that motion is stable."""
+    """The amplitude after a jump, marked if the stability of that motion is unknown."""
     after = jump["after"].get(dof)
     return number(after) + UNKNOWN * (after is not None and jump.get("after_stable", True) is None)
 
 
 def _periods(jump: Mapping[str, Any]) -> str:
-    """Periods of the force after which the motions before and after repeat; empty where both do after one.
+    """Periods of the force after which the motions before and after a jump repeat; empty if both are one.
 
     >>> _periods({"periods": [1, 1]}), _periods({"periods": [2, 1]}), _periods({"periods": [2, 0]})
     ('', '2 to 1', '2 to -')
@@ -77,7 +77,7 @@ def _periods(jump: Mapping[str, Any]) -> str:
 
 
 def resolution_of(summary: Mapping[str, Any]) -> float:
-    """Within which, in the unit of the frequencies, nothing is seen; 0 where no range is swept."""
+    """Width, in the unit of the frequencies, below which nothing is seen; 0 if no range is swept."""
     low, high = summary.get("range", (0.0, 0.0))
     return SENTENCES.resolution * float(high - low)
 
@@ -85,7 +85,7 @@ def resolution_of(summary: Mapping[str, Any]) -> float:
 def is_seen(
     jump: Mapping[str, Any], curve: Mapping[str, Any], dofs: Sequence[str], resolution: float
 ) -> bool:
-    """Whether an amplitude changes, or none is known over more than the resolution."""
+    """Whether a jump is seen: an amplitude changes, or none is known over more than the resolution."""
     if any(jump["after"].get(dof) is not None for dof in dofs):
         return any(_change(jump["before"], jump["after"], dof) > SENTENCES.small_jump for dof in dofs)
     beyond = _beyond_gap(jump, curve, resolution)
@@ -95,10 +95,9 @@ def is_seen(
 def _beyond_gap(
     jump: Mapping[str, Any], curve: Mapping[str, Any], resolution: float
 ) -> Mapping[str, float] | None:
-    """Amplitudes beyond a gap without stable motion, narrower than the resolution; None if there is no such
-    gap.
+    """Amplitudes beyond a gap without stable motion that is narrower than the resolution; None without one.
 
-    They are where the opposite sweep comes to the gap.
+    They are the amplitudes at which the opposite sweep reaches the gap.
     """
     upwards = jump["sweep"] == "up"
     for low, high in curve.get("no_stable_motion", ()):
@@ -112,7 +111,7 @@ def _beyond_gap(
 
 
 def _step(jump: Mapping[str, Any], dofs: Sequence[str]) -> float:
-    """The greatest change of an amplitude; infinite where the curve has no stable part to land on."""
+    """The greatest change of an amplitude; infinite if the curve has no stable part to land on."""
     ends = [(jump["before"].get(dof), jump["after"].get(dof)) for dof in dofs]
     if any(after is None for _, after in ends):
         return float("inf")
@@ -126,7 +125,7 @@ def _change(before: Mapping[str, Any], after: Mapping[str, Any], dof: str) -> fl
 
 
 def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
-    """A line for each curve of which a peak is not known to be stable: the greatest motions that are."""
+    """Table of the greatest stable motions of curves with a peak not known to be stable; or ''."""
     rows = []
     for curve in curves:
         peaks = [(curve["peak"].get(dof) or {}).get("greatest_stable") for dof in dofs]
@@ -142,7 +141,7 @@ def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
 
 
 def _stays(one: Mapping[str, Any] | None) -> list[str]:
-    """The cells of a greatest stable motion; empty where the peak itself is one."""
+    """The cells of a greatest stable motion; empty if the peak itself is stable."""
     return (
         ["", "", ""] if not one else [number(one["amplitude"]), number(one["frequency"]), short(one["error"])]
     )
@@ -151,11 +150,11 @@ def _stays(one: Mapping[str, Any] | None) -> list[str]:
 def unknown_stability_table(
     curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str, remedy: str
 ) -> str:
-    """A line for each way of a sweep on which it is unknown whether the motion is stable; empty if none.
+    """Table of the windows in which a sweep meets motions of unknown stability; empty if there are none.
 
-    Narrow windows are counted.
+    Narrow windows are only counted.
 
-    remedy : what may show the stability
+    remedy : text on what may show the stability
     """
     every = [one for curve in curves for one in curve.get("stability_untold", ())]
     narrow = sum(map(_is_narrow, every))
@@ -194,7 +193,7 @@ def _rows(
     shown: Sequence[Sequence[Mapping[str, Any]]],
     row: Callable[[Mapping[str, Any]], Row],
 ) -> list[tuple[list[str], list[list[str]], list[str]]]:
-    """The rows shown of all curves, of each as first the upward, then the downward sweep meets them."""
+    """The shown rows of all curves; for each curve in the order of the upward, then the downward sweep."""
     found = []
     for curve, own in zip(curves, shown, strict=True):
         rows = list(map(row, own))

@@ -1,4 +1,4 @@
-"""A click group that imports a command when it is called, so that ``fcm --help`` costs nothing."""
+"""A click group that imports a command only when it is called, so that ``fcm --help`` is fast."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from fcm.cli.options import add_verbosity
 
 
 class LazyGroup(click.Group):
-    """``lazy`` maps the name of a command to (``"module:attribute"``, its line of help); ``instead`` names
-    that there are not to what does it."""
+    """A group of commands that are imported on use.
+
+    ``lazy`` maps the name of a command to (``"module:attribute"``, its line of help). ``instead`` maps names
+    of commands that do not exist to what does the task.
+    """
 
     def __init__(
         self,

@@ -30,7 +30,7 @@ OF_CONTACT = ("mu", "k_u", "k_v", "n_0", "a", "b")
 
 
 def _number(low: float | None, strict: bool = False) -> Callable[..., Any]:
-    """A callback: finite numbers, none below (or at) a limit."""
+    """Callback that checks for finite numbers, none below a limit (or, if strict, at it)."""
 
     def check(_ctx: click.Context, _param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
         for value in values:
@@ -56,7 +56,7 @@ def _ratio(low: float) -> Callable[..., Any]:
 def _harmonics(
     _ctx: click.Context, _param: click.Parameter, values: tuple[tuple[str, int, float, str], ...]
 ) -> tuple[Harmonic, ...]:
-    """Callback: each harmonic of u and of v once, from the second on."""
+    """Callback that checks that each harmonic of u and v, from the second on, is given once."""
     from fcm.cli.loop_names import Harmonic
 
     found: dict[tuple[str, int], Harmonic] = {}
@@ -211,7 +211,7 @@ def _cases(
     units: tuple[str, str] | None,
     tell: Callable[[str], None],
 ) -> Sequence[Case | PlanarCase | NormalCase]:
-    """The loops of the one way, of three, in which they are given."""
+    """The loops from a file, a contact's parameters or dimensionless ratios, as given."""
     from fcm.cli.loop_cases import of_contact, of_file, of_ratios
 
     if file is not None:
@@ -231,7 +231,7 @@ def _cases(
 
 
 def _check(given: set[str], of_file: bool) -> None:
-    """A usage error with everything that is wrong with which options are given."""
+    """Raise a usage error that lists all mistakes in the combination of options."""
     dimensionless = "dimensionless" in given or not (of_file or given.intersection(OF_CONTACT))
     wrong = [_useless(given, ("units",), ": the axes have no dimension")] if dimensionless else []
     if of_file:
@@ -251,13 +251,13 @@ def _check(given: set[str], of_file: bool) -> None:
 
 
 def _check_without_friction(given: set[str]) -> None:
-    """A usage error on what the normal force of a contact without friction cannot have."""
+    """Raise a usage error if options are of no use for the normal force of a contact without friction."""
     if wrong := _useless(given, ("cosine", "dimensionless"), ": the contact has no friction, and so no loop"):
         raise click.UsageError(f"{wrong}.")
 
 
 def _one_of(options: dict[str, Any]) -> str:
-    """How to choose one loop of several of a file."""
+    """Text on how to choose one loop among several of a file."""
     several = [_option(name) for name in ("curves", "at", "amplitudes") if len(options[name]) > 1]
     if several:
         return f"give {' and '.join(several)} once"
@@ -322,7 +322,7 @@ def _drawn_on_lines(cases: list[Case], scaled: bool, units: tuple[str, str] | No
 
 
 def _sentence(case: Case | PlanarCase | NormalCase, cosine: bool) -> str:
-    """The states of a loop and where each begins."""
+    """Message on the states of a loop and the angle at which each begins."""
     from fcm.cli.loop_cases import NormalCase, PlanarCase
     from fcm.contact.sampled import shown_degrees, transitions
 

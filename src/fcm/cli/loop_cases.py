@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Case(Frozen):
-    """A loop; its parameters as they are named in a picture, and what else is to be said of it."""
+    """A loop, with its parameters as named in a picture, and further data on it."""
 
     loop: Loop | PeriodicLoop  # dimensionless: displacements divided by a, forces by k_u a
     ratios: tuple[float, float, float]  # n0_bar, b_bar [-] and phi [rad]; with harmonics, of the fundamental
@@ -81,7 +81,7 @@ class PlanarCase(Frozen):
     start: tuple[float, float] = (0.0, 0.0)  # displacements at which it starts unstressed
 
     def dimensionless(self) -> PlanarLoop:
-        """The loop with displacements as parts of the amplitude a and forces as parts of k_u a."""
+        """The loop with displacements in units of the amplitude a and forces in units of k_u a."""
         from fcm.contact import planar_loop
 
         loop, a, force = self.loop, self.facts["a"], self.facts["k_u a"]
@@ -115,7 +115,7 @@ class PlanarCase(Frozen):
 class NormalCase(Frozen):
     """The normal force of a contact without friction."""
 
-    loop: PeriodicLoop  # of no tangential motion, which sticks while the contact is closed
+    loop: PeriodicLoop  # without tangential motion; it sticks while the contact is closed
     names: tuple[Name, ...]
     note: str
     facts: dict[str, Any]
