@@ -1,4 +1,4 @@
-"""A scene by every method: error against run time, and what the error consists of."""
+"""Run a scene by every method: error against run time, and contributions to the error."""
 
 from fcm.compare.comparison import Comparison, IncomparableError, compare, contributions
 from fcm.compare.errors import MEASURES, Reference, Shown

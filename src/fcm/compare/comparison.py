@@ -1,4 +1,4 @@
-"""A scene by every method: references, a run of each method at each resolution, parts of the error."""
+"""Run a scene by every method: references, runs at several resolutions, contributions to the error."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class IncomparableError(RuntimeError):
 
 @dataclass
 class Comparison:
-    """Every run with its errors against both references; each list of errors is in the order of the runs."""
+    """Every run with its errors against both references; the lists of errors are in the order of the runs."""
 
     scene: Scene
     options: CompareOptions = COMPARE
@@ -64,7 +64,7 @@ class Comparison:
 
     @property
     def notes(self) -> list[str]:
-        """Notes that a reader of the errors has to know."""
+        """Notes that are needed to judge the errors."""
         found = []
         lines = (self.references[CLOSED_FORM].lines, self.references[EXACT].lines)
         for name, harmonic, exact in zip(self.names, *lines, strict=True):
@@ -81,7 +81,7 @@ class Comparison:
     def _stopped(self) -> list[str]:
         """Sentences on methods whose curves stopped early; for an uncorrected table with a likely reason."""
         found: dict[tuple[str, bool], list[float]] = {}
-        for one in self.runs:  # of exact curves it is said which
+        for one in self.runs:  # `without_exact` names the exact ones
             if one.method != EXACT and not all(line.complete for line in one.lines):
                 found.setdefault((one.method, one.corrected), []).append(one.max_step)
         return [_stopped_early(*kind, steps, self.seams) for kind, steps in found.items()]
@@ -94,14 +94,14 @@ class Comparison:
             self.errors[name].append(values)
 
     def shown(self, against: str, number: int, measure: str) -> Shown:
-        """The greatest error of a run over the curves, or a limit below which it is."""
+        """The greatest error of a run over all curves, or an upper limit of it."""
         own = self.references[against].own
         return worst(self.errors[against][number][measure], own[measure], self.options.margin)
 
     def find(
         self, method: str, corrected: bool = True, left_out: bool = True, share: float = 1.0
     ) -> int | None:
-        """The number of a run, if it was made."""
+        """The number of a run; None if it was not made."""
         step = with_step(self.scene, share).max_step
         for number, one in enumerate(self.runs):
             if (one.method, one.corrected, one.left_out, one.max_step) == (method, corrected, left_out, step):
@@ -130,9 +130,9 @@ def compare(
     """Run a scene by every method and measure error against run time.
 
     The methods are harmonic balance with the default table, the fast one and the closed form, and the exact
-    periodic motion; each over a range of longest steps, and with and without what the scene does not need.
-    The errors are those of peaks, folds and whole curves (`fcm.compare.errors.MEANINGS`), against two
-    references: exact, and the closed form with the shortest steps, which has the same single harmonic.
+    periodic motion. Each runs over a range of longest steps, with and without negligible parts of the scene.
+    Errors of peaks, folds and whole curves (`fcm.compare.errors.MEANINGS`) are against two references: the
+    exact motion, and the closed form with the shortest steps, which has the same single harmonic.
 
     Parameters
     ----------
@@ -143,18 +143,18 @@ def compare(
     progress : optional
         Called with the finished fraction and a text.
     tolerance : float
-        Of what is left out, as in `fcm.response.trace`.
+        Tolerance for leaving out negligible parts, as in `fcm.response.trace`.
     options : CompareOptions
         Longest steps, and all tolerances and limits.
 
     Raises
     ------
     ResponseError, TableError
-        If the calculation cannot be begun, or a table not be read.
+        If the calculation cannot begin, or a table cannot be read.
     IncomparableError
         If no curve reaches the end of its range.
     KeyboardInterrupt
-        If it is interrupted before both references are there; after that, what is done is returned.
+        If it is interrupted before both references are complete; later, the finished runs are returned.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def compare(
 
 
 def _same(out: Comparison, method: Method, share: float) -> Run | None:
-    """The exact run that is there already, if there is nothing to leave out of it."""
+    """An existing exact run that is the same because nothing is left out; None without one."""
     number = out.find(EXACT, left_out=False, share=share) if method.name == EXACT else None
     return None if number is None or out.left_out else replace(out.runs[number], left_out=True)
 
@@ -206,10 +206,10 @@ def _same(out: Comparison, method: Method, share: float) -> Run | None:
 def _jobs(
     methods: list[Method], tolerance: float | None, options: CompareOptions
 ) -> Iterator[tuple[Method, float, float | None]]:
-    """Method, share of the longest step, tolerance of what is left out; the most wanted first."""
+    """Yield method, share of the longest step and tolerance for leaving out; the most important first."""
     for method in methods:
         yield method, 1.0, tolerance
-        if method.name != EXACT:  # of exact it is there already
+        if method.name != EXACT:  # the reference has made the exact one
             yield method, 1.0, None
     for method in methods:
         for share in options.exact_steps if method.name == EXACT else options.steps:
@@ -220,9 +220,9 @@ def _jobs(
 
 
 def _references(out: Comparison, show: Progress) -> None:
-    """Computes both references, and the error of each from a run with longer steps."""
+    """Compute both references, and the error of each from a run with longer steps."""
     made = []
-    # name, shares of the longest step, and shares of the whole time at which it begins and ends
+    # name, shares of the longest step (reference, coarser run), begin and end as shares of the whole time
     options, finest_step = out.options, out.options.finest_step
     wanted = (
         (CLOSED_FORM, finest_step, 4.0 * finest_step, 0.0, 0.1),

@@ -1,12 +1,12 @@
-"""Distance of a response curve from a reference, as fair at folds and on steep flanks as elsewhere.
+"""Distance of a response curve from a reference, also valid at folds and on steep flanks.
 
-An error of amplitude at equal frequency is without bound where a curve is steep, and has no meaning between
-folds. So curves are compared as sets of points (ln omega, X_1, ..., X_n): d is the square root of
+An error of amplitude at equal frequency is unbounded where a curve is steep, and has no meaning between
+folds. So curves are compared as sets of points (ln omega, X_1, ..., X_n). The distance d is the root of
 
     (difference of ln omega)^2 + mean over the degrees of freedom of (difference of X_j / max X_j)^2,
 
-from each point of the one curve to the nearest of the other. It is dimensionless, and does not depend on
-the range of frequencies, on units or on where the points lie along the curves.
+from each point of one curve to the nearest point of the other. It is dimensionless, and does not depend on
+the range of frequencies, on units or on the positions of the points along the curves.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from fcm.compare.options import COMPARE
 
 
 class Shape:
-    """A line as a fine chain of points in the coordinates of distance.
+    """A line as a fine chain of points in the coordinates of the distance.
 
-    smooth : by local cubics, which do not overshoot at corners (Akima); else straight, as lines are drawn.
+    smooth : interpolate by Akima's local cubics, which do not overshoot at corners; else by straight pieces.
     """
 
     def __init__(self, line: Line, size: FloatArray, smooth: bool) -> None:
@@ -33,7 +33,7 @@ class Shape:
         self.chain = chain
         if chain.size:
             lengths = [part.shape[0] for part in self.chains]
-            # the piece after each point; at the end of a chain, none
+            # the piece after each point; zero at the end of a chain
             step = np.vstack((np.diff(chain, axis=0), np.zeros(chain.shape[1])))
             step[np.cumsum(lengths) - 1] = 0.0
             self._step, self._tree = step, cKDTree(chain)
@@ -61,20 +61,20 @@ def size_of(line: Line) -> FloatArray:
 
 
 def of_points(shape: Shape, reference: Shape) -> float:
-    """Greatest distance of a line's own points from the reference: what is wrong with the points."""
+    """Greatest distance of a line's own points from the reference: the error of the points."""
     return _greatest(reference.from_(shape.points))
 
 
 def of_curve(shape: Shape, reference: Shape) -> float:
-    """Greatest distance of either from the other: what is wrong, missing, or too coarse to be drawn."""
+    """Greatest distance between the two, either way: counts wrong, missing and too coarse parts."""
     return max(_greatest(reference.from_(shape.chain)), _greatest(shape.from_(reference.chain)))
 
 
 def resolution(line: Line, size: FloatArray) -> float:
-    """Error of a smooth line between its points: half of by how much it misses those that are left out.
+    """Estimated error of a smooth line between its points: half the error of a line with every other point.
 
-    Every other point is left out, the odd ones and then the even ones. With twice the spacing the error is
-    eight times as large where the curve is smooth, and about twice at a corner.
+    The odd points are left out, then the even ones, and the distance of those left out is measured. With
+    twice the spacing the error is eight times as large where the curve is smooth, about twice at a corner.
     """
     worst = 0.0
     for w, a in line.branches():

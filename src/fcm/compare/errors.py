@@ -1,4 +1,4 @@
-"""Errors of a run against a reference, and those of the reference itself."""
+"""Errors of a run against a reference, and errors of the reference itself."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Errors = dict[str, FloatArray]  # of each measure: (curve,)
 
 
 class Reference(Frozen):
-    """Curves that others are measured against, with the error of their own."""
+    """Curves to compare others with, and their own error."""
 
     name: str
     max_step: float
@@ -54,12 +54,12 @@ class Reference(Frozen):
 def reference(
     name: str, max_step: float, lines: Sequence[Line], coarser: Sequence[Line], closure: float
 ) -> Reference:
-    """A reference whose own error is how much it differs from a run with longer steps.
+    """Make a reference whose own error is its difference from a run with longer steps.
 
-    Between its points that is the greatest distance from it of the points of that run, which lie on the same
-    curve elsewhere, or its `resolution`, if that is more.
+    Its own error between points is the greatest distance of that run's points from it, or its `resolution`,
+    if that is more. The points of that run lie on the same curve, at other places.
 
-    closure : relative error of each of its points.
+    closure : relative error of each point, the least own error.
     """
     bare = Reference(name, max_step, lines)
     own = bare.errors(coarser)
@@ -91,7 +91,7 @@ def _relative(value: float, exact: float) -> float:
 
 
 class Shown(Frozen):
-    """An error as it is shown: a number, or a limit below which it is; both missing if there is none."""
+    """An error as shown: a value, or an upper limit; both None if there is none."""
 
     value: float | None = None
     below: float | None = None
@@ -103,7 +103,7 @@ class Shown(Frozen):
 
 
 def worst(errors: FloatArray, own: FloatArray, margin: float = COMPARE.margin) -> Shown:
-    """The greatest error of the curves; a limit where it is less than so many times the reference's own."""
+    """The greatest error of the curves; an upper limit if it is below `margin` times the reference's own."""
     known = np.isfinite(errors) & np.isfinite(own)
     if not known.any():
         return Shown()
@@ -115,7 +115,7 @@ def worst(errors: FloatArray, own: FloatArray, margin: float = COMPARE.margin) -
 
 
 def _up(limit: float) -> float:
-    """A limit with one digit, not below it."""
+    """The limit rounded up to one digit."""
     if limit == 0.0:
         return 0.0
     power = 10.0 ** np.floor(np.log10(limit))

@@ -1,4 +1,4 @@
-"""Lines of the exact periodic motion: half the peak-to-peak of each, its peaks located between points."""
+"""Lines of the exact periodic motion: half peak-to-peak amplitudes, with peaks located between points."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from fcm.time_domain import SimulationError, State
 def exact_lines(
     scene: Scene, progress: Progress | None = None, options: ExactLineOptions = COMPARE.exact
 ) -> list[Line]:
-    """The exact curves of a scene; those that cannot be followed to their end, in time, are not complete."""
+    """The exact curves of a scene; those that do not reach their end within the time limit are incomplete."""
     scenes, lines = scene.each_curve(), []
     for number, one in enumerate(scenes):
         shown = part(progress, number / len(scenes), (number + 1) / len(scenes))
@@ -53,7 +53,7 @@ def _line(scene: Scene, curve: Curve, options: ExactLineOptions) -> Line:
 
 
 def _peak(scene: Scene, curve: Curve, dof: int, options: ExactLineOptions) -> tuple[float, float]:
-    """Greatest amplitude of a degree of freedom, located between the points by solutions of its own."""
+    """Greatest amplitude and its frequency, located between the points by further periodic solutions."""
     amplitude = curve.amplitude[:, dof]
     k = int(np.nanargmax(amplitude))
     at_point = float(amplitude[k]), float(curve.frequency[k])
@@ -75,7 +75,7 @@ def _peak(scene: Scene, curve: Curve, dof: int, options: ExactLineOptions) -> tu
 
 
 def _state(scene: Scene, curve: Curve, k: int) -> State:
-    """The state of a point, as far as its fundamental and mean tell: a guess."""
+    """A guess of the state at a point, from its fundamental and mean."""
     assert curve.orbits is not None
     return harmonic_state(
         scene, float(curve.frequency[k]), curve.fundamental[k], curve.phase[k], curve.mean[k]

@@ -37,7 +37,7 @@ class Line(Frozen):
         return int(np.isfinite(self.frequency).sum())
 
     def branches(self) -> list[tuple[FloatArray, FloatArray]]:
-        """Frequency and amplitude of each part that hangs together."""
+        """Frequency and amplitude of each connected part."""
         gaps = np.flatnonzero(np.isnan(self.frequency))
         parts = zip(np.split(self.frequency, gaps), np.split(self.amplitude, gaps), strict=True)
         known = ((w[np.isfinite(w)], a[np.isfinite(w)]) for w, a in parts)

@@ -1,4 +1,4 @@
-"""The methods that are compared, each as one function from scenes to lines, with its calls counted."""
+"""The compared methods: each solves a scene for its lines, with run time and evaluations counted."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ CLOSED_FORM, EXACT = "closed form", "exact"
 
 
 class Method(Frozen):
-    """A table, the closed form, or the exact motion."""
+    """A method: a table, the closed form, or the exact motion."""
 
     name: str
     table: Table | None = None
-    corrected: bool = True  # its points, with the closed form, as every result of fcm is
+    corrected: bool = True  # whether its points are corrected with the closed form, as all results of fcm are
 
 
 class Run(Frozen):
@@ -34,11 +34,11 @@ class Run(Frozen):
 
     method: str
     corrected: bool
-    left_out: bool  # whether what the scene does not need was left out
+    left_out: bool  # whether negligible parts of the scene were left out
     max_step: float  # longest step along the curves, relative to their extent
     lines: list[Line]
-    seconds: float  # solving alone, in a program that has begun and has its table
-    processor_seconds: float  # the same where nothing else takes the processor
+    seconds: float  # to solve only, without the start of the program and the opening of the table
+    processor_seconds: float  # processor time of the same
     evaluations: int  # of the balanced equations, to follow the curves; of `exact`: periods of the motion
 
     @property
@@ -56,9 +56,9 @@ def run(
 ) -> Run:
     """Solve the scene by a method and time it.
 
-    tolerance : of what is left out; None for leaving nothing out.
+    tolerance : for leaving out negligible parts; None leaves nothing out.
     """
-    if method.name != EXACT:  # once, so that it is warm
+    if method.name != EXACT:  # warm-up
         solve(method, scene, tolerance, options=options)
     begin, processor = time.perf_counter(), time.process_time()
     lines = solve(method, scene, tolerance, progress, options)
@@ -69,7 +69,7 @@ def run(
 
 
 def with_step(scene: Scene, share: float) -> Scene:
-    """The scene with this share of its longest steps, none longer than the whole extent of a curve."""
+    """The scene with its longest steps scaled by a share, none longer than the whole extent of a curve."""
     curves = tuple(replace(c, max_step=min(share * c.max_step, 1.0), curves=()) for c in scene.each_curve())
     return replace(scene, max_step=curves[0].max_step, curves=curves)
 
@@ -97,7 +97,7 @@ def solve(
 
 
 def _lighter(scene: Scene, tolerance: float | None) -> Scene:
-    """The scene without what it does not need."""
+    """The scene without its negligible parts."""
     if tolerance is None:
         return scene
     return replace(scene, curves=without_negligible_parts(scene.each_curve(), tolerance).curves)

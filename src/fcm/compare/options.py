@@ -13,7 +13,7 @@ class ChainOptions(Frozen):
     Attributes
     ----------
     chain_points : int
-        Number of points of the fine line, about.
+        Approximate number of points of the fine line.
     max_fineness, min_fineness : int
         Most and fewest of these points between two neighbours of the line.
     distinct_length : float
@@ -36,7 +36,7 @@ class ExactLineOptions(Frozen):
     peak : float
         Relative error of the frequency of a peak.
     jump : float
-        Relative change of amplitude from which on a solution near a peak is one of another branch.
+        Relative change of amplitude from which on a solution near a peak is on another branch.
     """
 
     limit: float = 60.0
@@ -69,8 +69,8 @@ class CompareOptions(Frozen):
     margin : float
         Ratio of the least error that is shown to the reference's own error.
     steps, exact_steps : tuple of float
-        Longest steps of the runs, relative to that of the scene: of harmonic balance, and of the exact
-        motion, whose points are exact with any.
+        Longest steps of the runs, relative to that of the scene, for harmonic balance and for the exact
+        motion, whose points are exact with any step.
     finest_step, finest_exact_step : float
         Longest steps of the two references, relative to that of the scene.
     floor, exact_floor : float
@@ -89,4 +89,4 @@ class CompareOptions(Frozen):
     exact_floor: float = 1e-8
 
 
-COMPARE = CompareOptions()  # where nothing else is said
+COMPARE = CompareOptions()  # the defaults

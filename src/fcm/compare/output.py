@@ -26,7 +26,7 @@ Json = dict[str, Any]
 def summary(out: Comparison) -> Json:
     """Output of ``fcm respond --compare --json``; NaN becomes None.
 
-    Of each error that is less than ten times the reference's own only a limit is given, under `below`.
+    For an error below `options.margin` times the reference's own, only a limit is given, under `below`.
     """
     return {
         "title": out.scene.title,

@@ -1,4 +1,4 @@
-"""Measures the time a program takes before it solves anything: interpreter, imports, table."""
+"""Measure the time a program takes before it solves anything: interpreter, imports, table."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Startup(NamedTuple):
     """Times [s]; not a number where they could not be measured."""
 
     total: float  # from the start of the interpreter to its end
-    table: float  # of these, to open the table
+    table: float  # part of `total` to open the table
 
 
 UNKNOWN = Startup(float("nan"), float("nan"))
 
 
 def startup(method: str, table: Path | None, options: StartupOptions = COMPARE.startup) -> Startup:
-    """Least times of some programs that begin as one with this method does, and then end."""
+    """Least times of some programs that start up for this method, and then end."""
     imports = _IMPORTS.get(method, "import fcm.scene, fcm.response")
     opening = f"import fcm; fcm.open_table({str(table)!r})" if table else "pass"
     program = _PROGRAM.format(imports=imports, opening=opening)

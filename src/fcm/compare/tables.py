@@ -1,4 +1,4 @@
-"""A comparison as tables of text, from its summary: the same on a terminal and on a page."""
+"""Text tables of a comparison, from its summary, for a terminal and for a page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TextTable = list[list[str]]  # the first is the header
 Summary = Mapping[str, Any]
 NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
 HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
-MARKS = {True: "", False: "!", None: "?"}  # beside a peak: the motion there is stable, is not, is unknown
+MARKS = {True: "", False: "!", None: "?"}  # beside a peak: stable, unstable, stability unknown
 SAID = {"!": "! unstable: the motion does not stay at this peak", "?": "? stability is unknown there"}
 DIGITS = 6  # of amplitudes and frequencies
 
@@ -67,7 +67,7 @@ def _at_own_step(summary: Summary) -> list[Summary]:
 
 
 def _left_out(one: Summary, summary: Summary) -> str:
-    """Whether what the scene does not need was left out, if there is anything."""
+    """Cell that says whether negligible parts were left out, or that there are none."""
     return "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing"
 
 
@@ -80,7 +80,7 @@ def contributions(summary: Summary) -> TextTable:
 
 
 def peaks(summary: Summary) -> TextTable:
-    """The estimate of what the single harmonic leaves out beside the true error, peak by peak."""
+    """Table of the peaks: the true error of the single harmonic, and the estimated truncation error."""
     found = summary["peaks"]
     if not found:
         return []
@@ -109,7 +109,7 @@ def steps(summary: Summary) -> TextTable:
     rows = [["over the steps", "max. step", "points", "CPU [s]", *(f"curve, {name}" for name in against)]]
     for one in in_order(summary["runs"]):
         if one["corrected"] and not one["left_out"]:
-            continue  # the same once more
+            continue  # its run with parts left out is listed
         name = one["method"] if one["corrected"] else f"{one['method']}, as it is"
         name += "" if one["complete"] else ", not complete"
         curve = MEASURES.index("curve")
@@ -120,12 +120,12 @@ def steps(summary: Summary) -> TextTable:
 
 
 def main_reference(summary: Summary) -> str:
-    """The exact motion, if it is known for any curve."""
+    """The reference of the tables: exact if known for any curve, else the closed form."""
     return EXACT if summary["references"][EXACT]["own_error"]["peak"] is not None else CLOSED_FORM
 
 
 def in_order(runs: Sequence[Summary]) -> list[Summary]:
-    """A method's runs together, from long steps to short ones; exact last."""
+    """Runs sorted by method, from long steps to short ones; exact last."""
     names = ["default table", "fast table", *sorted({one["method"] for one in runs}), CLOSED_FORM]
 
     def place(one: Summary) -> tuple[Any, ...]:
@@ -136,5 +136,5 @@ def in_order(runs: Sequence[Summary]) -> list[Summary]:
 
 
 def shown(one: Summary) -> list[str]:
-    """Errors, or limits below which they are."""
+    """Cells of the errors, or of their upper limits."""
     return [str(Shown(one["errors"][measure], one["below"].get(measure))) for measure in MEASURES]

@@ -1,4 +1,4 @@
-"""Back to other programs: motions of all rows on their mesh, and contact forces for stress recovery."""
+"""Export to other programs: motions of all rows on their mesh, and contact forces for stress recovery."""
 
 from fcm.export.motions import motions_of
 from fcm.export.options import EXPORT, ExportOptions

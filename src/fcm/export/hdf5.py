@@ -18,8 +18,9 @@ def write_hdf5(motions: Sequence[ResponseMotion], scene: Scene, mesh: Mesh | Non
     """Write displacements of all rows.
 
     Datasets: row (row,) names; displacement (motion, harmonic, row) complex, as Im(X exp(i h omega t)), NaN
-    of harmonics that a motion has not; mean (motion, row); harmonic (harmonic,); frequency, curve, stable and
-    of (motion,), and of nonlinear modes modal_amplitude. With a mesh also node (node,) and xyz (node, 3).
+    for harmonics that a motion lacks; mean (motion, row); harmonic (harmonic,). `frequency`, `curve`,
+    `stable` and `of` are (motion,), for nonlinear modes also `modal_amplitude`. With a mesh there are also
+    node (node,) and xyz (node, 3).
     """
     import h5py
 

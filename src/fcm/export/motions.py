@@ -1,7 +1,7 @@
-"""The motions of a response at its peaks or at chosen frequencies, with forces and modes by harmonics.
+"""Motions of a response at its peaks or chosen frequencies: contact forces and modes by harmonics.
 
-Each is solved for once more with all contacts and modes, from the displacements of its curve: its contact
-forces then balance it.
+Each motion is solved again with all contacts and modes, starting from the displacements of its curve. The
+contact forces then are in balance with it.
 """
 
 from __future__ import annotations
@@ -33,14 +33,15 @@ def motions_of(
 ) -> list[ResponseMotion]:
     """Motions of every curve: at the peaks, or where it passes some frequencies in the scene's unit.
 
-    Of nonlinear modes those that were kept, see `fcm.response.mode.ModeRequest`; `at` are modal amplitudes.
+    For nonlinear modes, these are the motions kept by `fcm.response.mode.ModeRequest`; `at` are modal
+    amplitudes.
 
     Parameters
     ----------
     response : Response
-        From `fcm.response.trace`, of curves against the frequency, at all degrees of freedom of the scene.
+        From `fcm.response.trace`, with curves over the frequency and all degrees of freedom of the scene.
     scene : Scene
-        That of the response.
+        The scene of the response.
     at : sequence of float, optional
         Frequencies; every solution that a curve has there counts, stable or not.
     options : ExportOptions, optional
@@ -80,7 +81,7 @@ def motions_of(
 
 
 def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[ResponseMotion]:
-    """The motions that nonlinear modes have for export."""
+    """The motions that nonlinear modes kept for export."""
     found: list[ResponseMotion] = []
     for number, (curve, own) in enumerate(zip(response.curves, scene.each_curve(), strict=True)):
         if curve.mode is None or not curve.mode.motions:
@@ -103,13 +104,13 @@ def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[Res
 
 
 class _Solver(Frozen):
-    """A curve, and the balance that it solves."""
+    """A curve, with a corrector for its balance."""
 
     scene: Scene
     curve: Curve
     newton: Newton
     system: System
-    in_modes: System | None  # the same where modal displacements are what is reported
+    in_modes: System | None  # the system with modal displacements as output
 
     @staticmethod
     def of(scene: Scene, curve: Curve) -> _Solver:
@@ -120,7 +121,7 @@ class _Solver(Frozen):
     def peaks(
         self, number: int, reported: Sequence[bool], options: ExportOptions
     ) -> Iterator[ResponseMotion]:
-        """The motion of each peak; one that several degrees of freedom share is there once."""
+        """Yield the motion of each peak; degrees of freedom with a common peak share one motion."""
         dofs, amplitude = self.scene.modal.dofs, self.curve.amplitude
         shown = [d for d, one in enumerate(reported) if one and np.isfinite(amplitude[:, d]).any()]
         heights = [float(np.nanmax(amplitude[:, d])) for d in shown]
@@ -139,7 +140,7 @@ class _Solver(Frozen):
             yield self._motion(number, solved, float(self.curve.stable[point]), tuple(names))
 
     def passing(self, number: int, omega: float) -> Iterator[ResponseMotion]:
-        """The motions where the curve passes a frequency [rad/s]."""
+        """Yield the motions where the curve passes a frequency [rad/s]."""
         frequency = self.curve.frequency
         low, high = frequency[:-1], frequency[1:]
         inside = (np.minimum(low, high) <= omega) & (omega < np.maximum(low, high))
@@ -178,7 +179,7 @@ class _Solver(Frozen):
 
 
 def with_contacts(motion: ResponseMotion, system: System, z: FloatArray) -> ResponseMotion:
-    """The motion with the states and loads of its contacts over a cycle, at the point z (unknown + 1,)."""
+    """Add the states and loads of the contacts over a cycle at the point z (unknown + 1,) to a motion."""
     if not system.scene.contacts:
         return motion
     record = ContactRecord.at(system, z[None])
@@ -188,7 +189,8 @@ def with_contacts(motion: ResponseMotion, system: System, z: FloatArray) -> Resp
 def contact_forces(system: System, z: FloatArray) -> ComplexArray:
     """Forces of the contacts (contact, direction, 1 + harmonic) at a point z (unknown + 1,) of a balance.
 
-    As Im(F_h exp(i h omega t)), the mean first; the last direction is the normal, with the preload.
+    Forces are Im(F_h exp(i h omega t)), the mean first. The last direction is the normal; it includes the
+    preload.
     """
     layout, z = system.layout, np.ascontiguousarray(z)
     flat = np.zeros(layout.unknowns)
@@ -199,11 +201,11 @@ def contact_forces(system: System, z: FloatArray) -> ComplexArray:
     force[..., 1:] *= 1j
     for i, contact in enumerate(system.scene.contacts):
         force[i, -1, 0] += max(contact.n_0, 0.0)
-    return force + 0.0  # a zero without its sign
+    return force + 0.0  # turns -0.0 into 0.0
 
 
 def scene_in_modes(scene: Scene) -> Scene:
-    """A scene (of one curve) whose degrees of freedom are the displacements of its modes, of mass 1."""
+    """The scene of one curve with the displacements of its modes, of mass 1, as degrees of freedom."""
     modal = scene.modal
     unit = np.sqrt(modal.mass)
     onto = modal.shapes / unit[:, None]  # (mode, dof)
@@ -229,7 +231,7 @@ _OTHER = re.compile(r"[^A-Za-z0-9_.+-]+")
 
 
 def labels_of(motions: Sequence[ResponseMotion], unit: str) -> list[str]:
-    """A name for each motion, all different: its curve, its peak or frequency.
+    """A unique name for each motion, from its curve, its peak or modal amplitude, and its frequency.
 
     >>> import numpy as np
     >>> nothing = np.zeros((0, 2, 2), dtype=complex)

@@ -12,11 +12,11 @@ class ExportOptions(Frozen):
     Attributes
     ----------
     max_peaks
-        Most degrees of freedom of each curve whose peaks are exported: those that its line of the printed
-        table has, the greatest displacements before rotations.
+        Most degrees of freedom of each curve whose peaks are exported: those of the printed table, the
+        greatest displacements before rotations.
     max_drift
-        Relative change of a peak's frequency, where its point is corrected with all digits, above which the
-        point is another; what the balance has left is far below.
+        Relative change of a peak's frequency by the correction of its point, above which the solution is
+        another one. The residual of the balance changes it by far less.
     same_amplitude
         Relative difference of modal amplitudes below which they are the same.
     """

@@ -1,4 +1,4 @@
-"""Displacements of every row of a structure, and where on a mesh each row is."""
+"""Displacements of every row of a structure, and the place of each row on a mesh."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ IntArray = npt.NDArray[np.intp]
 
 
 class ExportError(ValueError):
-    """A mesh or structure of which motions cannot be exported; the message says why."""
+    """Raised when motions cannot be exported; the message says why."""
 
 
 class StructureRows(Frozen):
@@ -62,7 +62,7 @@ class StructureRows(Frozen):
         return np.unique(self.node[self.node >= 0])
 
     def displacements(self, motion: ResponseMotion, scene: Scene) -> ComplexArray:
-        """(1 + harmonic, row) of a motion of a curve of the scene, the mean first."""
+        """Displacements (1 + harmonic, row) of a motion of a curve of the scene, the mean first."""
         curve = scene.each_curve()[motion.curve]
         assert motion.modal is not None  # rings are refused before
         unit = motion.modal / np.sqrt(curve.modal.mass)[:, None]
@@ -70,7 +70,7 @@ class StructureRows(Frozen):
         return found
 
     def by_node(self, values: ComplexArray, nodes: Sequence[int] | IntArray) -> ComplexArray:
-        """Values (..., row) as (..., node, 6) of some nodes; 0 where a node has no row.
+        """Values (..., row) as values (..., node, 6) at some nodes; 0 where a node has no row.
 
         >>> rows = StructureRows(("7y",), np.array([0]), np.array([7]), np.array([1]))
         >>> rows.by_node(np.array([2.0 + 0j]), [3, 7]).real.tolist()[1]
@@ -86,12 +86,12 @@ class StructureRows(Frozen):
 
     @property
     def turn(self) -> bool:
-        """Whether a row is a rotation."""
+        """Whether any row is a rotation."""
         return bool((self.direction > 2).any())
 
 
 def check_nodes(rows: StructureRows) -> None:
-    """Raise ExportError where no row is of a node."""
+    """Raise ExportError if no row belongs to a node."""
     if not rows.nodes.size:
         raise ExportError(
             'no degree of freedom is named by a node and a direction, as "40x"; the first are '
@@ -141,7 +141,7 @@ LIBRARIES = {".vtu": "meshio", ".h5": "h5py", ".hdf5": "h5py"}
 
 
 def check_library(ending: str) -> None:
-    """Raise ExportError where a kind of file is written by a package that is not installed."""
+    """Raise ExportError if the package that writes this kind of file is not installed."""
     package = LIBRARIES.get(ending)
     if package is not None and find_spec(package) is None:
         raise ExportError(f"a {ending} file is written by the package {package}: pip install {package}")

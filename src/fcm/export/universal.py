@@ -23,12 +23,12 @@ _SPECTRUM, _DOUBLE_COMPLEX, _FREQUENCY = 12, 6, 18
 def write_universal(
     motions: Sequence[ResponseMotion], response: Response, scene: Scene, mesh: Mesh | None, path: Path
 ) -> None:
-    """Write a universal file; frequencies in Hz, as its readers take them.
+    """Write a universal file; frequencies are in Hz, as its readers expect.
 
-    Nodes as dataset 2411 where there is a mesh. A dataset 55 of all nodes with rows for each motion and
-    harmonic, complex, in the five digits of the format. A dataset 58 for each reported degree of freedom of a
-    node and each stretch of a curve between two folds: the fundamental against the frequency, complex, in
-    double precision; none of nonlinear modes. Phases are against sin(omega t), as those of the forces.
+    With a mesh, dataset 2411 has the nodes. Each motion and harmonic has a dataset 55: complex, at all nodes
+    with rows, with the five digits of the format. Each reported degree of freedom of a node and each stretch
+    of a curve between two folds has a dataset 58: the complex fundamental over the frequency, in double
+    precision. Nonlinear modes have none. Phases are relative to sin(omega t), as those of the forces.
     """
     rows = StructureRows.of(scene)
     with path.open("w", encoding="ascii", newline="\n") as file:

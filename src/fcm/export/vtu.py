@@ -19,15 +19,15 @@ from fcm.results.motions import ResponseMotion
 def write_vtu(motions: Sequence[ResponseMotion], scene: Scene, mesh: Mesh, path: Path) -> None:
     """Write displacements of all nodes as point data of a VTU file.
 
-    Of each motion and harmonic there are the arrays NAME_h1_real and NAME_h1_imag (node, 3), and NAME_mean;
-    with rotations, those of NAME_rotation_... as well. x = mean + Im((real + i imag) exp(i h omega t)).
+    Each motion has the arrays NAME_mean (node, 3), and for each harmonic NAME_h1_real and NAME_h1_imag
+    (node, 3). Rotations have NAME_rotation_... likewise. x = mean + Im((real + i imag) exp(i h omega t)).
     node_number (node,) has the numbers of the nodes, has_rows (node,) is 1 where the matrices have rows.
     Without elements, each node is a cell of its own.
 
-    Of the contacts there are NAME_energy and NAME_slip_path in a cycle and NAME_greatest_normal_force, each
-    (node,) with 0 at nodes of no contact, and NAME_state: a place among
-    `fcm.results.contact_states.STATES`, -1 there. A node of several contacts has the sum of energies and
-    forces, the longest slip, the highest state. Of a contact between many nodes those of a side share these.
+    The contacts have NAME_energy and NAME_slip_path in a cycle and NAME_greatest_normal_force, each (node,)
+    with 0 at nodes without contact. NAME_state is an index into `fcm.results.contact_states.STATES`, -1
+    without contact. A node of several contacts has the sum of energies and forces, the longest slip path and
+    the highest state. The nodes of one side of a contact share its energy and force.
     """
     import meshio
 
@@ -55,9 +55,9 @@ def write_vtu(motions: Sequence[ResponseMotion], scene: Scene, mesh: Mesh, path:
 
 
 def _shares(scene: Scene, rows: StructureRows, nodes: IntArray) -> FloatArray:
-    """Weights (contact, node) by which each node's motion enters that of its side of a contact.
+    """Weights (contact, node) of each node's motion in the motion of its side of a contact.
 
-    Those of the nodes of a side add up to 1, whatever the weights of rows are.
+    The weights of a side add up to 1 at most, whatever the weights of rows are.
     """
     found = np.zeros((len(scene.contacts), nodes.size))
     for of_contact, contact in zip(found, scene.contacts, strict=True):
@@ -71,7 +71,7 @@ def _shares(scene: Scene, rows: StructureRows, nodes: IntArray) -> FloatArray:
 
 
 def _at_nodes(motion: ResponseMotion, share: FloatArray) -> dict[str, FloatArray]:
-    """The contact loads, and the states of the contacts, at the nodes that they join."""
+    """The loads and states of the contacts at the nodes that they join."""
     assert motion.contact_loads is not None
     normal, _, slip, energy = motion.contact_loads.T
     state, joined = contact_states(motion.states), share > 0.0

@@ -1,4 +1,4 @@
-"""Meshes of other programs: nodes by their numbers, elements, sets of nodes; nodes of two sets in pairs."""
+"""Meshes of other programs: numbered nodes, elements and node sets; pairing of the nodes of two sets."""
 
 from fcm.mesh.mesh import Mesh, MeshError
 from fcm.mesh.read import ENDINGS, read_mesh

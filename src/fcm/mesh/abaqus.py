@@ -1,4 +1,4 @@
-"""Input files of CalculiX and Abaqus: *NODE, *ELEMENT, *NSET, *INCLUDE; of nothing else a mesh is made."""
+"""Read input files of CalculiX and Abaqus: *NODE, *ELEMENT, *NSET, *INCLUDE; others are ignored."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from fcm.mesh.mesh import Mesh, MeshError
 from fcm.quoting import quoted
 
-_SHAPES = {  # the name of an element, of which letters for its formulation may follow
+_SHAPES = {  # by the name of an element, which letters for its formulation may follow
     "C3D4": ("tetra", 4), "C3D10": ("tetra10", 10), "C3D8": ("hexahedron", 8), "C3D20": ("hexahedron20", 20),
     "C3D6": ("wedge", 6), "C3D15": ("wedge15", 15), "S3": ("triangle", 3), "S6": ("triangle6", 6),
     "S4": ("quad", 4), "S8": ("quad8", 8), "M3D3": ("triangle", 3), "M3D4": ("quad", 4),
@@ -33,12 +33,12 @@ class _Deck:
 
 
 def read_abaqus(path: Path) -> Mesh:
-    """The mesh of an input file, flat: without *PART and *INSTANCE, which would number nodes twice.
+    """Read the mesh of a flat input file: one without *INSTANCE, which numbers nodes by part.
 
     Raises
     ------
     MeshError
-        With the line that is wrong, and what is wrong there.
+        With the faulty line and its fault.
     """
     deck = _Deck()
     for keyword, options, where, rows in _blocks(path):
@@ -68,9 +68,9 @@ def read_abaqus(path: Path) -> Mesh:
 def _blocks(
     path: Path, within: tuple[Path, ...] = ()
 ) -> Iterator[tuple[str, dict[str, str], str, list[list[str]]]]:
-    """Yields each keyword with its options, its line, and the words of its data lines.
+    """Yield each keyword with its options, its line, and the words of its data lines.
 
-    Remarks may be in any coding; a number is not. `within` are the files that include this one.
+    Comments may be in any encoding. `within` are the files that include this one.
     """
     if path.resolve() in within:
         raise MeshError("its files include one another")

@@ -26,9 +26,9 @@ class MeshError(ValueError):
 class Mesh(Frozen):
     """Nodes by the numbers that their program gives them.
 
-    nodes (node,); xyz (node, 3), in the unit of the file; cells: the name of a kind of element, as meshio
-    has it, and the places of its nodes (element, node of an element); sets: the nodes of each, by its name in
-    capitals; lacking: kinds of elements that are not known here, and are left out.
+    nodes (node,); xyz (node, 3), in the unit of the file. cells: meshio's name of each kind of element, and
+    the indices of its nodes (element, node of an element). sets: the nodes of each set, by its name in
+    capitals. lacking: unknown kinds of elements, which are left out.
     """
 
     nodes: tuple[int, ...]
@@ -39,7 +39,7 @@ class Mesh(Frozen):
 
     @cached_property
     def place(self) -> dict[int, int]:
-        """The place of each node among the nodes."""
+        """The index of each node in `nodes`."""
         return {node: i for i, node in enumerate(self.nodes)}
 
     def at(self, nodes: tuple[int, ...]) -> FloatArray:

@@ -1,7 +1,7 @@
-"""Meshes of Nastran and Gmsh: elements by meshio, which keeps no numbers of nodes; these are read here.
+"""Read meshes of Nastran and Gmsh: meshio reads the elements, this module the numbers of the nodes.
 
-The nodes of meshio come in the order of the file, as do the numbers: where their coordinates differ, the file
-is refused.
+meshio keeps no numbers of nodes, but the order of the file. The file is refused if the coordinates that
+meshio reads differ from those read here.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def read_gmsh(path: Path) -> Mesh:
 
 
 def _by_entity(words: list[str]) -> tuple[list[int], list[list[float]]]:
-    """Nodes of version 4.1: of each entity first the numbers, then the coordinates."""
+    """Nodes of version 4.1, which has for each entity first the numbers, then the coordinates."""
     nodes, xyz, at = list[int](), list[list[float]](), 4
     for _ in range(int(words[0])):
         count = int(words[at + 3])

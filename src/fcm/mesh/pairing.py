@@ -34,9 +34,9 @@ PAIRING = PairingOptions()
 
 
 class Paired(Frozen):
-    """Nodes of one set with the nearest of another: pairs (pair, 2) of numbers, and how far they are apart.
+    """Pairs (pair, 2) of nodes of one set and the nearest of another, with the distances `apart`.
 
-    alone, other_alone: nodes of either set that have no partner.
+    alone, other_alone: nodes of the first and the second set without a partner.
     """
 
     pairs: tuple[tuple[int, int], ...]
@@ -46,7 +46,7 @@ class Paired(Frozen):
 
 
 def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: float) -> Paired:
-    """Pairs each node of a set with the nearest node of another set, within a tolerance [length].
+    """Pair each node of a set with the nearest node of another set, within a tolerance [length].
 
     Raises
     ------
@@ -60,7 +60,7 @@ def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: floa
     >>> found.pairs, found.alone
     (((1, 7),), (2,))
     """
-    from scipy.spatial import cKDTree  # which scenes without node sets do without
+    from scipy.spatial import cKDTree  # only scenes with node sets need it
 
     shared = sorted(set(one) & set(other))
     if shared:
@@ -92,9 +92,9 @@ def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: floa
 
 
 def nearest_partners(mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> list[int | None]:
-    """Node that is nearer to a pair's first node than its second one, for each pair; None if there is none.
+    """For each pair, the second node of another pair that is nearest to its first node.
 
-    It is looked for among the second nodes of all pairs.
+    None if no such node is nearer than the pair's own second node.
 
     >>> mesh = Mesh((1, 2, 7, 8), np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0]]))
     >>> nearest_partners(mesh, [(1, 8), (2, 7)]), nearest_partners(mesh, [(1, 7), (2, 8)])
@@ -115,7 +115,7 @@ def nearest_partners(mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> list[int |
 class Plane(Frozen):
     """A plane through points: a unit normal and two directions in it at right angles, all (3,).
 
-    off: how far a point is from it at most [length]; size: the extent of the points along it.
+    off: greatest distance of a point from the plane [length]; size: greatest extent of the points.
     """
 
     normal: FloatArray
@@ -170,9 +170,10 @@ def across(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def side(mesh: Mesh, pairs: Sequence[tuple[int, int]], direction: FloatArray) -> float:
-    """How far along a direction (3,) the second side of pairs lies beyond the first [length].
+    """Distance along a direction (3,) by which the second side of pairs lies beyond the first [length].
 
-    That of the elements at their nodes, in the mean; of the nodes themselves where there are no elements.
+    It is measured between the mean centres of the elements at the nodes, or, without elements, between the
+    mean positions of the nodes.
 
     >>> mesh = Mesh((1, 2), np.array([[0.0, 0, 0], [0, 0, 0.1]]))
     >>> side(mesh, [(1, 2)], np.array([0.0, 0.0, 1.0]))
@@ -186,15 +187,17 @@ def side(mesh: Mesh, pairs: Sequence[tuple[int, int]], direction: FloatArray) ->
 
 
 def beyond(mesh: Mesh, nodes: Sequence[int], direction: FloatArray) -> float:
-    """How far along a direction (3,) nodes lie beyond the middle of the elements at them [length]; 0 without
-    elements."""
+    """Distance along a direction (3,) by which nodes lie beyond the centre of their elements [length].
+
+    It is 0 without elements.
+    """
     places = np.array([mesh.place[node] for node in nodes])
     inner = _middle(mesh, places)
     return 0.0 if inner is None else float((mesh.xyz[places].mean(axis=0) - inner) @ direction)
 
 
 def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int]) -> Plane:
-    """The plane with the normal out of the elements at some nodes.
+    """The plane with its normal pointing out of the elements at some nodes.
 
     Raises
     ------
@@ -219,7 +222,7 @@ def turned(plane: Plane, mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> Plane:
 
 
 def _with_side(plane: Plane, along: float, what: str, way: str) -> Plane:
-    """The plane whose normal points where something lies along it; MeshError if nothing does."""
+    """The plane, reversed if `along` is negative; MeshError if `along` is too small to show a side."""
     if abs(along) <= PAIRING.side_tolerance * plane.size:
         raise MeshError(
             f"which side is which is unknown: {what}. Give the normal, as "
@@ -232,7 +235,7 @@ def _with_side(plane: Plane, along: float, what: str, way: str) -> Plane:
 
 
 def _middle(mesh: Mesh, places: IntArray) -> FloatArray | None:
-    """The middle of the elements at some nodes; None without any."""
+    """Mean centre of the elements at some nodes; None without elements."""
     found = [mesh.xyz[cells[np.isin(cells, places).any(axis=1)]].mean(axis=1) for _, cells in mesh.cells]
     centres = np.concatenate([*found, np.zeros((0, 3))])
     if not len(centres):

@@ -1,4 +1,4 @@
-"""A mesh from a file of one of the kinds that are known, by the end of its name."""
+"""Read a mesh from a file; the ending of its name tells its kind."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ COLUMNS = ("node", "x", "y", "z")
 
 
 def read_coordinates(path: Path) -> Mesh:
-    """The nodes of a table; it has no elements.
+    """Read the nodes of a CSV table node,x,y,z; the mesh has no elements.
 
     Raises
     ------
     MeshError
-        With the line that is wrong, and what is wrong there.
+        With the first five faulty lines.
     """
     lines = path.read_text("utf-8-sig").splitlines()
     rows = [(number, line.partition("#")[0]) for number, line in enumerate(lines, 1)]
@@ -65,7 +65,7 @@ def read_mesh(path: Path) -> Mesh:
     Raises
     ------
     MeshError
-        If the file is of no kind that is known, damaged, or does not say the numbers of its nodes.
+        If the file is of an unknown kind, is damaged, or lacks the numbers of its nodes.
     """
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
