@@ -194,7 +194,7 @@ def _unknown(orbits: Orbits) -> int:
 
 
 def _unreached(response: Response) -> list[str]:
-    """Remark on the number of stable motions that no sweep reached, with the first few."""
+    """Remark on the number of lasting motions that neither sweep reached, with the first few."""
     from fcm.units import in_unit
 
     found = [(curve, one, k) for curve in response.curves if (one := curve.orbits) for k in one.unreached]

@@ -1,4 +1,4 @@
-"""The loops that ``fcm plot loop`` draws: of parameters, or of points of a response; names and numbers."""
+"""The loops that ``fcm plot loop`` draws, from parameters or from points of a response."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def of_contact(
 def _loop(
     one: dict[str, float], ratios: tuple[float, float, float], harmonics: Sequence[Harmonic]
 ) -> Loop | PeriodicLoop:
-    """The loop of a contact, dimensionless: in closed form, if there are no harmonics."""
+    """The dimensionless loop of a contact; in closed form if there are no harmonics."""
     import cmath
 
     from fcm.contact import hysteresis_loop, periodic_loop
@@ -212,9 +212,9 @@ def of_file(
     solution: int | None,
     tell: Callable[[str], None],
 ) -> list[Case] | list[PlanarCase] | list[NormalCase]:
-    """The loops of a contact on curves of a response file, at places of each.
+    """The loops of a contact at places of curves of a response file.
 
-    Which contact was taken is told.
+    A message tells which contact was chosen by default.
     """
     from fcm.plot.loop_file import NormalPoint, PlanePoint, busiest, points_at, read_loops
     from fcm.plot.read import read
@@ -238,13 +238,13 @@ def of_file(
                     planar.append(_in_plane(point, point.motion, file, asked))
                 else:
                     cases.append(_on_a_line(point, point.motion, file, asked))
-    for said in filter(None, told):  # not before something is wrong
+    for said in filter(None, told):  # only after all checks
         tell(said)
     return normal or planar or cases
 
 
 def _asked(point: LoopPoint, place: PlaceOnCurve | None, file: LoopFile) -> Name:
-    """The place asked for, where the point that is drawn is beside it: for the picture, see `not_at`."""
+    """The requested place, for the picture, if the drawn point is not at it; for messages see `not_at`."""
     from fcm.plot.read import asked_beside
 
     if place is None:
@@ -255,7 +255,7 @@ def _asked(point: LoopPoint, place: PlaceOnCurve | None, file: LoopFile) -> Name
 
 
 def _said(point: LoopPoint, file: LoopFile, asked: Name) -> tuple[tuple[Name, ...], str, dict[str, Any]]:
-    """The names of a point in a picture, what else is to be said of it, and for --json."""
+    """The names of a point in a picture, further text on it, and its data for --json."""
     from fcm.plot.labels import curve_label
 
     unit, modal = file.unit, point.modal_amplitude

@@ -11,7 +11,7 @@ from fcm.units import unit_of_number
 if TYPE_CHECKING:
     from fcm.cli.loop_cases import Case, NormalCase
 
-WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: of two columns, of one, of one loop of several
+WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: two columns, one column, one loop of several
 _SYMBOL = {
     "n0_bar": r"$\bar{n}_0$", "b_bar": r"$\bar{b}$", "mu": r"$\mu$", "k_u": "$k_u$", "k_v": "$k_v$",
     "n_0": "$n_0$", "a": "$a$", "b": "$b$",
@@ -57,7 +57,7 @@ def titles(cases: Sequence[Case | NormalCase]) -> tuple[str, list[str]]:
 
 
 def _lines(names: Iterable[Name], most: int) -> list[str]:
-    """The names in lines of at most so many characters, if each is short enough."""
+    """The names in lines of at most `most` characters, unless a name alone is longer."""
     lines: list[list[Name]] = []
     for name in (name for name in names if name.plain):
         if lines and sum(len(one.plain) + 2 for one in lines[-1]) + len(name.plain) <= most:

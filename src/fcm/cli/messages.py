@@ -15,14 +15,17 @@ from fcm.resources import duration
 
 @dataclass
 class Messages:
-    """``verbosity``: -1 errors only, 0 as usual, 1 and more with details; settings of the whole run."""
+    """Messages of a command, with the settings of the whole run.
+
+    verbosity: -1 errors only, 0 as usual, 1 and more with details.
+    """
 
     verbosity: int = 0
     settings: Settings = SETTINGS
     _drawn: float = field(default=0.0, repr=False)
     _width: int = field(default=0, repr=False)
     _share: float = field(default=0.0, repr=False)
-    _curves: int = field(default=0, repr=False)  # that are to come, until their time is said
+    _curves: int = field(default=0, repr=False)  # expected curves; 0 after their time is printed
     _begun: float = field(default=0.0, repr=False)
     _waited: tuple[float, float] | None = field(default=None, repr=False)  # since when, and for how long [s]
 
@@ -34,7 +37,7 @@ class Messages:
             self._say(f"fcm: warning: {text}")
 
     def note(self, text: str) -> None:
-        """Prints a note on how a scene was read; as a warning if it is hardly meant."""
+        """Print a note on how a scene was read; a `Question`, a doubt about its meaning, is a warning."""
         if isinstance(text, Question):
             self.warning(text)
         else:
@@ -49,13 +52,13 @@ class Messages:
             self._say(text)
 
     def expect(self, curves: int) -> None:
-        """Prepares for a number of curves: after as much work as one takes the time of all is said once."""
+        """Prepare for a number of curves; after the work of one curve, the time of all is printed once."""
         self._curves, self._begun = curves if curves > 1 else 0, self.settings.clock()
 
     def progress(self, fraction: float, text: str = "") -> None:
         """Redraw the progress line, not too often; it never goes back.
 
-        Where there is no terminal a line is said, each after twice the time of the one before.
+        Without a terminal, lines are printed, each after twice the time of the one before.
         """
         now, remarks = self.settings.clock(), self.settings.remarks
         self._share = min(max(fraction, self._share), 1.0)
@@ -73,7 +76,7 @@ class Messages:
         self._drawn, self._width = now, len(line)
 
     def _say_progress(self, now: float, text: str) -> None:
-        """How far the run is, as a line of its own."""
+        """Print the progress as a line of its own, after twice the time of the one before."""
         if self._waited is None:
             self._waited = now, self.settings.remarks.first_line
         since, wait = self._waited
@@ -82,7 +85,7 @@ class Messages:
             self.info(f"{int(100 * self._share)} % after {duration(now - since)}: {text}".rstrip(": "))
 
     def _say_time(self, taken: float) -> None:
-        """How long all curves take, where that is long."""
+        """Print how long all curves take, if that is long."""
         curves, self._curves = self._curves, 0
         every = taken / self._share
         if every > self.settings.remarks.long_run and self._share < 1.0:
@@ -91,11 +94,11 @@ class Messages:
 
     def _say(self, text: str) -> None:
         self.clear()
-        with suppress(OSError):  # a terminal that was closed takes no calculation with it
+        with suppress(OSError):  # a closed terminal does not stop the calculation
             click.echo(text, err=True)
 
     def clear(self) -> None:
-        """Take the progress line away."""
+        """Remove the progress line."""
         if self._width:
             self._draw(" " * self._width)
             self._draw("")

@@ -1,4 +1,4 @@
-"""``fcm plot modes SCENE``: the modes of a scene and what moves them, before anything is solved."""
+"""``fcm plot modes SCENE``: the modes of a scene and their participation, before anything is solved."""
 
 from __future__ import annotations
 
@@ -111,9 +111,9 @@ def as_table(found: dict[str, Any]) -> str:
 
 
 def _stiffness(found: dict[str, Any]) -> str:
-    """The stiffness of contacts beside that of the structure at them; empty without contacts.
+    """Table of the stiffness of contacts and of the structure at them; empty without contacts.
 
-    Of many those of the greatest ratio.
+    With many contacts, those with the greatest ratio are listed.
     """
     every = found.get("stiffness", {})
     if not every:
@@ -212,7 +212,7 @@ def _lines(found: dict[str, Any], directions: list[str]) -> str:
 
 
 def _listed(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The modes that have a line: of those that stand for flexibility, which no one looks up, the first."""
+    """The modes that have a line: all but those for flexibility, of which only the first few do."""
     from fcm.scene.listing import FLEXIBILITY
 
     flexible = [i for i, mode in enumerate(modes) if mode["kind"] == FLEXIBILITY]
@@ -221,8 +221,7 @@ def _listed(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _shown(found: dict[str, Any]) -> list[str]:
-    """The directions that fit beside each other: those of the first contact and a force, then other forces
-    and contacts."""
+    """The directions that fit on a line: the first contact's and a force, then other forces and contacts."""
     every = list(found["modes"][0]["participation"])
     contacts = [name for name in every if name.startswith("contact.")]
     whole = 1 + next((i for i, name in enumerate(contacts) if name.endswith(".normal")), -1)
@@ -237,7 +236,7 @@ def _shown(found: dict[str, Any]) -> list[str]:
 
 
 def _short(direction: str) -> str:
-    """A key path without what says itself.
+    """A direction without the prefix ``contact.``.
 
     >>> _short("contact.shroud.tangential"), _short("force.71x")
     ('shroud.tangential', 'force.71x')

@@ -25,7 +25,7 @@ from fcm.cli.columns import (
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import dof_unit, greatest_first
 
-OF_NO_USE = {  # with --mode, and why
+OF_NO_USE = {  # options of no use with --mode, and the reasons
     "method": "modes are followed by harmonic balance",
     "table": "their forces are exact",
     "tolerance": "nothing is left out",
@@ -40,7 +40,7 @@ def check_options(
     at: tuple[float, ...] | None,
     force_levels: tuple[float, ...],
 ) -> None:
-    """A usage error if --mode lacks its span, or is given with what means nothing then."""
+    """Raise a usage error if --mode lacks its span, or is combined with options of no use with it."""
     if mode is None and force_levels:
         raise click.UsageError("--force-level needs --mode: from a nonlinear mode it predicts the response.")
     if mode is None:
@@ -86,7 +86,7 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
 
 
 def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[str]) -> str:
-    """The table, with or without the columns of what a curve cost."""
+    """The table; `cost` are the columns on the cost of a curve, if any."""
     broken = [""] if any(not curve["complete"] for curve in summary["curves"]) else []
     header = [*names, f"frequency {unit}", f"to {unit}", "damping", "to", "greatest", f"at {unit}",
               "harmonics", "error", *cost, f"resonances at {unit}", *broken]  # fmt: skip
@@ -136,7 +136,7 @@ def outside_range(summary: Mapping[str, Any]) -> str:
 
 
 def internal_resonance(summary: Mapping[str, Any]) -> str:
-    """Caveat on modal amplitudes at which much of a mode's power is in further harmonics; or ''."""
+    """Caveat on modal amplitudes at which higher harmonics have much of a mode's power; or ''."""
     modes = [curve["mode"] for curve in summary["curves"] if curve.get("mode")]
     found = [mode for mode in modes if mode.get("internal_resonance")]
     if not found:
@@ -185,8 +185,10 @@ def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> st
 
 
 def _shown(summary: Mapping[str, Any]) -> list[str]:
-    """The degrees of freedom that fit on a line: of those that the scene asks for, where it does, those that
-    move most in the mode."""
+    """The degrees of freedom that fit on a line: those that move most in the mode.
+
+    They are among those that the scene asks for, if any.
+    """
     first = next((curve["mode"] for curve in summary["curves"] if curve.get("mode")), None)
     if first is None:
         return []
@@ -197,7 +199,7 @@ def _shown(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _of_dofs(summary: Mapping[str, Any]) -> str:
-    """Remark on the displacements of a modal amplitude of 1, by which its span is chosen; or ''."""
+    """Remark on the displacements at a modal amplitude of 1, which help to choose its span; or ''."""
     first = next((curve["mode"] for curve in summary["curves"] if curve.get("mode")), None)
     if first is None:
         return ""

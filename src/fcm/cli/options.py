@@ -1,4 +1,4 @@
-"""The options that every command has, ``-v`` and ``-q``, and numbers of options that are finite."""
+"""The options ``-v`` and ``-q`` of every command, and a type for finite numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fcm.cli.messages import Messages
 
 
 class FiniteRange(click.FloatRange):
-    """A `click.FloatRange` without nan, which is in every range there, and without inf."""
+    """A `click.FloatRange` that refuses inf and nan, which passes every range of click."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a usage error."""
@@ -32,7 +32,7 @@ def _quieter(ctx: click.Context, _param: click.Parameter, quiet: bool) -> None:
 
 
 def add_verbosity(command: click.Command) -> None:
-    """Give a command the options, unless it has options of those names already."""
+    """Give a command the options ``-v`` and ``-q``, unless it has options of these names."""
     taken = {name for param in command.params for name in param.opts}
     options = (
         click.Option(
@@ -47,7 +47,7 @@ def add_verbosity(command: click.Command) -> None:
 
 
 def complete_scene(_ctx: click.Context, _param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Names of bundled scenes that begin so, and that the shell completes names of files, too."""
+    """Completions: names of bundled scenes that begin so, and names of files by the shell."""
     from fcm.scene import bundled_scenes
 
     names = [CompletionItem(name) for name in bundled_scenes() if name.startswith(incomplete)]

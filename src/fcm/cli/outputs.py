@@ -1,4 +1,4 @@
-"""The files of ``fcm respond``: written whole, and what they are made of kept until they are."""
+"""The output files of ``fcm respond``; a checkpoint keeps the curves until these are written."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Outputs:
 
     @contextmanager
     def kept(self, resume: bool) -> Iterator[CheckpointFile | None]:
-        """Context with a checkpoint beside the first file, for as long as the files are not written."""
+        """Context with a checkpoint beside the first file, until the files are written."""
         files = [path for path in (self.output, self.csv, self.history_csv) if path is not None]
         files += [path for path, _ in self.exported]
         if not files:
@@ -53,7 +53,7 @@ class Outputs:
         from fcm.run.checkpoint_file import unfinished
 
         with ExitStack() as held:
-            with signals.undisturbed():  # a file that is made is one that is removed
+            with signals.undisturbed():  # a signal cannot leave a created file behind
                 self.checkpoint = held.enter_context(CheckpointFile(unfinished(anchor), resume))
             held.enter_context(alone(files[1:]))
             if resume and not self.checkpoint.resumable and not self.checkpoint.set_aside:
@@ -76,7 +76,7 @@ class Outputs:
         try:
             for path, write in self._files(response):
                 self._write(response, path, write)
-        finally:  # a full disk does not take the result away
+        finally:  # the result is printed even if the disk is full
             text = json.dumps(result, indent=2, allow_nan=False) if to_json else _tables(result, response)
             click.echo(text)
         if response.interrupted:
@@ -108,7 +108,7 @@ class Outputs:
         return [*((path, write) for path, write in files if path is not None), *self.exported]
 
     def _write(self, response: Response, path: Path, write: Callable[[Response, Path], None]) -> None:
-        """Write a file; a part does not take the place of what an earlier run has finished, nor of more."""
+        """Write a file; a partial result does not replace a finished one, or one with more points."""
         part = self.checkpoint if response.interrupted else None
         points = sum(curve.points for curve in response.curves)
         if part is not None and path.exists():
@@ -127,7 +127,7 @@ class Outputs:
         self.messages.info(wrote(path, since_then=earlier))
 
     def _say_kept(self, what: str, nothing: str) -> None:
-        """Says where work is kept that can be continued, or that there is none."""
+        """Warn where unfinished work is kept for --resume; without any, print `nothing`."""
         if self.checkpoint is not None and self.checkpoint.resumable:
             self.messages.warning(f"{what} in {plain(self.checkpoint.path)}: continue with --resume")
         elif nothing:

@@ -21,14 +21,14 @@ from fcm.table.tabulated import Resolution
 def reached(
     messages: Messages, scene: str, output: Path, resolution: Resolution, progress: Progress | None = None
 ) -> TablePart:
-    """The nodes that the response of a scene looks up, traced with the closed form.
+    """The nodes of a table that the response of a scene needs, found by a trace with the closed form.
 
-    The output must be no file of the scene.
+    The output must not be a file of the scene.
 
     Raises
     ------
     TableError
-        If it looks nothing up, as the contacts never slip or open part of a cycle.
+        If no node is needed, because no contact slips or opens for part of a cycle.
     """
     from fcm.response import trace
     from fcm.run import Execution
@@ -55,9 +55,9 @@ def reached(
 
 
 def saving(path: Path, part: TablePart) -> tuple[dict[str, Any], str]:
-    """How much smaller and faster the part in a file is than all nodes of its resolution.
+    """How much smaller and faster the part of a table in a file is than the whole of its resolution.
 
-    All nodes are not built for that: their time is that of a part times their number.
+    The whole is not built; its time is estimated in proportion to the number of nodes.
     """
     whole = TablePart.all_of(part.resolution)
     build = _seconds(lambda: charts(part), 1)
@@ -86,7 +86,7 @@ def saving(path: Path, part: TablePart) -> tuple[dict[str, Any], str]:
 
 
 def _shipped(resolution: Resolution) -> Path | None:
-    """The table of that resolution that comes with fcm."""
+    """The shipped table of this resolution; None if there is none."""
     from fcm.table.nodes import PRESETS
     from fcm.table.shipped import DEFAULT
 

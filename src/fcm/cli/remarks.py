@@ -35,20 +35,20 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
 
 
-_TABLE = "the table: "  # how one begins that says why there is none
-_NO_EFFECT = "(no effect)"  # how a sentence ends on what is left out, and is the same without it
+_TABLE = "the table: "  # begin of a remark on why no table is used
+_NO_EFFECT = "(no effect)"  # end of a remark on parts whose omission has no effect
 
 
 class Announced(NamedTuple):
     """What is known of a calculation before it begins."""
 
-    resonant: bool  # whether a resonance is near the range of frequencies, as far as that is known
+    resonant: bool  # whether a resonance is near the range of frequencies, as far as known
     harmonics_given: bool
     constant_loads: tuple[str, ...]  # names of contacts that no motion loads
 
 
 def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
-    """Announces what is going to be computed; without being asked only where that is a great deal."""
+    """Announce the calculation and doubts about it; its size without --verbose only if it is large."""
     from fcm.scene.listing import resonance_doubt
     from fcm.scene.rules import least_points
     from fcm.scene.unclosed_gaps import constant_loads
@@ -70,12 +70,12 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> Announced:
 
 
 def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
-    """Says which contacts the static loads of a curve close: a sign may be wrong, or a bolt too weak."""
+    """Report which contacts the static loads of a curve close, to show wrong signs or too weak bolts."""
     from fcm.harmonic_balance.static_equilibrium import RestError, normal_forces_at_rest
 
     try:
         forces = normal_forces_at_rest(scene)
-    except RestError:  # the curve says it
+    except RestError:  # the curve reports it
         return
     closed, count, unit = int((forces > 0.0).sum()), forces.size, scene.units[1]
     under = f"under the static loads{of}"
@@ -97,10 +97,10 @@ def close(
     announced: Announced,
     table_wanted: bool,
 ) -> None:
-    """Prints what the run left out, its cost and error; sets the exit code of one that stopped early.
+    """Print what the run left out, its cost and its error; set the exit code of an early stop.
 
-    What a table has to do with it is said where the command line asks for one. That contacts change no state
-    is said where a resonance is near the range: elsewhere it is no wonder.
+    Remarks on a table are printed if the command line asks for one. A linear response is remarked on only if
+    a resonance is near the range, because elsewhere it is expected.
     """
     for text in dict.fromkeys(defects):
         messages.detail(text)
@@ -143,7 +143,7 @@ def close(
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))
-    before = lacks_modes(result)  # which is warned of before the calculation
+    before = lacks_modes(result)  # announced before the calculation
     if line := verdict(result, before + sum(map(bool, [*remarks, *warnings]))):
         messages.info(line)
     if stopped := " and ".join(

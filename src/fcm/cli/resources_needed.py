@@ -1,4 +1,4 @@
-"""Tells what a run will take where that is a great deal, and refuses it where there is no room."""
+"""Report the resources that a large run needs, and refuse a run for which there is no room."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ if TYPE_CHECKING:
 
 
 def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> None:
-    """Say what so many curves take where that is much, before any of them is made.
+    """Report, before any curve is traced, what many curves need if that is much.
 
     Raises
     ------
     ResponseError
-        If memory or disk cannot hold them: with what they take at the least, what there is, and what takes
-        less.
+        If memory or disk cannot hold them. The message has the least need, the room, and a way to need less.
     """
     from fcm.response.request import ResponseError
     from fcm.results.size import bytes_of_matrices, bytes_of_results

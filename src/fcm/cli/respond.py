@@ -77,7 +77,7 @@ def _compare(messages: Messages, scene: str, asked: Asked) -> None:
 
 
 def _check_options(asked: Asked) -> None:
-    """A usage error if options exclude or need one another, whatever the scene."""
+    """Raise a usage error if options exclude or need one another, whatever the scene."""
     level, mode, method = asked.level, asked.mode, asked.method
     _check_cluster(asked.cluster, level)
     _check_left_out(asked)
@@ -109,7 +109,7 @@ def _files(asked: Asked) -> dict[str, Path | None]:
 
 
 def _wants_table(asked: Asked) -> bool:
-    """Whether the command line says that a table is to be used."""
+    """Whether the command line asks for a table."""
     given = click.get_current_context().get_parameter_source("method")
     return asked.table is not None or (asked.method == "table" and given is ParameterSource.COMMANDLINE)
 
@@ -121,7 +121,7 @@ def _check_left_out(asked: Asked) -> None:
 
 
 def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.Exporting | None]:
-    """The scene at the degrees of freedom in use, and what is to be exported of it."""
+    """The scene at the degrees of freedom in use, and its export, if any."""
     from fcm.response.visible_dofs import check_solvable
     from fcm.scene import load_scene
     from fcm.scene.options import MESSAGES
@@ -145,7 +145,7 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
 
 
 def _check_cluster(address: str | None, level: object) -> None:
-    """A usage error if there are options beside the address of a cluster that have no meaning then."""
+    """Raise a usage error if options are of no use with a cluster."""
     if address is None:
         return
     if level is not None:
@@ -158,7 +158,7 @@ def _check_cluster(address: str | None, level: object) -> None:
 
 
 def _place_of(address: str | None, options: RunOptions | None) -> AbstractContextManager[Factory | None]:
-    """Context with the place to compute: a cluster, for as long as it is open; None for this machine."""
+    """Context with the place to compute: a cluster, while it is open; None for this machine."""
     if address is None:
         return nullcontext()
     from fcm.run.cluster import connected
@@ -167,12 +167,12 @@ def _place_of(address: str | None, options: RunOptions | None) -> AbstractContex
 
 
 def _with_step(scene: Scene, asked: Asked) -> Scene:
-    """The scene with the longest step that is asked for."""
+    """The scene with the requested longest step."""
     return scene if asked.max_step is None else scene.with_step(asked.max_step)
 
 
 def _check_scene(scene: Scene, asked: Asked) -> None:
-    """A usage error if options mean nothing with this scene."""
+    """Raise a usage error if options are of no use with this scene."""
     if scene.fit is not None:
         fit.check_scene(scene, asked)
     if asked.sensitivity:

@@ -1,4 +1,4 @@
-"""The options of ``fcm respond``: how they are written, and what was asked for with them."""
+"""The options of ``fcm respond``, and their values."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _keys(_ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
 
 
 def _of_key(line: tuple[str, str, str, str]) -> str:
-    """A key with its meaning, and below what it may be and what it is when it is not given.
+    """A key with its meaning, and below it the kind of value and the default.
 
     >>> print(_of_key(("force[].phase", "number", "0", "of the force")))
     force[].phase: of the force

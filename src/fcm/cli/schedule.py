@@ -1,4 +1,4 @@
-"""The schedule of a scene in ``fcm respond``: simulated, reported, and what it costs."""
+"""The schedule of a scene in ``fcm respond``: simulation, tables and cost."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
 
-_OF_CURVES = {  # options that mean nothing without a range of frequencies
+_OF_CURVES = {  # options of no use without a range of frequencies
     "method": "--method", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
     "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
 }  # fmt: skip
 
 
 def check_options(scene: Scene, history_csv: Path | None) -> None:
-    """Refuse options that concern curves where the scene has none, or motion where it has none."""
+    """Raise a usage error for options on curves or on motion if the scene has no such result."""
     if history_csv is not None and not scene.schedule:
         raise click.UsageError(f"--history-csv is of no use: {scene.name} has no [[schedule]].")
     context = click.get_current_context()
@@ -47,7 +47,7 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
 
 
 def simulated(messages: Messages, scene: Scene, response: Response, keep: CheckpointFile | None) -> Histories:
-    """The motion through the schedule, after the curves; an interruption does not take those away."""
+    """Simulate the motion through the schedule, after the curves; an interruption keeps the curves."""
     from fcm.response import scheduled
     from fcm.run.progress import part
     from fcm.time_domain.histories import not_begun
@@ -66,7 +66,7 @@ def simulated(messages: Messages, scene: Scene, response: Response, keep: Checkp
 
 
 def write_csv(response: Response, path: Path) -> None:
-    """Writes the motion as CSV."""
+    """Write the motion as CSV."""
     from fcm.time_domain.history_output import write_csv
 
     if response.histories is not None:
@@ -124,7 +124,7 @@ def _settled(phase: Mapping[str, Any]) -> str:
 
 
 def cost_and_error(histories: Sequence[Summary]) -> str:
-    """Lines on the cost and error of a simulation, and on what is kept of it."""
+    """Lines on the cost and error of a simulation, and on the cycles that are kept."""
     cycles = sum(one["cycles"] for one in histories)
     transitions = sum(one["transitions"] for one in histories)
     every = histories[0]["cycles_per_sampled_cycle"]

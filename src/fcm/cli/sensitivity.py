@@ -1,4 +1,4 @@
-"""``fcm respond --sensitivity``: what the numbers of a scene do to its peaks."""
+"""``fcm respond --sensitivity``: the effect of the numbers of a scene on its peaks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check_options(wanted: bool, method: str, level: object, mode: int | None, peaks_only: bool) -> None:
-    """A usage error if --sensitivity is given with what has no peaks of a balance."""
+    """Raise a usage error if --sensitivity is given without peaks of harmonic balance."""
     if wanted and method == "exact":
         raise click.UsageError(
             "--sensitivity is of no use with --method exact: it is of the peaks of harmonic balance."
@@ -28,9 +28,9 @@ def check_options(wanted: bool, method: str, level: object, mode: int | None, pe
 
 
 def added(messages: Messages, response: Response, scene: Scene, shown: bool) -> None:
-    """Give the curves of a response the sensitivities of their peaks; interrupted, no time is left for it.
+    """Add the sensitivities of their peaks to the curves of a response; not after an interruption.
 
-    Tables have none, so it is said where nothing has them.
+    Printed tables do not have them, so a message tells if no output has them.
     """
     from fcm.response.sensitivity import add_sensitivities, remarks, without_sensitivities
 

@@ -25,24 +25,24 @@ class Settings(Frozen):
     Attributes
     ----------
     remarks : RemarkOptions
-        How much is said.
+        How much is printed.
     reading : MessageOptions, optional
-        How much of it while a scene is read; the default where nothing is given.
+        How much is printed while a scene is read; None for the default.
     response : ResponseOptions, optional
         Tolerances and limits of responses.
     compare : CompareOptions, optional
-        Those of ``--compare``.
+        Tolerances and limits of ``--compare``.
     run : RunOptions, optional
-        How long workers and schedulers are waited for.
+        Waiting times for workers and schedulers.
     place : Factory, optional
-        Where the curves of sweeps are computed, as `fcm.run.place_of` an executor says it; without it and
-        ``--cluster`` in processes of this machine.
+        Where the curves of sweeps are computed, such as `fcm.run.place_of` an executor. Without it and
+        ``--cluster``, they are computed in processes of this machine.
     memory : callable
-        [byte] that this process can still take.
+        Memory [byte] that this process can still take.
     disk : callable
-        [byte] that files in a folder can still take.
+        Space [byte] that files in a folder can still take.
     clock : callable
-        [s] since some moment.
+        Time [s] since a fixed moment.
     """
 
     remarks: RemarkOptions = SENTENCES

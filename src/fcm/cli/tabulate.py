@@ -104,7 +104,7 @@ def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int,
 
 
 def _alone(ctx: click.Context, option: str) -> None:
-    """An option that builds nothing has no use for those that say what to build, nor for another such."""
+    """Raise a usage error if an option that builds no table is combined with others of this command."""
     for name in {"output", "preset", "nodes", "scene", "points", "verify", "study"} - {option}:
         if ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
             raise click.UsageError(f"--{'for' if name == 'scene' else name} is of no use with --{option}.")
@@ -173,7 +173,7 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
 
 
 def _measured(table: Table, later: int, progress: Callable[[float], None]) -> dict[str, Any]:
-    """The error at as many points as the table's own; at the same ones, or those of a later seed."""
+    """The error of a table at its recorded number of points; `later` shifts the seed that draws them."""
     from fcm.table.error import error_of, sample
 
     recorded, drawn = table.error, sample if table.part.whole else table.part.sample

@@ -1,4 +1,4 @@
-"""The one place through which text goes to a terminal: names in it cannot command it."""
+"""The only place that writes text to a terminal: names in the text cannot send it control codes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 import sys
 from typing import Any, TextIO
 
-# controls, what cannot be seen, ends of lines, directions of writing, halves of characters, tags
+# controls, invisible characters, line ends, writing directions, surrogates, tags
 _ACTED_UPON = (
     "\x00-\x09\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
     "\ud800-\udfff\U000e0000-\U000e007f"
@@ -17,7 +17,7 @@ _IN_NAME = re.compile(f"[{_ACTED_UPON}\n]")
 
 
 def plain(name: object, several_lines: bool = False) -> str:
-    r"""A name without characters that a terminal acts upon; they are escaped instead.
+    r"""The name with characters that a terminal acts upon escaped.
 
     >>> print(plain("a\x1b[31m\nb"))
     a\x1b[31m\nb
@@ -30,20 +30,20 @@ def _escaped(found: re.Match[str]) -> str:
 
 
 class Terminal:
-    """A stream as it was, but for what is written to it."""
+    """A stream that escapes the text written to it."""
 
     def __init__(self, stream: TextIO) -> None:
         self.stream = stream
 
     def write(self, text: str) -> int:
         """Write text of several lines."""
-        if not isinstance(text, str):  # click tries whether it takes bytes
+        if not isinstance(text, str):  # click tests whether it accepts bytes
             raise TypeError(f"text is written here, not {type(text).__name__}")
         self.stream.write(plain(text, several_lines=True))
         return len(text)
 
     def redraw(self, text: str) -> None:
-        """Write over the line that was written last."""
+        """Overwrite the last line."""
         self.stream.write("\r" + plain(text))
         self.stream.flush()
 
@@ -52,9 +52,9 @@ class Terminal:
 
 
 def streams() -> None:
-    """Standard output and error as such streams; where the shell has closed one, it leads nowhere.
+    """Make standard output and error such streams; a stream closed by the shell becomes the null device.
 
-    A file that is opened later would otherwise get the number of a closed one, and what libraries say.
+    Otherwise a file opened later would get the number of a closed stream, and the prints of libraries.
     """
     while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(number, True)
@@ -63,13 +63,13 @@ def streams() -> None:
         stream = getattr(sys, name) or open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
         if isinstance(stream, Terminal):
             continue
-        if hasattr(stream, "reconfigure"):  # characters that the terminal does not have are escaped as well
+        if hasattr(stream, "reconfigure"):  # escapes characters that the terminal lacks, too
             stream.reconfigure(errors="backslashreplace")
         setattr(sys, name, Terminal(stream))
 
 
 def give_back() -> None:
-    """Restores the streams."""
+    """Restore the streams."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if isinstance(stream, Terminal):

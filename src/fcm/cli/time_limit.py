@@ -21,9 +21,9 @@ def seconds(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 
 
 class TimeLimit:
-    """``with TimeLimit(messages, 60.0):`` what is interrupted after so many seconds; None for no limit.
+    """``with TimeLimit(messages, 60.0):`` interrupts its block after so many seconds; None for no limit.
 
-    An interruption, by the limit or not, is said at once.
+    Any interruption, by the limit or not, is reported at once.
     """
 
     def __init__(self, messages: Messages, limit: float | None) -> None:

@@ -1,4 +1,4 @@
-"""``--track``, and scenes with an [optimum]: what is asked for, and what is said of it."""
+"""``--track``, and scenes with an [optimum]: checks of the options, and text output."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SAID = {
     UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
     UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}{HARMONICS_HELP}",
 }
-OF_NO_USE = {  # beside --track, and why
+OF_NO_USE = {  # options of no use with --track, and the reasons
     "level": "give --over level instead",
     "at": "every frequency of the range is looked at",
     "table": "its points are exact",
@@ -49,7 +49,7 @@ OF_NO_USE = {  # beside --track, and why
 
 
 def _only_one(context: click.Context, parameter: click.Parameter, given: tuple[str, ...]) -> str | None:
-    """The last of several would be taken, and the others left out unsaid."""
+    """Callback that refuses a repeated option; click would silently take the last value."""
     if len(given) > 1:
         all_of = ", ".join(map(plain, given))
         what = {"track": "points of one kind", "over": "them in one number"}[str(parameter.name)]
@@ -84,7 +84,7 @@ def track_options(command: Any) -> Any:
 def check_options(
     track: str | None, over: str | None, low: float | None, high: float | None, method: str
 ) -> None:
-    """A usage error if these are given in part, or beside what means nothing then."""
+    """Raise a usage error if only some of these options are given, or others of no use with them."""
     rest = {"--over": over, "--from": low, "--to": high}
     if track is None:
         given = [name for name, value in rest.items() if value is not None]
@@ -108,7 +108,7 @@ def check_options(
 def tracked(
     messages: Messages, scene: Scene, asked: TrackRequest, execution: Execution, options: dict[str, Any]
 ) -> Response:
-    """The curves that were asked for."""
+    """Track the requested curves."""
     from fcm.response.track import SpanError, track
 
     try:
@@ -131,7 +131,7 @@ def optimised(
 
 
 def check_scene(scene: Scene, method: str, other: bool) -> None:
-    """A usage error if a scene with an [optimum] is asked for what has no meaning with it."""
+    """Raise a usage error if an option is of no use with an [optimum]."""
     if method == "exact":
         raise click.UsageError(
             "--method exact is of no use with [optimum]: its peaks are followed by harmonic balance."
@@ -147,7 +147,7 @@ def as_table(result: Mapping[str, Any], unit: str) -> str:
     """A line for each optimum, one for each tracked curve, and one for each place where a number turns."""
     optima = result.get("optimum", [])
     there = result.get("curves", ())
-    curves = there if len(there) == len(optima) else [{}] * len(optima)  # none where it was interrupted
+    curves = there if len(there) == len(optima) else [{}] * len(optima)  # none after an interruption
     parts = [_optimum(one, curve, unit) for one, curve in zip(optima, curves, strict=True)]
     tracked = result["tracked"]
     if tracked["what"] != "optimum":
@@ -156,7 +156,7 @@ def as_table(result: Mapping[str, Any], unit: str) -> str:
 
 
 def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str:
-    """Sentence on the least value, where it is, and how sure that is."""
+    """Sentence on the least value, its place, and its certainty."""
     where = ", ".join(f"{plain(key)} = {value:.6g}" for key, value in one["values"].items())
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
@@ -186,7 +186,7 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
 
 
 def _lacking(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
-    """Remark that the response there, which is traced alone, lacks the least peak; or ''."""
+    """Remark that the response at the optimum, traced on its own, lacks the least peak; or ''."""
     dofs = {name.partition(".")[2] for name in one["minimise"]}
     told = [curve.get("peak", {}).get(dof) or {} for dof in dofs]
     greatest = max((peak.get("amplitude") or 0.0 for peak in told), default=0.0)
@@ -259,7 +259,7 @@ def _tried(one: Mapping[str, Any]) -> str:
 
 
 def _at_corner(one: Mapping[str, Any], unit: str) -> str:
-    """Clause that the response has a corner there, or that the frequency range ends."""
+    """Clause that the peak has a corner at the optimum, or leaves the range of frequencies there."""
     if (at := one["leaves_range"]) is None:
         return ", at a corner: on both sides the peak rises at once"
     return (
@@ -284,7 +284,7 @@ def _where_higher_ends(one: Mapping[str, Any], unit: str) -> str:
 
 
 def _error(one: Mapping[str, Any]) -> str:
-    """Clause on the error of the least peak; of equal peaks the greatest."""
+    """Clause on the error of the least peak; for equal peaks, the greatest error."""
     count = len(one["at"])
     of = f", the greatest of {count} equal peaks" if count > 1 and one["error"] else ""
     large = one["error"] is not None and one["error"] > SENTENCES.doubtful_error
@@ -292,7 +292,7 @@ def _error(one: Mapping[str, Any]) -> str:
 
 
 def _higher(one: Mapping[str, Any]) -> str:
-    """Warning that this is not the least, where the response has a higher peak not followed; or ''."""
+    """Warning that this is not the least, because the response has a higher peak not followed; or ''."""
     if (higher := one["higher"]) is None:
         return ""
     what = f"a higher {plain(higher['what'])}, {higher['value']:.6g}, on a branch that the search has not"
@@ -307,9 +307,9 @@ def _flat(one: Mapping[str, Any]) -> str:
 
 
 def _stays(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
-    """Clause where no motion stays at the least peak, or where that is unknown.
+    """Clause if the least peak is unstable or of unknown stability; or ''.
 
-    curve: the response there.
+    curve: the response at the optimum.
     """
     found = [place["stable"] for place in one["at"]]
     lost = [place for place in one["at"] if place["stable"] is not True and nowhere_stable(curve, place)]
@@ -319,7 +319,7 @@ def _stays(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
 
 
 def _ranges(one: Mapping[str, Any]) -> str:
-    """Clause where residual friction may change the least peak, or where that is unknown."""
+    """Clause if residual friction may change the least peak, or if that is unknown; or ''."""
     found = [place["residual_change"] for place in one["at"]]
     if one["kind"] == "unfinished" or not found:
         return ""
@@ -346,7 +346,7 @@ def _curves(tracked: Mapping[str, Any], unit: str) -> str:
 
 
 def _swept(tracked: Mapping[str, Any]) -> list[str]:
-    """The names of the numbers that are swept besides."""
+    """The names of the further swept numbers."""
     from fcm.plot.labels import short_names
 
     return list(short_names(tracked["curves"][0]["parameters"]).values()) if tracked["curves"] else []
@@ -370,7 +370,7 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
         for key, said in (("not_stable", "not stable"), ("stability_untold", "stability unknown")):
             for one in curve.get(key, ()):
                 ends = [f"{value:.6g}" for key in ("number", "frequency") for value in one[key]]
-                if ends[0] == ends[1] and ends[2] == ends[3]:  # at a place: no stretch that can be seen
+                if ends[0] == ends[1] and ends[2] == ends[3]:  # at one place: too short to be seen
                     ends[1] = ends[3] = ""
                 rows.append([*swept(curve), plain(curve["what"]), *ends, said])
     unknown = any(curve.get("stability_untold") for curve in tracked["curves"])
@@ -408,7 +408,7 @@ def cost(result: Mapping[str, Any]) -> str:
 
 
 def lower_ended(result: Mapping[str, Any]) -> str:
-    """Remark on curves of lower peaks that end early, where those of greater ones are complete; or ''."""
+    """Remark on curves of lower peaks that end early, while those of greater peaks are complete; or ''."""
     tracked = result.get("tracked", {})
     lower = [curve for curve in tracked.get("curves", ()) if curve.get("lower")]
     if not lower:
@@ -437,7 +437,7 @@ def in_short(result: Mapping[str, Any]) -> list[str]:
     told = [f"{count} {what} in part" for what, count in counts.items() if count]
     which = f"of {len(curves)} tracked curve{'s' * (len(curves) > 1)}"
     stable = ", ".join([which, *told]) if told else "every motion tracked is stable"
-    stable = "" if tracked["what"] == "folds" else stable  # at which stability ends
+    stable = "" if tracked["what"] == "folds" else stable  # at folds stability changes
     every = [one for curve in curves for one in curve["errors"]]
     errors = [one["error"] for one in every if one["error"] is not None]
     of = "amplitudes" if tracked["what"] == "peaks" else "frequencies"

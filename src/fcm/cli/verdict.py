@@ -14,9 +14,9 @@ _UNSURE = ("folds_unsure_at", "branches_unsure_at", "symmetry_lost_at")  # of cu
 
 
 def verdict(summary: Mapping[str, Any], remarks: int) -> str:
-    """Line on the peaks that the tables show, and how many remarks stand above it; empty of a schedule alone.
+    """Line on the peaks shown in the tables, and the number of remarks above it; empty for a schedule only.
 
-    Of nonlinear modes, which have no peaks, it is on the errors of amplitudes along them.
+    For nonlinear modes, which have no peaks, it is on the errors of amplitudes along them.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def _of_modes(curves: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _of_errors(summary: Mapping[str, Any], peaks: Sequence[Mapping[str, Any]]) -> str:
-    """Part of the line on the errors of peaks; of exact motions by how much their periods do not close."""
+    """Part of the line on the errors of peaks; for exact motions, on the closure error of their periods."""
     if summary.get("method") == "exact":
         closure = [one["closure_error"] for one in summary["curves"] if one.get("closure_error") is not None]
         closes = f"periods close to {short(max(closure))}" if closure else "errors unknown"
