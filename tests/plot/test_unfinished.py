@@ -9,6 +9,7 @@ import pytest
 
 from fcm.plot import DrawnCurve, DrawnResponse, draw_response, read_response
 from fcm.plot.unfinished import Unfinished
+from fcm.plot.window import within
 
 from ..interrupted import Interrupting
 from ..oscillator import oscillator
@@ -60,6 +61,13 @@ def test_a_fit_that_was_interrupted_is_said_over_whole_curves(tmp_path, fcm):
         axes, *_ = draw_response(read_response(tmp_path / "a.nc")).axes
         titles.append(axes.get_title(loc="left").replace("\n", " "))
     assert titles == ["FIT NOT COMPLETE: interrupted: the numbers are the best so far", ""]
+
+
+def test_a_part_of_the_axis_keeps_the_title_of_a_fit_that_is_not_complete():
+    whole = drawn(("",), curve(1.0, 1.2, 1.4))
+    whole = replace(whole, unfinished=replace(whole.unfinished, fit="interrupted"))
+    (axes,) = draw_response(within(whole, (1.1, 1.3))).axes
+    assert axes.get_title(loc="left") == "FIT NOT COMPLETE: interrupted"
 
 
 def test_whole_curves_have_neither():

@@ -35,11 +35,11 @@ def startup(method: str, table: Path | None, options: StartupOptions = COMPARE.s
     imports = _IMPORTS.get(method, "import fcm.scene, fcm.response")
     opening = f"import fcm; fcm.open_table({str(table)!r})" if table else "pass"
     program = _PROGRAM.format(imports=imports, opening=opening)
-    tries = [_one(program, options.timeout) for _ in range(options.repeats)]
-    return min(tries, default=UNKNOWN)
+    tries = (_one(program, options.timeout) for _ in range(options.repeats))
+    return min((one for one in tries if one is not None), default=UNKNOWN)
 
 
-def _one(program: str, timeout: float) -> Startup:
+def _one(program: str, timeout: float) -> Startup | None:
     begin = time.perf_counter()
     try:
         done = subprocess.run(
@@ -47,4 +47,4 @@ def _one(program: str, timeout: float) -> Startup:
         )
         return Startup(time.perf_counter() - begin, float(done.stdout))
     except (subprocess.SubprocessError, OSError, ValueError):
-        return UNKNOWN
+        return None

@@ -8,7 +8,6 @@ import numpy as np
 
 from fcm.plot.errors import PlotError
 from fcm.plot.read import LEVEL, DrawnCurve, DrawnResponse
-from fcm.plot.unfinished import Unfinished
 
 Window = tuple[float, float]
 
@@ -46,7 +45,7 @@ def within(response: DrawnResponse, window: Window) -> DrawnResponse:
         if (inside := (one.frequency >= low) & (one.frequency <= high)).any()
     )
     told = response.unfinished
-    span = Unfinished(told.reasons, (max(told.span[0], low), min(told.span[1], high)))
+    span = replace(told, span=(max(told.span[0], low), min(told.span[1], high)))
     return replace(response, curves=curves, measured=measured, unfinished=span)
 
 
