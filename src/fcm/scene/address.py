@@ -19,6 +19,8 @@ VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
 LEVEL = "level"  # of the forces: all amplitudes times this
 TOTAL = "total"  # of numbers that the pairs of a contact have each their own of, beside areas
+STOP = "stop"  # of a contact without friction, which has no tangential direction
+_NO_FRICTION = "; as it has no tangential direction, it has no friction"
 OF_SECTOR = re.compile(r"@\d+")  # in the name of a contact of a mistuned ring
 NUMBERS = {  # of each kind of table
     "contact": ("n_0", "gap", "mu", "k_u", "k_v"),
@@ -50,6 +52,7 @@ class Addresses:
         elif not self._excused(key, path, mistakes):
             what = "there is no such number in the scene"
             hint = self._forces_meant() if key == LEVEL else self._other_word(key) or self._contact_meant(key)
+            hint = self._stop_meant(key) or hint
             mistakes.add(path, what + (hint or suggestion(key, self.numbers) or self._those_there(key)))
         return ()
 
@@ -68,6 +71,13 @@ class Addresses:
                 if name and count > 1 and rest != key and there:
                     return f"{count} {what} {quoted(name)}; give the one that is meant: {choices(there)}"
         return ""
+
+    def _stop_meant(self, key: str) -> str:
+        """Hint for a number of friction of a stop, which has none; or ''."""
+        label, _, field = key.rpartition(".")
+        stops = [(i, one) for i, one in enumerate(self.parts["contact"]) if STOP in one]
+        labels = {f"contact.{one}" for i, draft in stops for one in (i, draft["name"], draft.get("group"))}
+        return _NO_FRICTION if label in labels and field in NUMBERS["contact"] else ""
 
     def _forces_meant(self) -> str:
         """Hint for the key of the force level, which is not swept: sweep the amplitudes, or use --level."""
@@ -122,9 +132,9 @@ class Addresses:
             return ()
         for kind, index in matched:
             draft = self.parts[kind][index]
-            if field not in NUMBERS[kind] or field not in draft:
+            if field not in NUMBERS[kind] or not _has(draft, field):
                 other = {"n_0": "gap", "gap": "n_0"}.get(field, "")
-                hint = f"; it is given by {other}" if other in draft else ""
+                hint = f"; it is given by {other}" if other in draft else _NO_FRICTION * (STOP in draft)
                 mistakes.add(path, f"{quoted(labels[kind, index])} has no {quoted(field)} to sweep{hint}")
                 return ()
         contacts = self._together(
@@ -143,7 +153,7 @@ class Addresses:
         same = [
             i
             for i, draft in drafts
-            if prefix in {f"contact.{draft.get(key, '')}" for key in ("group", "of")} and field in draft
+            if prefix in {f"contact.{draft.get(key, '')}" for key in ("group", "of")} and _has(draft, field)
         ]
         if not same or field not in NUMBERS["contact"]:
             return None
@@ -254,7 +264,12 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
         yield from ((f"base.{key}", ("base", 0, key)) for key in ("acceleration", "phase") if key in draft)
     for kind, keys in NUMBERS.items():
         for prefix, index, draft in _named(parts, kind):
-            yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys if key in draft)
+            yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys if _has(draft, key))
+
+
+def _has(draft: Mapping[str, Any], key: str) -> bool:
+    """Whether a contact, force or load has a number or direction; a stop has none of friction."""
+    return key in draft and not (STOP in draft and key in ("mu", "k_u", "tangential"))
 
 
 def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
@@ -271,7 +286,7 @@ def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
                 yield f"{prefix}.tangential.1", (kind, index, "second")
                 yield f"{prefix}.normal", (kind, index, "normal")
             else:
-                yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys)
+                yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys if _has(draft, key))
 
 
 def _named(parts: Mapping[str, Any], kind: str) -> Iterator[tuple[str, int, dict[str, Any]]]:

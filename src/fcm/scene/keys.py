@@ -126,7 +126,7 @@ TABLES: dict[str, dict[str, Key]] = {
     "contact": {
         "name": Key("of the contact", "string"),
         "tangential": Key("the displacement u along which it slides. In a plane a list of two"
-                          f"{_WITH_NODES}", _DIRECTION),
+                          f"{_WITH_NODES}", _DIRECTION, "required, but with mu = 0"),
         "nodes": Key("pairs [[a, b], ...], a .csv file, or two sets; u and v are of a less b",
                      "list, file or table", "none: one contact"),
         "areas": Key("of the pairs: one k_u, k_v or n_0 is a total. That of a list, file or column is of "
@@ -134,7 +134,7 @@ TABLES: dict[str, dict[str, Key]] = {
                      'list of numbers > 0, or "equal"', "the numbers are of each pair"),
         "normal": Key(f"the displacement v that loads it: n = max(n_0 + k_v v, 0){_WITH_NODES}", _DIRECTION),
         "mu": Key(f"friction coefficient{_OF_PAIRS}", RULES["mu"]),
-        "k_u": Key(f"tangential contact stiffness{_OF_PAIRS}", RULES["k_u"]),
+        "k_u": Key(f"tangential contact stiffness{_OF_PAIRS}", RULES["k_u"], "required with tangential"),
         "k_v": Key(f"normal contact stiffness{_OF_PAIRS}", RULES["k_v"]),
         "n_0": Key(f"preload that presses the faces, negative a gap{_OF_PAIRS}",
                    RULES["n_0"], "gap"),

@@ -18,6 +18,7 @@ from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.pair_file import COORDINATES, NODES, NUMBERS, PairTable, read_numbers_of_pairs, read_pair_table
+from fcm.scene.plane import is_stop
 from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import SYNONYMS, Section, described
 
@@ -197,7 +198,9 @@ def read_numbers(section: Section, table: PairTable, files: Files) -> dict[str, 
             found[key] = _of_each(section, key, table, files)
         else:
             needed = key != load and not table.unread
-            found[key] = [section.number(key, RULES[key]) if key in section.data or needed else nan] * count
+            default = 0.0 if key == "k_u" and is_stop(section) else None
+            number = section.number(key, RULES[key], default) if key in section.data or needed else nan
+            found[key] = [number] * count
     return found
 
 
@@ -269,7 +272,7 @@ def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
 
 def _shared(section: Section, table: PairTable, areas: list[float]) -> list[dict[str, float]]:
     """Share of each pair in the numbers that are totals, by known areas."""
-    own = _own(section, table)
+    own = [*_own(section, table), *(["k_u"] if is_stop(section) else [])]
     parts = np.asarray(areas) / np.sum(areas)
     return [{key: float(part) for key in SHARED if key not in own} for part in parts]
 
@@ -307,7 +310,7 @@ def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
     said: dict[str, list[str]] = {}  # the names of the contacts of which a sentence is said
     for name, pairs in pairs_by_contact(drafts).items():
         if share := pairs[0]["share"]:
-            totals = _are(list(share), "totals", "a total")
+            totals = _are([key for key in share if key in pairs[0]], "totals", "a total")
             said.setdefault(f"{totals}, which {len(pairs)} pairs share by their areas", []).append(name)
         elif len(pairs) > 1 and (same := [key for key in SHARED if _same(pairs, key)]):
             each = f"{_are(same, 'those', 'that')} of each of {len(pairs)} pairs"
@@ -319,8 +322,9 @@ def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
 
 
 def _same(pairs: Sequence[Mapping[str, Any]], key: str) -> bool:
-    """Whether a number is given, and the same of all pairs."""
-    return key in pairs[0] and len({pair[key] for pair in pairs}) == 1
+    """Whether a number is given, the same of all pairs, and not 0."""
+    values = {pair[key] for pair in pairs if key in pair}
+    return len(values) == 1 and values != {0.0}
 
 
 def _are(keys: list[str], several: str, one: str) -> str:

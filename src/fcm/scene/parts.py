@@ -9,7 +9,7 @@ from math import nan
 from typing import Any
 
 from fcm.model.scene import NO_RANGE, Contact, Force
-from fcm.scene.address import TOTAL
+from fcm.scene.address import STOP, TOTAL
 from fcm.scene.direction_lengths import GivenDirections, of_dofs, questions_of_lengths
 from fcm.scene.errors import nearest, quoted, shown
 from fcm.scene.files import Files
@@ -30,7 +30,7 @@ from fcm.scene.node_pairs import (
 from fcm.scene.node_sets import with_fitted
 from fcm.scene.options import LIMITS
 from fcm.scene.pair_file import PairTable
-from fcm.scene.plane import check_axes, read_directions
+from fcm.scene.plane import check_axes, is_stop, read_directions
 from fcm.scene.rules import FRACTION, POSITIVE, RULES, harmonics_fault, step_fault
 from fcm.scene.section import Section
 from fcm.units import UNIT
@@ -72,7 +72,11 @@ def _contacts(
     if "nodes" not in section.data:
         alone = PairTable([])
         shares(section, alone)
-        draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
+        no_k_u = 0.0 if is_stop(section) else None
+        draft: dict[str, Any] = {
+            key: section.number(key, RULES[key], default)
+            for key, default in (("mu", None), ("k_u", no_k_u), ("k_v", None))
+        }
         load = load_key(section, alone)
         draft[load] = section.number(load, RULES[load]) if load in section.data else nan
         found = read_directions(
@@ -82,7 +86,7 @@ def _contacts(
         )
         if dofs is not None:
             given.append(GivenDirections(name, load, of_dofs(found, dofs), dofs))
-        return [draft | {"name": name} | found]
+        return [_with_tangential(draft | {"name": name} | found)]
     table = read_pairs(section, files)
     section = with_fitted(section, table)
     numbers, parts = read_numbers(section, table, files), shares(section, table)
@@ -97,11 +101,20 @@ def _contacts(
     if table.interface is not None:
         files.interfaces.append(replace(table.interface, nodes=tuple(table.pairs)))
     return [
-        {key: values[i] for key, values in numbers.items()}
-        | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i], TOTAL: totals, "sum": totals}
-        | {key: relative_displacement(weights, pair, dofs) for key, weights in directions.items()}
+        _with_tangential(
+            {key: values[i] for key, values in numbers.items()}
+            | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i], TOTAL: totals, "sum": totals}
+            | {key: relative_displacement(weights, pair, dofs) for key, weights in directions.items()}
+        )
         for i, pair in enumerate(table.pairs)
     ]
+
+
+def _with_tangential(draft: dict[str, Any]) -> dict[str, Any]:
+    """The contact as read; that of a stop has a tangential direction on which no force acts: the normal."""
+    if "tangential" in draft:
+        return draft
+    return draft | {"tangential": None if draft["normal"] is None else draft["normal"].copy(), STOP: True}
 
 
 def unread_tables(top: Section, parts: Mapping[str, Any]) -> tuple[str, ...]:

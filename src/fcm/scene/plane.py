@@ -1,4 +1,4 @@
-"""The directions along which a contact slides: one, or two at right angles, in a plane."""
+"""The directions along which a contact slides: one, two at right angles in a plane, or none of a stop."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.rotational_dofs import is_rotation
 from fcm.scene.errors import Mistakes, quoted, several
 from fcm.scene.options import TOLERANCES
+from fcm.scene.rules import as_float
 from fcm.scene.section import Section
 
 TWO = 'two directions at right angles, such as ["x", "y"], for one that slides in a plane'
@@ -23,8 +24,11 @@ def read_directions(
 ) -> dict[str, Read]:
     """`tangential`, `normal`, and in a plane `second`, of the table of a contact.
 
-    read takes what stands at a key, part a value of a list there; a list that is none of two is a mistake.
+    read takes what stands at a key, part a value of a list there; a list that is none of two is a mistake. A
+    stop has its normal alone.
     """
+    if is_stop(section):
+        return {"normal": read("normal")}
     value = section.data.get("tangential")
     if not isinstance(value, list | tuple):
         return {key: read(key) for key in ("tangential", "normal")}
@@ -33,6 +37,17 @@ def read_directions(
         return {"normal": read("normal")}
     one, other = (part(item, f"tangential[{i}]") for i, item in enumerate(value))
     return {"tangential": one, "second": other, "normal": read("normal")}
+
+
+def is_stop(section: Section) -> bool:
+    """Whether a contact has no friction, and no direction along which friction would act.
+
+    >>> from fcm.scene.errors import Mistakes
+    >>> given = {"normal": "v", "mu": 0, "k_v": 5.0, "gap": 0.1}
+    >>> [is_stop(Section(given | more, "contact[0]", Mistakes(""))) for more in ({}, {"tangential": "u"})]
+    [True, False]
+    """
+    return "tangential" not in section.data and as_float(section.data.get("mu")) == 0.0
 
 
 def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) -> None:
