@@ -33,7 +33,10 @@ X, Y = {"tangential": {"ax": 1.0, "bx": -1.0}}, {"tangential": {"ay": 1.0, "by":
 TURNED = {"normal": {"az": -3.0, "bz": 3.0}}
 
 
-@pytest.mark.parametrize("other", [Y, Y | TURNED])
+DOUBLED = {"normal": {"az": 3.0, "bz": -3.0}}
+
+
+@pytest.mark.parametrize("other", [Y, Y | DOUBLED])
 def test_two_directions_of_one_place_are_told_what_to_write(other):
     (note,) = (one for one in scene(X, other).notes if SAID in one)
     assert 'contacts "c0" and "c1"' in note
@@ -91,6 +94,25 @@ def test_a_normal_that_leans_is_told_with_its_angle():
     assert 'contacts "c0" and "c1"' in said and "by 35 degrees at most" in said
 
 
+def test_lever_arms_of_rotations_make_no_slope():
+    """A shroud at a lever arm from a node: the relation of arms to 1 hangs on the unit of length."""
+    dofs = ["15x", "15y", "15rz"]
+    modal = {"dofs": dofs, "frequency": [1.0, 2.0, 3.0], "damping": 0.05, "shapes": [[1.0, 0.2, 0.1]] * 3}
+    contact = CONTACT | {
+        "name": "c0",
+        "tangential": {"15x": 1.0, "15rz": -20.0},
+        "normal": {"15y": 1.0, "15rz": 15.0},
+    }
+    rest = {"force": [{"dof": "15x", "amplitude": 1.0}], "response": {"frequency": [0.5, 1.2]}}
+    said = [
+        any(
+            "slip changes" in one for one in scene_from_dict({"modal": modal, "contact": [each]} | rest).notes
+        )
+        for each in (contact, contact | {"normal": {"15y": 1.0, "15x": 1.0, "15rz": 15.0}})
+    ]
+    assert said == [False, True]
+
+
 @pytest.mark.parametrize(
     "contacts",
     [
@@ -98,6 +120,7 @@ def test_a_normal_that_leans_is_told_with_its_angle():
         (X, X),  # layers of one joint
         (X, X | TURNED | {"tangential": {"ax": -2.0, "bx": 2.0}}),
         (X, Y | {"normal": {"az": 1.0}}),  # another place
+        (X, Y | TURNED),  # the two faces of a shroud
         (X, Y | {"k_v": 0.0, "n_0": 0.0}),
         (X, Y | {"mu": 0.0}),
     ],

@@ -143,6 +143,7 @@ def errors_along(
     error = raised
     error[folds] = at_frequency[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
     comes: Mask = ~np.any(np.isnan(error), axis=1)
+    at_points = error * reference.unit  # that of a peak may be the difference from a peak elsewhere
     height, told, frequency = _set_errors_of_peaks(reference, error, shift, change, met, of_peaks)
     unit, amplitude = reference.unit, quantities.amplitude
     at_rest = amplitude <= np.finfo(float).eps * unit  # within rounding
@@ -154,7 +155,7 @@ def errors_along(
     return PathErrors(
         amplitude=error,
         at_frequency=at_frequency,
-        truncation=_truncation(np.where(np.isnan(error), at_frequency, error), amplitude),
+        truncation=_truncation(np.where(np.isnan(at_points), at_frequency * amplitude, at_points), amplitude),
         is_same_curve=comes,
         ends_before=reference.ends_before,
         peak=np.where(told, error[tops, np.arange(len(size))], np.nan),
@@ -246,7 +247,7 @@ def with_nearest(
         parity = path.parity[rows]
         there = nearest(pieces, path.parameter[rows], parity, now)
         off = np.abs(there[:, :dofs] - now)
-        error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
+        error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation(off, now)[:, None])
         at_frequency = every[k].at_frequency.copy()
         at_frequency[rows] = error[rows]
         bear = _flat(every[k].contacts.contact_loads)
@@ -254,7 +255,8 @@ def with_nearest(
         contact_loads[rows] = relative(change, bear[rows], bear.max(axis=0), options).reshape(
             len(rows), -1, 4
         )
-        truncation = _truncation(error, amplitude)
+        truncation = every[k].truncation.copy()
+        truncation[rows] = _truncation(error[rows] * now, now)
         every[k] = replace(
             every[k],
             amplitude=error,
@@ -292,12 +294,7 @@ def _flat(contact_loads: FloatArray) -> FloatArray:
     return contact_loads.reshape(len(contact_loads), -1)
 
 
-def _truncation(error: FloatArray, amplitude: FloatArray) -> FloatArray:
-    """Greatest difference (point,) over the greatest amplitude, from relative errors (point, dof)."""
-    return _truncation_of(error * amplitude, amplitude)
-
-
-def _truncation_of(off: FloatArray, amplitude: FloatArray) -> FloatArray:
+def _truncation(off: FloatArray, amplitude: FloatArray) -> FloatArray:
     """Greatest difference (point,) over the greatest amplitude, from differences (point, dof)."""
     most = amplitude.max(axis=1)
     truncation: FloatArray = off.max(axis=1) / np.where(most > 0.0, most, 1.0)

@@ -5,24 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.rotational_dofs import is_rotation
 from fcm.scene.errors import bare, counted, quoted, several, shown
 from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.scene.plane import axis_key
 
 
 def note_of_shared_normals(scene: Scene) -> list[str]:
-    """Notes on contacts with the same normal displacement and different tangential ones.
+    """Notes on contacts with the same normal displacement, up to scale, and different tangential ones.
 
-    Up to sign and scale: each then carries its whole preload and normal stiffness, and the place all of them
-    together. Nothing is said where at most one of them has a preload or a normal stiffness, nor where the
-    tangential displacements are the same, as of several layers.
+    Each of them carries its whole preload and normal stiffness, and the place all of them together. Nothing
+    is said where at most one has a preload or a normal stiffness, where the tangential displacements are the
+    same, as of several layers, nor of opposite normals, as of the two faces of a shroud.
     """
-    groups: dict[bytes, list[Contact]] = {}
+    groups: dict[tuple[bytes, bool], list[Contact]] = {}
     for contact in scene.contacts:
         if contact.normal.any():
-            groups.setdefault(axis_key(contact.normal), []).append(contact)
+            forward = bool(contact.normal[int(np.abs(contact.normal).argmax())] > 0.0)
+            groups.setdefault((axis_key(contact.normal), forward), []).append(contact)
     doubled = [group for group in groups.values() if _counts_twice(group)]
     if not doubled:
         return []
@@ -77,7 +80,8 @@ def notes_of_slopes(scene: Scene) -> list[str]:
     nor without friction.
     """
     rubbing = (one for one in scene.contacts if one.k_v * one.k_u * one.mu != 0.0)
-    sloping = [(one.name, angle) for one in rubbing if (angle := _slope(one)) > 0.0]
+    translations = np.array([not is_rotation(dof) for dof in scene.modal.dofs])
+    sloping = [(one.name, angle) for one in rubbing if (angle := _slope(one, translations)) > 0.0]
     own = [name for name, angle in sloping if angle == 90.0]
     angles = {name: angle for name, angle in sloping if angle < 90.0}
     means = "slip changes the normal load, as on the slope of a wedge"
@@ -99,20 +103,22 @@ def notes_of_slopes(scene: Scene) -> list[str]:
     return notes
 
 
-def _slope(contact: Contact) -> float:
+def _slope(contact: Contact, translations: npt.NDArray[np.bool_]) -> float:
     """The angle [degrees] by which the normal leans to the tangential displacements; 0 at right angles.
 
-    The weights of degrees of freedom are taken as those of right-angled axes. With the part of the normal
-    :math:`P n` that is a combination of the tangential ones it is :math:`\\arcsin(|P n| / |n|)`.
+    The weights of degrees of freedom are taken as those of right-angled axes. Weights of rotations are lever
+    arms, and do not count beside translations (dof,). With the part of the normal :math:`P n` that is a
+    combination of the tangential ones the angle is :math:`\\arcsin(|P n| / |n|)`.
     """
-    sliding = np.stack(contact.directions[:-1], axis=1)
-    if not contact.normal.any() or not sliding.any():
+    sliding, normal = np.stack(contact.directions[:-1], axis=1), contact.normal
+    if sliding[translations].any() and normal[translations].any():
+        sliding, normal = sliding[translations], normal[translations]
+    if not normal.any() or not sliding.any():
         return 0.0
-    shares = np.linalg.lstsq(sliding, contact.normal, rcond=None)[0]
-    along = sliding @ shares
-    if np.abs(along - contact.normal).max() <= TOLERANCES.same_direction * np.abs(contact.normal).max():
+    along = sliding @ np.linalg.lstsq(sliding, normal, rcond=None)[0]
+    if np.abs(along - normal).max() <= TOLERANCES.same_direction * np.abs(normal).max():
         return 90.0
-    sine = min(float(np.linalg.norm(along) / np.linalg.norm(contact.normal)), 1.0)
+    sine = min(float(np.linalg.norm(along) / np.linalg.norm(normal)), 1.0)
     return float(np.degrees(np.arcsin(sine))) if sine > TOLERANCES.right_angle else 0.0
 
 
