@@ -1,6 +1,6 @@
-"""Advises the measurement that would best determine the numbers which the data leave undetermined.
+"""Advises the measurement that would best determine the numbers that the data leave undetermined.
 
-It is the one that leaves the least standard errors.
+This is the measurement with which the standard errors become least.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from fcm.model.scene import FloatArray
 
 
 class Advice(Frozen):
-    """A response over the range of the data, at a degree of freedom and a level, and what it would leave.
+    """A response to measure over the range of the data, at a degree of freedom and a force level.
 
-    error : relative standard error of the number.
+    error : relative standard error of the number with this measurement.
     """
 
     key: str
@@ -37,7 +37,7 @@ def advice(
     harmonics: tuple[int, ...],
     options: FitOptions = FIT,
 ) -> list[Advice]:
-    """Response that would best determine each undetermined number; empty where none would."""
+    """The responses that would best determine undetermined numbers; none for a number that no one helps."""
     responses = [one for one in fitted.data if one.damping is None]
     if not responses or not doubtful:
         return []
@@ -78,7 +78,7 @@ def _information(J: FloatArray) -> FloatArray:
 
 
 def _errors(information: FloatArray) -> FloatArray:
-    """Standard errors of the unknowns; infinite where nothing is known."""
+    """Standard errors of the unknowns; infinite where the information is zero."""
     size = np.sqrt(np.maximum(np.diag(information), 0.0))
     seen = size > 0.0
     errors = np.full(size.size, np.inf)

@@ -1,7 +1,7 @@
 r"""Residuals of a measured backbone: frequency and damping of a nonlinear mode against its amplitude.
 
-The mode R(z, ln a) = 0 of the model (`nonlinear_modes.backbone`) is solved where its amplitude is the
-measured one. By a number p it changes there by w with R_z w = -R_p and the amplitude held.
+The nonlinear mode R(z, ln a) = 0 of the model (`nonlinear_modes.backbone`) is solved at each measured
+amplitude. A number p changes it there by w: R_z w = -R_p at constant amplitude.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def backbone_rows(
     Raises
     ------
     NoMotionError
-        If the mode is not found at the least amplitude, or there is no rest under the static loads.
+        If the mode is not found at the least amplitude, or there is no static equilibrium.
     ModeError
         If there is no such mode.
     """
@@ -71,9 +71,10 @@ def backbone_errors(data: Measured, options: FitOptions) -> FloatArray:
 
 
 def modal_span(system: System, data: Measured) -> tuple[float, float]:
-    """Modal amplitudes over which a mode is followed for what was measured of it, and somewhat beyond.
+    """Modal amplitudes over which a mode is followed: the measured ones, and somewhat beyond.
 
-    What is modal for a displacement, the shape of the mode at other amplitudes decides: then further beyond.
+    For measured displacements the shape of the linear mode gives the modal amplitudes. The shape changes
+    with amplitude, so that the mode is then followed further beyond.
 
     Raises
     ------
@@ -93,7 +94,7 @@ def modal_span(system: System, data: Measured) -> tuple[float, float]:
 
 
 def measured_span(system: System, data: Measured) -> tuple[float, float]:
-    """Modal amplitudes at which a mode has the least and the greatest amplitude measured, and some more.
+    """Modal amplitudes at which a mode has the least and greatest measured amplitudes, with a margin.
 
     Raises
     ------
@@ -111,7 +112,7 @@ def measured_span(system: System, data: Measured) -> tuple[float, float]:
 
 
 class _Followed:
-    """A mode of the model over the amplitudes that were measured."""
+    """A nonlinear mode of the model over the range of measured amplitudes."""
 
     def __init__(self, system: System, data: Measured) -> None:
         self.dof = list(system.scene.modal.dofs).index(data.dof) if data.dof else None
@@ -127,7 +128,7 @@ class _Followed:
         self.logs = np.log(sizes)
 
     def _size(self, z: FloatArray, problem: AutonomousProblem | None = None) -> float:
-        """The amplitude that was measured: modal, or the fundamental of a displacement."""
+        """The amplitude in the sense of the data: modal, or the fundamental of a displacement."""
         if self.dof is None:
             return self.problem.modal_amplitude(z)
         motion = (problem or self.problem).motion(z)
@@ -135,7 +136,7 @@ class _Followed:
         return motion.amplitude * abs(complex(motion.Q[first] @ self.system.linear.dofs[:, self.dof]))
 
     def at(self, amplitude: float) -> tuple[FloatArray, bool]:
-        """The point of the mode with an amplitude, and whether the mode comes to it."""
+        """The point of the mode with an amplitude, and whether the mode reaches it; if not, the nearest."""
         target, points = np.log(amplitude), self.mode.path.z
         sign = self.logs - target
         crossed = np.flatnonzero(sign[:-1] * sign[1:] <= 0.0)
@@ -157,7 +158,7 @@ class _Followed:
         return z, True
 
     def _solved(self, guess: FloatArray) -> FloatArray | None:
-        """The point with the modal amplitude of a guess."""
+        """The corrected point, with the modal amplitude of the guess."""
         return solution_near(self.newton, guess)
 
     def rates(self, z: FloatArray, moved: Sequence[ResidualDerivative]) -> FloatArray:
@@ -168,7 +169,7 @@ class _Followed:
         answers = np.linalg.solve(J[:, :-1], right)
         by_log, by_number = answers[:, 0], answers[:, 1:]
         found = by_number[-2:].copy()
-        if self.dof is not None:  # the modal amplitude changes so that the displacement does not
+        if self.dof is not None:  # the modal amplitude changes so as to keep the displacement constant
             grown = self._growth(z, by_log, 1.0)
             for k, (direction, one) in enumerate(zip(by_number.T, moved, strict=True)):
                 own = sum(weight * np.log(self._size(z, problem)) for weight, problem in one.terms)
@@ -176,14 +177,14 @@ class _Followed:
         return found
 
     def _growth(self, z: FloatArray, direction: FloatArray, of_log: float) -> float:
-        """Derivative of the logarithm of the measured amplitude along a direction."""
+        """Derivative of the logarithm of the measured amplitude along (direction, of_log)."""
         step = BACKBONE.difference * np.append(direction, of_log)
         ends = [np.log(self._size(z + sign * step)) for sign in (1.0, -1.0)]
         return float(ends[0] - ends[1]) / (2.0 * BACKBONE.difference)
 
 
 class ResidualDerivative(Frozen):
-    """A mode with other values of a number: weights of a derivative, with the problems."""
+    """Difference quotient by a number: weights, each with the problem at a changed value of the number."""
 
     terms: list[tuple[float, AutonomousProblem]]
 

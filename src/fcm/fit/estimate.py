@@ -5,9 +5,9 @@ covariance of the unknowns is
 
     C = s^2 (J^T J)^-1,    s^2 = r^T r / (N - k)
 
-It holds where the errors of the points are independent, and as large as stated or estimated but for one
-common factor. Intervals are those of Student's distribution with N - k degrees of freedom. No number beyond
-its bounds was compared with the data, so that an end of an interval there is not determined by them.
+This holds if the errors of the points are independent, and known up to one common factor. Intervals are those
+of Student's distribution with N - k degrees of freedom. Values beyond the bounds of a number were not
+compared with the data, so that the data do not determine an end of an interval there.
 Source: Seber and Wild, "Nonlinear Regression" (1989), section 2.1.
 """
 
@@ -24,12 +24,12 @@ from fcm.model.scene import FloatArray
 
 
 class Estimate(Frozen):
-    """The numbers with which the residuals are least.
+    """The best-fit numbers and their uncertainty.
 
-    values, error: (number,), the standard error in the number's unit; interval: (number, 2), NaN for an end
-    beyond the bounds; correlation: (number, number), NaN beside one without effect; without_effect,
-    undetermined: (number,) whether; alike: pairs that are not distinguished, with the exponents of the
-    combination that is.
+    values, error: (number,), the standard error in the number's unit. interval: (number, 2), NaN for an end
+    beyond the bounds. correlation: (number, number), NaN for a number without effect. without_effect,
+    undetermined, at_bound: (number,) 1 where true, else 0. alike: pairs (i, j, p) that the data do not
+    distinguish; they determine only number i times number j to the power of p.
     """
 
     values: FloatArray
@@ -45,7 +45,7 @@ class Estimate(Frozen):
 def estimated(
     parameters: Parameters, values: FloatArray, rows: ResidualRows, options: FitOptions = FIT
 ) -> Estimate:
-    """Estimates from the rows of residuals at the best-fit numbers."""
+    """The estimate from the rows of residuals at the best-fit numbers."""
     rates = parameters.rates(values)
     J = rows.rates * rates
     count = J.shape[-1]
@@ -72,7 +72,7 @@ def estimated(
         parameters.log > 0.0, spread, spread * parameters.unit / np.maximum(abs(values), 1e-300)
     )
     close = [np.isclose(values, end, rtol=1e-4, atol=0.0) for end in (parameters.low, parameters.high)]
-    of_told = J[:, :, told].reshape(len(J) * J.shape[1], told.size)  # none, where no number has an effect
+    of_told = J[:, :, told].reshape(len(J) * J.shape[1], told.size)  # empty if no number has an effect
     pairs = _alike(_floored(of_told, options.rank_tolerance), options) if told.size else []
     alike = tuple(
         (int(told[i]), int(told[j]), power)
@@ -92,7 +92,7 @@ def estimated(
 
 
 def _covariance(residual: FloatArray, J: FloatArray, freedom: int, rank: float) -> FloatArray:
-    """C (number, number); infinite along a combination that the points do not see."""
+    """C (number, number); variances are infinite for numbers in a combination without effect."""
     flat = J.reshape(-1, J.shape[-1])
     size = np.sqrt((flat**2).sum(axis=0))
     _, singular, V = np.linalg.svd(flat / size, full_matrices=False)
@@ -105,9 +105,9 @@ def _covariance(residual: FloatArray, J: FloatArray, freedom: int, rank: float) 
 
 
 def _floored(J: FloatArray, rank: float) -> FloatArray:
-    """(J^T J)^-1 with J of columns of size 1, its singular values not below a share of the greatest.
+    """(J^T J)^-1, with the singular values of the normalised J bounded below by a share of the greatest.
 
-    So correlations are known of combinations too that the points do not see.
+    So correlations are also finite for combinations without effect.
     """
     size = np.sqrt((J**2).sum(axis=0))
     _, singular, V = np.linalg.svd(J / size, full_matrices=False)
@@ -117,9 +117,9 @@ def _floored(J: FloatArray, rank: float) -> FloatArray:
 
 
 def _alike(covariance: FloatArray, options: FitOptions) -> list[tuple[int, int, float]]:
-    """Pairs whose errors are hardly more than one: i, j, and p of i times j to the power of p.
+    """Strongly correlated pairs (i, j, p), of which the data determine i times j to the power of p.
 
-    Of unknowns x the combination x_i + p x_j has the least variance with p = -C_ij / C_jj.
+    The combination x_i + p x_j of the unknowns has the least variance for p = -C_ij / C_jj.
     """
     spread = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(spread, spread)

@@ -1,14 +1,15 @@
-r"""Residuals of a measured response: how far each point is from the nearest branch of the model's.
+r"""Residuals of a measured response: the distance of each point from the nearest branch of the model.
 
-A point y = (omega, A), or (omega, Re A, Im A) where the phase was measured, is compared with the curve
-c(s) = (omega, A) of the model, both in units of their errors. Its residual is c(s) - y at the nearest point
-of the curve, where (c - y) . c' = 0. Folds and jumps need no care then: a curve has a nearest point where the
-amplitude is no function of the frequency. When a number p of the model changes, the curve moves by
+A point y = (omega, A), or (omega, Re A, Im A) if the phase was measured, is compared with the curve
+c(s) = (omega, A) of the model, both in units of the errors. Its residual is c(s) - y at the nearest point of
+the curve, where (c - y) . c' = 0. Folds and jumps need no special treatment: the nearest point exists even
+where the amplitude is not a function of the frequency. A change of a number p of the model moves the curve by
 
     dc = c_z . w,    R_z w = -R_p,    t . w = 0
 
-with the residual R(z) of the balance and the direction t of the curve; of this the part along the curve moves
-no distance. With small errors of the frequency it is the ordinary difference of amplitudes.
+with the residual R(z) of harmonic balance and the tangent t of the curve. The component of dc along the curve
+does not change the distance. For small errors of the frequency the residual is the ordinary difference of
+amplitudes.
 Source: orthogonal distance regression, as in Boggs, Byrd and Schnabel, SIAM J. Sci. Stat. Comput. 8 (1987).
 """
 
@@ -50,7 +51,7 @@ class DataErrors(Frozen):
 
 
 def errors_of(data: Measured, blurred: bool, options: FitOptions) -> DataErrors:
-    """Errors of measured points: stated or estimated; parts of the data's extent while a start is sought."""
+    """Errors of measured points: stated or estimated; if blurred, a share of the extent of the data."""
     top = float(data.amplitude.max())
     if blurred:
         width = max(float(np.ptp(data.frequency)), 1e-3 * float(data.frequency.max()))
@@ -66,7 +67,7 @@ def errors_of(data: Measured, blurred: bool, options: FitOptions) -> DataErrors:
 
 
 class Observed:
-    """Observable of a solution, as measured, and its rates: (omega, A) or (omega, Re A, Im A)."""
+    """The measured quantities of a solution, (omega, A) or (omega, Re A, Im A), and their rates."""
 
     def __init__(self, data: Measured, system: System) -> None:
         self.balance = system.new_balance()
@@ -88,7 +89,7 @@ class Observed:
         return value
 
     def by_number(self, z: FloatArray, direction: FloatArray, X: ComplexArray) -> FloatArray:
-        """Rates of it where the solution moves in a direction, and displacements besides by X."""
+        """Rates of the observable if the solution moves along a direction, and displacements also by X."""
         self.balance.evaluate_outputs(z, np.ascontiguousarray(direction))
         displacements, d, j = self.balance.displacements, self.dof, self.first
         growth = self.balance.growth[d] + growth_of(self.balance, X)[d]
@@ -101,7 +102,7 @@ class Observed:
     ) -> tuple[FloatArray, FloatArray]:
         if not self.fundamental:
             return np.array([omega, amplitude]), np.array([d_omega, growth])
-        turn = 1j * (1j * omega) ** self.power  # amplitudes are those of sin(omega t + phase)
+        turn = 1j * (1j * omega) ** self.power  # phases refer to sin(omega t + phase)
         value = turn * X
         rate = turn * dX + self.power * d_omega / omega * value
         if self.phased:
@@ -165,7 +166,7 @@ def forced_rows(
 
 
 def range_of(data: Measured, options: FitOptions) -> tuple[float, float]:
-    """The frequencies that are traced for a data set."""
+    """The frequency range that is traced for a data set."""
     low, high = float(data.frequency.min()), float(data.frequency.max())
     beyond = options.margin * (high - low or high)
     return max(low - beyond, 0.5 * low), high + beyond
@@ -178,9 +179,9 @@ def _units(data: Measured, errors: DataErrors) -> FloatArray:
 
 
 def _by_level(level: FloatArray, options: FitOptions) -> list[tuple[float, npt.NDArray[np.intp]]]:
-    """Levels of the forces to trace, and the points that begin from each: those next to it.
+    """Force levels to trace, each with the points whose level is nearest to it.
 
-    Each point is solved at its own level then, so that the levels traced only have to be near.
+    Each point is then solved at its own level, so that the traced level only has to be near.
     """
     apart = np.unique(level)
     steps = np.log(apart[-1] / apart[0]) / np.log(options.level_step)
@@ -192,7 +193,7 @@ def _by_level(level: FloatArray, options: FitOptions) -> list[tuple[float, npt.N
 
 
 class _Curve(Frozen):
-    """Segments of the branches of a response: ends of each, (segment, component), and unknowns there."""
+    """Segments of the branches of a response: observables (segment, component) and unknowns at their ends."""
 
     begin: FloatArray
     end: FloatArray
@@ -200,7 +201,7 @@ class _Curve(Frozen):
     z_end: FloatArray
 
     def start(self, y: FloatArray, unit: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The unknowns on the segment next to a point, which is in units; an end of it, and its direction."""
+        """Unknowns on the segment nearest to a point y (in units), at its nearer end, and its direction."""
         a, b = self.begin / unit, self.end / unit
         along = b - a
         length = np.maximum((along**2).sum(axis=1), 1e-300)
@@ -212,7 +213,7 @@ class _Curve(Frozen):
 
 
 def _curve(scene: Scene, level: float, harmonics: tuple[int, ...], observed: Observed) -> _Curve:
-    """The response at a level of the forces."""
+    """The response curve at a force level."""
     number = number_of(scene, LEVEL)
     system = System(number.put(scene, level), harmonics)
     paths = [path for path in traced(system).branches.paths if len(path.z) > 1]
@@ -225,7 +226,7 @@ def _curve(scene: Scene, level: float, harmonics: tuple[int, ...], observed: Obs
 
 
 class Nearest:
-    """The nearest point of the response to a measured one, at a level of the forces."""
+    """Finds the point of the response nearest to a measured one, at a force level."""
 
     def __init__(
         self,
@@ -240,12 +241,14 @@ class Nearest:
         observed.balance.load = level
 
     def found(self, start: FloatArray, end: FloatArray, direction: FloatArray) -> FloatArray:
-        """z (unknown + 1,): by steps along the curve to where the way to the point is across it.
+        """The nearest point z (unknown + 1,), by Newton steps along the curve.
+
+        start, end, direction: the unknowns that `_Curve.start` returns.
 
         Raises
         ------
         NoMotionError
-            If the curve is not met again, not even at an end of the segment where it was.
+            If the corrector converges neither from start nor from end.
         """
         self.newton.problem.evaluate_scale(start)
         row = direction / np.asarray(self.newton.problem.scale)
@@ -273,7 +276,7 @@ class Nearest:
     def _nearer(
         self, z: FloatArray, step: float, tangent: FloatArray, scale: FloatArray, before: float
     ) -> FloatArray | None:
-        """A point along the curve that is nearer; a step that leads further away is halved."""
+        """A nearer point after a step along the curve, which is halved while it leads away; None if none."""
         for _ in range(self.options.max_halvings):
             there = self._corrected(z + step * scale * tangent, tangent)
             if there is not None and ((self.at(there)[0] - self.y) ** 2).sum() < before:
@@ -296,7 +299,7 @@ class Nearest:
         return value / self.unit, along / self.unit
 
     def rates(self, z: FloatArray, rates: Sequence[Rates]) -> FloatArray:
-        """Rates of the nearest point by numbers, across the curve, (component, number)."""
+        """Rates (component, number) of the nearest point by numbers, without their part along the curve."""
         _, along = self.at(z)
         balance: Balance = self.observed.balance
         scale, tangent = np.asarray(self.newton.scale), np.asarray(self.newton.tangent)
@@ -316,7 +319,7 @@ class Nearest:
 def sampled(
     scene: Scene, like: Measured, level: float, count: int, harmonics: tuple[int, ...], options: FitOptions
 ) -> Measured:
-    """Points of the response as if they had been measured, over the range of a data set and where that was.
+    """Points of the computed response as measured data, at the dof and over the frequencies of a data set.
 
     Raises
     ------

@@ -11,10 +11,11 @@ from fcm.model.scene import FloatArray
 
 
 class ResidualRows(Frozen):
-    """residual (point, component) in units of the errors; rates (point, component, number), by the numbers.
+    """Residuals of measured points and their derivatives by the numbers.
 
-    unreached: (point,) whether the curve of the model does not come there, so that its end is taken.
-    independent: how many of the residuals are, as those of a response lie across its curve.
+    residual: (point, component) in units of the errors. rates: (point, component, number). unreached:
+    (point,) whether the model's curve does not reach the point, so that the end of the curve is used.
+    independent: number of independent residuals; those of a response are normal to its curve.
     """
 
     residual: FloatArray
@@ -28,7 +29,7 @@ class ResidualRows(Frozen):
 
 
 def joined(parts: Sequence[ResidualRows]) -> ResidualRows:
-    """Rows of several data; components that some have not are 0."""
+    """The rows of several data sets in one; missing components are 0."""
     most = max(part.residual.shape[1] for part in parts)
 
     def wide(values: FloatArray) -> FloatArray:

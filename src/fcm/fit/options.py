@@ -13,40 +13,39 @@ class FitOptions(Frozen):
     frequency_error : relative error of a measured frequency of a response: as good as none.
     backbone_error : relative error of a measured frequency of a backbone.
     damping_error : error of a measured damping ratio, relative to the greatest of its data.
-    search_error : errors of all measured values while a start is looked for, relative to the extent of the
+    search_error : error of all measured values in the search for a start, relative to the extent of the
         data.
-    starts : number of starts that are tried, the numbers of the scene first.
+    starts : greatest number of starts; the first is the scene's numbers.
     search_share : share of the progress bar for trying the starts.
-    weighing_shares : shares of the progress of a finalist that are over after its search, and after each of
+    weighing_shares : shares of a finalist's progress that are complete after its search, and after each of
         two fits with estimated errors.
-    agreeing_starts : number of starts that lead to the same numbers, after which no further one is tried.
-    number_tolerance : relative difference of two numbers up to which they are the same.
-    cost_tolerance : relative difference of two costs up to which they are the same.
+    agreeing_starts : number of starts with the same result after which no further one is tried.
+    number_tolerance : relative difference up to which two numbers are the same.
+    cost_tolerance : relative difference up to which two costs are the same.
     finalists : number of starts whose results are then fitted to all points.
-    few_points : number of points of each data set that are used while a start is looked for.
+    few_points : number of points of each data set in the search for a start.
     start_evaluations, finalist_evaluations : most evaluations of the model for a start, and for a finalist.
     margin : width of the traced range beyond the data on either side, relative to the width of the data.
-    unbounded_factor : factor by which a number without bounds may grow or shrink from that of the scene.
-    max_levels, level_step : most levels of the forces that are traced where every point has its own, and
-        least ratio of two of them.
-    min_effect : change of the data by a factor e of a number, in units of their errors, below which the
+    unbounded_factor : factor by which a number without bounds may grow or shrink from the scene's value.
+    max_levels, level_step : if the points have many force levels, the greatest number of levels to trace,
+        and their least ratio.
+    min_effect : change of the data for a factor e of a number, in units of their errors, below which the
         number has no effect.
-    max_standard_error : relative standard error of a number from which on it is undetermined.
-    max_correlation : correlation of two numbers from which on they may not be distinguishable.
-    sure_standard_error : relative standard error of a number up to which it is determined whatever it is
-        correlated with.
-    poor_misfit : relative misfit of data from which on the model does not describe them.
-    remedied : misfit with a common factor or a change of phases, relative to that without, below which the
-        change is told.
-    scale_error : error of amplitudes, relative to the greatest of their data, while such a factor is looked
-        for. It is so large that measured points are compared with those at the same frequency.
+    max_standard_error : relative standard error of a number above which it is undetermined.
+    max_correlation : correlation above which two numbers may be indistinguishable.
+    sure_standard_error : relative standard error up to which a number is determined despite any correlation.
+    poor_misfit : relative misfit of data above which the model does not describe them.
+    remedied : misfit with a common factor or a change of phases, relative to the misfit without, below which
+        the change is reported.
+    scale_error : error of amplitudes, relative to their greatest, in the search for such a factor. It is so
+        large that each measured point is compared with the response at the same frequency.
     confidence : probability of the intervals of the numbers.
-    reweightings : most times that errors which are not stated are estimated, and the fit is repeated.
-    settled_move : change of the numbers in such a repetition, in standard errors, below which it is the last.
-    min_error : least error of a measured value, relative to the greatest: below is rounding.
+    reweightings : greatest number of times that unstated errors are estimated and the fit repeated.
+    settled_move : change of the numbers in a repetition, in standard errors, below which it is the last.
+    min_error : least error of a measured value, relative to the greatest value; below it is rounding.
     rank_tolerance : singular value, relative to the greatest, below which a combination of numbers has no
         effect at all.
-    lost_residual : residual, in units of the errors, that stands for a point where the model has no response.
+    lost_residual : residual, in units of the errors, that each point gets where the model has no response.
     """
 
     amplitude_error: float = 0.01
@@ -84,12 +83,12 @@ class FitOptions(Frozen):
 
 
 class NearestOptions(Frozen):
-    """Options on how the point of a curve nearest to a measured one is found.
+    """Options of the search for the point of a curve nearest to a measured one.
 
-    max_steps : most steps along the curve.
+    max_steps : greatest number of steps along the curve.
     step_tolerance : length of a step, in units of the errors, below which it is the last.
     max_step : longest step along the curve, in its scaled units.
-    max_halvings : most halvings of a step that leads further away.
+    max_halvings : greatest number of halvings of a step that leads further away.
     """
 
     max_steps: int = 30
@@ -99,15 +98,15 @@ class NearestOptions(Frozen):
 
 
 class BackboneOptions(Frozen):
-    """Options on how a mode of the model is met at the amplitudes of a backbone.
+    """Options on how a mode of the model is solved at the amplitudes of a measured backbone.
 
-    amplitude_factor, modal_amplitude_factor : factors by which a mode is followed beyond the amplitudes
-        measured, and beyond modal ones.
-    shown_factor : factor by which the fitted mode is shown beyond the amplitudes measured.
+    amplitude_factor, modal_amplitude_factor : factors by which a mode is followed beyond measured
+        displacements, and beyond measured modal amplitudes.
+    shown_factor : factor by which the fitted mode is shown beyond the measured amplitudes.
     difference : relative step of the difference quotients of the residual by a number, and of an amplitude
         along a direction.
-    max_steps, step_tolerance : most Newton steps to where a displacement has its amplitude, and length of a
-        step in ln a below which it is the last.
+    max_steps, step_tolerance : greatest number of Newton steps in ln a to the measured displacement, and the
+        length of a step below which it is the last.
     """
 
     amplitude_factor: float = 3.0
@@ -119,14 +118,12 @@ class BackboneOptions(Frozen):
 
 
 class AdviceOptions(Frozen):
-    """Options on the further measurements that are tried, to advise the best one.
+    """Options on the trial measurements from which the best one is advised.
 
-    level_factors : levels of the imagined forces, relative to the least and the greatest level that was
-        measured.
-    max_dofs : most degrees of freedom at which measurements are imagined, those measured first.
-    points : number of points of each imagined measurement.
-    max_ratio : standard error with the measurement, relative to that without, up to which it is worth a
-        sentence.
+    level_factors : trial force levels, relative to the least and the greatest measured level.
+    max_dofs : greatest number of degrees of freedom for trial measurements; the measured ones come first.
+    points : number of points of each trial measurement.
+    max_ratio : standard error with the measurement, relative to that without, up to which it is advised.
     min_eigenvalue : eigenvalue of the scaled information below which it is rounding.
     """
 

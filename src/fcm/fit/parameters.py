@@ -1,4 +1,4 @@
-"""The numbers that are fitted as the unknowns of least squares: in logarithms where they are positive."""
+"""The fitted numbers as unknowns of least squares: logarithms of positive numbers, others scaled."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class FitError(ValueError):
 class Parameters(Frozen):
     """The fitted numbers of a scene, as scaled or logarithmic unknowns.
 
-    start, low, high: (number,); log: (number,) whether the unknown is the number's logarithm; unit (number,):
-    of the unknowns of the others.
+    start, low, high: (number,); log: (number,) whether the unknown is the number's logarithm; unit:
+    (number,) scale of the other unknowns.
     """
 
     scene: Scene
@@ -45,7 +45,7 @@ class Parameters(Frozen):
         return np.where(self.log > 0.0, logs, values / self.unit)
 
     def values(self, x: FloatArray) -> FloatArray:
-        """The numbers of unknowns, which may be infinite."""
+        """The numbers that belong to unknowns x, which may be infinite."""
         return np.where(self.log > 0.0, np.exp(np.where(self.log > 0.0, x, 0.0)), x * self.unit)
 
     def rates(self, values: FloatArray) -> FloatArray:
@@ -53,11 +53,11 @@ class Parameters(Frozen):
         return np.where(self.log > 0.0, values, self.unit)
 
     def at(self, values: FloatArray) -> Scene:
-        """The scene with these numbers as if they had been written in it."""
+        """The scene with these values of the numbers written into it."""
         return with_numbers(self.scene, self.numbers, values)
 
     def starts(self, count: int, seed: int = 1) -> Iterator[FloatArray]:
-        """Unknowns to begin with: the scene's numbers, then some spread evenly within the bounds."""
+        """Starting unknowns: the scene's numbers, then a Latin hypercube sample within the bounds."""
         first = self.unknowns(self.start)
         yield first
         if count == 1:
@@ -74,12 +74,12 @@ class Parameters(Frozen):
 def parameters_of(
     scene: Scene, keys: Sequence[str], bounds: Sequence[tuple[float, float] | None], options: FitOptions = FIT
 ) -> Parameters:
-    """The numbers with these keys; without bounds a positive one may go far up and down.
+    """The parameters with these keys; a number without bounds gets default bounds far below and above it.
 
     Raises
     ------
     FitError
-        If a number stands for several of a scene that differ and are not bounded.
+        If a number starts at 0 and has no bounds.
     """
     numbers = tuple(number_of(scene, key) for key in keys)
     start, low, high = (np.empty(len(numbers)) for _ in range(3))
@@ -96,7 +96,13 @@ def parameters_of(
 
 
 def _up_and_down(start: float, number: Number, options: FitOptions) -> tuple[float, float]:
-    """Default bounds of a number that has none: its start divided and multiplied by a factor."""
+    """Default bounds: the start divided and multiplied by a factor; a negative start is multiplied for low.
+
+    Raises
+    ------
+    FitError
+        If the start is 0.
+    """
     if start > 0.0:
         return start / options.unbounded_factor, start * options.unbounded_factor
     if start == 0.0:

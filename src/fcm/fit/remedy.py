@@ -1,9 +1,9 @@
-r"""What one change of all measured points would do to a misfit: a common factor, phases turned or reversed.
+r"""Whether one change of all measured points repairs a poor misfit: a factor, phases turned or reversed.
 
-The change g y, or g conj(y), of measured complex amplitudes y is that whose inverse h = 1/g fits the computed
-ones c best: the sum of w |h c - y|^2 is least for h = sum w conj(c) y / sum w |c|^2, with its real part where
-the phase stays, and its argument alone where the size does. Computed are the responses with the numbers
-found, and with those of the scene: a fit to wrong units ends where no factor helps.
+The change is g y or g conj(y) of the measured complex amplitudes y. Its inverse h = 1/g fits the computed
+amplitudes c best: the sum of w |h c - y|^2 is least for h = sum w conj(c) y / sum w |c|^2. If the phase is
+kept, h is the real part of this; if the size is kept, only its argument. The responses are computed with the
+fitted numbers and with those of the scene, since a fit to wrong units can end where no factor helps.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Change(Frozen):
-    """A change of measured points: amplitudes times a factor; phases turned, after their sign is changed."""
+    """A change of measured points: a factor on amplitudes; phases reversed if opposite, then turned."""
 
     factor: float = 1.0
     turn: float = 0.0  # [rad]
@@ -39,7 +39,7 @@ class Change(Frozen):
         return replace(data, amplitude=self.factor * data.amplitude, phase=phase, estimated=None)
 
     def __str__(self) -> str:
-        """What is to be done to the points.
+        """The change in words.
 
         >>> str(Change(0.001)), str(Change(turn=-1.5708, opposite=True))
         ('a factor of 0.001 on the amplitudes', 'phases of the opposite sign, turned by -90 degrees')
@@ -54,7 +54,7 @@ class Change(Frozen):
 
     @property
     def question(self) -> str:
-        """What may be wrong with the data."""
+        """A question about what may be wrong with the data."""
         asked = ["are unit and quantity right"] if self.factor != 1.0 else []
         if self.opposite or self.turn:
             asked.append("are phases those of sin(omega t + phase), as of the scene's forces")
@@ -62,7 +62,7 @@ class Change(Frozen):
 
 
 class _Beside(Frozen):
-    """Measured points and those that were computed beside them, as complex amplitudes, with their weights."""
+    """Measured points and the nearest computed ones, as complex amplitudes, with their weights."""
 
     measured: ComplexArray
     computed: ComplexArray
@@ -70,7 +70,7 @@ class _Beside(Frozen):
     phased: bool
 
     def best(self, scaled: bool, turned: bool, opposite: bool) -> tuple[float, Change] | None:
-        """The change of some kind that fits best, and its mean square misfit; None if it is none."""
+        """The best change of a kind, after its mean square misfit; None if there is none."""
         y = self.measured.conj() if opposite else self.measured
         product = complex((self.weight * self.computed.conj() * y).sum())
         size = float((self.weight * np.abs(self.computed) ** 2).sum())
@@ -89,9 +89,9 @@ class _Beside(Frozen):
 def remedy(
     parameters: Parameters, found: Solved, harmonics: tuple[int, ...], options: FitOptions = FIT
 ) -> str:
-    """Sentence on a change of the data that brings a poor misfit below half; empty if none does.
+    """Sentence on a change of the data that reduces a poor misfit below `remedied`; empty if none does.
 
-    It is one of all responses, or of one file alone.
+    The change applies to all responses, or to one file alone.
     """
     data, off = [], []
     for one, rows in zip(found.data, found.parts, strict=True):
@@ -118,7 +118,7 @@ def _of_group(
     harmonics: tuple[int, ...],
     options: FitOptions,
 ) -> str:
-    """What is said of the simplest change of some data, whose misfit is known, among those that do most."""
+    """Sentence on the simplest of the most effective changes of some data; before is their misfit."""
     limit, told = options.remedied * before, list[tuple[int, float, str]]()
     for numbers, whose in ((values, ""), (parameters.start, " with the numbers of the scene")):
         scene = parameters.at(numbers)
@@ -133,7 +133,7 @@ def _of_group(
 
 
 def _changes(beside: _Beside, limit: float) -> list[tuple[int, Change]]:
-    """Changes that fit better than a limit, each with the number of its parts."""
+    """Changes with a misfit below a limit, each after the number of its parts."""
     flags = (False, True) if beside.phased else (False,)
     kinds = [(scaled, turned, other) for scaled in (False, True) for turned in flags for other in flags]
     found = [(sum(kind), best) for kind in kinds if any(kind) and (best := beside.best(*kind)) is not None]
@@ -147,7 +147,7 @@ def _misfit(beside: _Beside) -> float:
 def _beside(
     scene: Scene, group: Sequence[Measured], harmonics: tuple[int, ...], options: FitOptions
 ) -> _Beside | None:
-    """Measured points beside those of the model nearest to them; None where it has no response there."""
+    """Measured points with the model's nearest points; None where the model has no response."""
     parts = []
     for one in group:
         plain = replace(one, estimated=None, amplitude_error=None)

@@ -1,12 +1,12 @@
-"""Least squares from several starts: blurred first, which finds the way, then with the errors as stated.
+"""Least squares from several starts: first with large (blurred) errors, then with the stated ones.
 
-Where errors are not stated, those estimated and the numbers depend on one another. They are found by turns,
-so that the likelihood grows, until the numbers rest beside their standard errors. This is begun with a floor
-of errors and with a share of the amplitudes, as it may rest with either; the likeliest end is told.
+If errors are not stated, they are estimated from the residuals, and the fit is repeated with them. Both steps
+alternate, so that the likelihood grows, until the numbers move little compared with their standard errors.
+There are two such iterations, since each may converge to another result: one begins with the likeliest form
+of the errors, one with errors proportional to the amplitudes. The likeliest result is returned.
 
-A fit is a series of searches, each by its number in that series. What a search has come to is kept, where
-there is a place for it. A fit that goes on does not repeat finished searches, and begins the one that was
-interrupted where it was best.
+A fit is a series of numbered searches. Their results are saved if there is a place for them. A resumed fit
+does not repeat finished searches, and continues the interrupted one from its best unknowns.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ Tell = Callable[[float, str], None]
 
 
 class SearchResult(Frozen):
-    """Unknowns that a search has come to, and their cost; None where there is no response at its start.
+    """Final unknowns x of a search and their cost; x is None if the model has no response at the start.
 
-    settled : whether it ended at a minimum, and not for the number of its evaluations.
+    settled : whether it ended at a minimum, not at the limit of evaluations.
     """
 
     x: FloatArray | None
@@ -43,7 +43,7 @@ class SearchResult(Frozen):
 
 
 class SavedSearches(Protocol):
-    """Protocol of saved searches by their number: finished ones, and states of interrupted ones."""
+    """Protocol of saved searches by number: results of finished ones, states of interrupted ones."""
 
     finished: dict[int, list[Any]]
     states: dict[int, list[Any]]
@@ -57,23 +57,23 @@ class SavedSearches(Protocol):
 
 @dataclass
 class SearchStart:
-    """Numbers that were tried: where they began, and where they came to, with the cost there.
+    """A start of the fit: its first and last numbers, and the cost at the last.
 
-    cost is that of a start while it is sought, of a finalist that of all points, with the errors of the best;
-    effect: (number,) whether the data change with a number there.
+    cost: in the search for starts that of the thinned data with blurred errors; for a finalist that of all
+    points with the errors of the best finalist. effect: (number,) whether a number changes the data there.
     """
 
     begin: FloatArray
     end: FloatArray
     cost: float
     effect: npt.NDArray[np.bool_]
-    points: int = 0  # that cost is of
+    points: int = 0  # number of points in the cost
     finished: bool = False
 
 
 @dataclass
 class Solved:
-    """The best numbers, their rows by data set, the data with the errors they were given, and the starts."""
+    """The best numbers, their rows by data set, the data with the errors used, and the starts."""
 
     values: FloatArray
     parts: list[ResidualRows]
@@ -89,9 +89,9 @@ class Solved:
 
 @dataclass
 class FitProblem:
-    """Residuals of all data as a function of the unknowns, each point evaluated once.
+    """Residuals of all data as a function of the unknowns; the last evaluation is cached.
 
-    best : of all unknowns that were evaluated, those of the least cost.
+    best : the evaluated unknowns of the least cost.
     """
 
     parameters: Parameters
@@ -103,7 +103,7 @@ class FitProblem:
     best: SearchResult | None = None
 
     def parts(self, x: FloatArray) -> list[ResidualRows] | None:
-        """Rows of each data set; None where the model has no response."""
+        """Rows of each data set; None if the model has no response."""
         if self.known[0] != x.tobytes():
             try:
                 self.known = (x.tobytes(), self._parts(x))
@@ -143,7 +143,10 @@ class FitProblem:
     def least(
         self, x: FloatArray, evaluations: int, tell: Callable[[SearchResult], None] | None = None
     ) -> SearchResult:
-        """The least cost next to a start; told of each evaluation. None where there is no response."""
+        """The local minimum of the cost from start x; tell is called with the result of each evaluation.
+
+        x of the result is None if the model has no response at the start.
+        """
         low, high = (self.parameters.unknowns(end) for end in (self.parameters.low, self.parameters.high))
         x = np.clip(x, low, high)
         inside = np.clip(x, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
@@ -164,9 +167,9 @@ class FitProblem:
         return SearchResult(found.x, float(found.cost), bool(found.status > 0))
 
     def apart(self, x: FloatArray, other: FloatArray) -> float:
-        """Distance of two sets of unknowns, in standard errors of the combination in which they differ.
+        """Distance of two sets of unknowns, in standard errors along their difference.
 
-        With the rates J at x, |J (other - x)| over the spread of the residuals.
+        This is |J (other - x)| over the spread of the residuals, with the rates J at x.
         """
         moved, residual = self.jacobian(x) @ (other - x), self.residual(x)
         freedom = max(sum(part.independent for part in self.parts(x) or []) - x.size, 1)
@@ -174,13 +177,13 @@ class FitProblem:
         return float(np.linalg.norm(moved)) / max(spread, 1e-300)
 
     def note(self, found: SearchResult) -> None:
-        """Unknowns that were evaluated, now or in an earlier run."""
+        """Updates the best unknowns with a result of this run or an earlier one."""
         if found.x is not None and (self.best is None or found.cost < self.best.cost):
             self.best = found
 
 
 class Searches:
-    """The searches of a fit in their order, told and kept."""
+    """Runs the searches of a fit in order, reports their progress and saves their results."""
 
     def __init__(self, kept: SavedSearches | None = None, tell: Tell | None = None) -> None:
         self.kept, self.tell, self.number = kept, tell, 0
@@ -188,9 +191,9 @@ class Searches:
     def least(
         self, problem: FitProblem, x: FloatArray, evaluations: int, share: tuple[float, float], what: str
     ) -> SearchResult:
-        """Result of a search from given unknowns, taken from the saved ones if there.
+        """Result of a search from given unknowns, or the saved result if there is one.
 
-        `share` is its part of the progress bar.
+        share: begin and end of its part of the progress bar.
         """
         number, evaluated, least = self.number, 0, np.inf
         self.number += 1
@@ -230,18 +233,18 @@ def solved(
     searches: Searches | None = None,
     begin: Sequence[FloatArray] = (),
 ) -> Solved:
-    """The numbers with which the residuals are least.
+    """The numbers with the least residuals.
 
-    begin : numbers of which some are known to be near; those with the least residuals are begun with.
+    begin : sets of numbers near the solution; those with the least cost replace the usual starts.
 
-    searches : those of an earlier run with the same arguments, and where more goes.
+    searches : saved searches of an earlier run with the same arguments; new results are added.
 
     Raises
     ------
     FitError
         If the model has no response near the data from any start.
     KeyboardInterrupt
-        If nothing is found then; else the best numbers so far are returned, and that it was interrupted.
+        If it is interrupted before any evaluation; later the best numbers so far are returned.
     """
     few = [_thinned(one, options.few_points) for one in data]
     rough = FitProblem(parameters, few, harmonics, True, options)
@@ -285,7 +288,7 @@ def solved(
 
 
 def _so_far(fine: FitProblem, rough: FitProblem, starts: list[SearchStart]) -> Solved:
-    """The best numbers of a fit that was interrupted: of all points where these were begun with.
+    """The best numbers of an interrupted fit: from the fit to all points if it has begun, else from a start.
 
     Raises
     ------
@@ -300,9 +303,9 @@ def _so_far(fine: FitProblem, rough: FitProblem, starts: list[SearchStart]) -> S
 
 @dataclass
 class _End:
-    """Final state of a finalist: residuals with the errors there, and how unlikely they are.
+    """A finalist: its problem with the errors used, its unknowns, and how unlikely the residuals are.
 
-    before : unknowns of the least cost with the errors that all finalists begin with.
+    before : unknowns of the least cost with the initial errors, which are the same for all finalists.
     """
 
     start: SearchStart
@@ -317,9 +320,9 @@ class _End:
 def _weighed(
     end: _End, share: bool, options: FitOptions, searches: Searches, of_bar: tuple[float, float]
 ) -> _End:
-    """The errors that residuals tell, where none are stated, and the numbers with them, until they rest.
+    """Estimates unstated errors from the residuals and fits with them, in turns, until the numbers settle.
 
-    share : whether it is begun with errors that are a share of the amplitudes; of_bar : share of the bar.
+    share : whether the first errors are proportional to the amplitudes; of_bar : part of the progress bar.
     """
     try:
         for k in range(options.reweightings + 1):
@@ -348,14 +351,14 @@ def _weighed(
 
 
 def _unstated(data: Sequence[Measured]) -> bool:
-    """Whether there are responses nothing is said of whose errors."""
+    """Whether there are responses without stated errors."""
     return any(one.damping is None and one.amplitude_error is None for one in data)
 
 
 def _likeliest(
     ends: Sequence[_End], starts: list[SearchStart], options: FitOptions, interrupted: bool
 ) -> Solved:
-    """The numbers of the likeliest end, and the costs of all finalists with its errors."""
+    """The numbers of the likeliest finalist; sets the costs of all finalists, with its errors."""
     best = ends[0]
     for end in ends[1:]:
         if end.unlikely < best.unlikely - options.cost_tolerance:
@@ -378,7 +381,10 @@ def _tried(
     searches: Searches,
     begins: Sequence[FloatArray] = (),
 ) -> None:
-    """Starts, until some have led to the same numbers, and these are the best; begins: other than usual."""
+    """Fits the thinned data from each start, until `agreeing_starts` end at the same, best numbers.
+
+    starts : list to which the starts are added; begins : unknowns in place of the usual starts.
+    """
     every = begins or parameters.starts(options.starts)
     most = len(begins) or options.starts
     for k, x in enumerate(every):
@@ -402,7 +408,7 @@ def _tried(
 
 
 def _by_cost(starts: Sequence[SearchStart], options: FitOptions) -> list[SearchStart]:
-    """Starts ordered by cost; of equal costs the earlier one, nearer to the scene, is first."""
+    """Starts ordered by cost; among nearly equal least costs the earliest start is first."""
     least = min(one.cost for one in starts)
     return sorted(
         starts, key=lambda one: one.cost if one.cost > least * (1.0 + options.cost_tolerance) else least

@@ -1,9 +1,10 @@
-r"""Errors of measured points that nothing is said of, estimated from the residuals of a first fit.
+r"""Unstated errors of measured points, estimated from the residuals of a first fit.
 
-The errors of amplitudes A of a response are a floor and a share, sigma^2 = a^2 + (b A)^2, as of a sensor with
-noise and with a calibration. a and b are of maximum likelihood, with normal distances r: they minimise the
-sum of ln sigma^2 + r^2 / sigma^2. Only one of them is taken where that is hardly less likely. Frequencies and
-damping ratios of a backbone err by one value each, their root mean square.
+The errors of amplitudes A of a response have a floor a and a share b: sigma^2 = a^2 + (b A)^2, as of a sensor
+with noise and a calibration error. a and b maximise the likelihood of normally distributed distances r: they
+minimise the sum of ln sigma^2 + r^2 / sigma^2. Only one of them is used if the other improves the likelihood
+too little. The frequencies of a backbone have one common error, its damping ratios another: the root mean
+squares.
 
 Sources: Carroll and Ruppert, "Transformation and Weighting in Regression" (1988), chapter 3; Schwarz,
 "Estimating the Dimension of a Model", Annals of Statistics 6 (1978).
@@ -27,11 +28,11 @@ from fcm.model.scene import FloatArray, Measured
 def reweighted(
     data: Sequence[Measured], parts: Sequence[ResidualRows], options: FitOptions, share: bool = False
 ) -> tuple[list[Measured], float]:
-    """The measured points with estimated errors unless they are stated, and how unlikely their distances are.
+    """The data with estimated errors where none are stated, and how unlikely the distances are.
 
-    Responses of a quantity have them in common; share: whether they are taken as a share of the amplitudes,
-    though others be likelier. Unlikely: the sum of ln sigma^2 + r^2 / sigma^2 over all
-    components, with sigma = 1 where r is in units of errors that are stated.
+    All responses of one quantity share their errors. share: whether to use errors proportional to the
+    amplitudes even if others are likelier. The unlikeliness is the sum of ln sigma^2 + r^2 / sigma^2 over all
+    components; for stated errors r is in their units, and sigma = 1.
     """
     found, unlikely = list(data), 0.0
     alike: dict[str, list[int]] = {}
@@ -56,7 +57,7 @@ def reweighted(
 
 
 def _of_backbone(data: Measured, rows: ResidualRows, options: FitOptions) -> tuple[Measured, float]:
-    """A backbone with one error for all frequencies and one for all damping ratios, and its unlikeliness."""
+    """A backbone with a common error of frequencies and one of damping ratios, and its unlikeliness."""
     assert data.damping is not None
     distance = rows.residual[:, :2] * backbone_errors(data, options)
     square = (data.weight[:, None] * distance**2).mean(axis=0)
@@ -68,7 +69,7 @@ def _of_backbone(data: Measured, rows: ResidualRows, options: FitOptions) -> tup
 
 
 def _squares(data: Measured, rows: ResidualRows, options: FitOptions) -> FloatArray:
-    """Weighted squares of the distances of a response's points, for each independent component."""
+    """Weighted squared distances (point,) of a response's points, per independent component."""
     unit, components = errors_of(data, False, options).amplitude, data.components - 1
     distance: FloatArray = (rows.residual[:, : components + 1] ** 2).sum(axis=1) * unit**2
     return distance * data.weight / components
@@ -79,9 +80,9 @@ def _errors(
 ) -> tuple[float, FloatArray]:
     """How unlikely the distances are, and the errors sigma (point,) that fit their squares best.
 
-    components : (point,) of each, that are independent; share: whether a share alone is looked at. A floor
-    alone, a share alone, or both; a further number must earn its place (Schwarz's criterion). Points of
-    amplitude 0 have no share, so that there is a floor.
+    The errors are a floor alone, a share alone, or both, by Schwarz's criterion. A share alone is impossible
+    with points of amplitude 0. components : (point,) number of independent ones; share : whether to use a
+    share alone.
     """
     top = float(amplitude.max())
     typical = max(float(np.sqrt(square.mean())), least * top)
@@ -91,7 +92,7 @@ def _errors(
         unlikely = float((components * (np.log(size) + square / size)).sum())
         return unlikely + numbers * np.log(components.sum()), np.sqrt(size)
 
-    # of one number the likeliest is known: the mean of the squares over the shape
+    # with a single parameter the maximum is known: the weighted mean of square / shape
     shapes = [np.ones(amplitude.size), (amplitude / top) ** 2][: 2 if amplitude.all() else 1]
     found = [told(shape * np.average(square / shape, weights=components), 1) for shape in shapes]
     if share:

@@ -21,10 +21,11 @@ def _none() -> FloatArray:
 
 
 class Interface(Frozen):
-    """The pairs of a contact: coordinates of both nodes (pair, 3), and of those without a partner.
+    """The node pairs of a contact: coordinates (node, 3) of both sides, and of nodes without a partner.
 
-    sets: names of the two sides; one where they touch the ground, none of a file of pairs. nodes: of each
-    pair, one where it touches the ground.
+    first, second: the two nodes of each pair. alone, other_alone: unpaired nodes of either side. sets: names
+    of the node sets of both sides: one for a contact with the ground, none for a file of pairs. nodes: names
+    of the nodes of each pair: one for a contact with the ground.
     """
 
     name: str

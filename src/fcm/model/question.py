@@ -1,10 +1,10 @@
-"""A note that asks about what a scene says and hardly means."""
+"""Notes that question implausible values of a scene."""
 
 from __future__ import annotations
 
 
 class Question(str):
-    """A note that asks whether what a scene says is meant; commands tell it as a warning.
+    """A note that asks whether a value of the scene is intended; commands print it as a warning.
 
     >>> Question("modal.damping: is 2 right?").startswith("modal")
     True
@@ -14,6 +14,6 @@ class Question(str):
 
 
 class MissingModes(Question):
-    """Says that modes within the range are not kept: how much their lack changes peaks is unknown."""
+    """A note that modes within the frequency range are missing; their effect on peaks is unknown."""
 
     __slots__ = ()

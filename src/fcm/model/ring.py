@@ -14,17 +14,17 @@ from fcm.frozen import Frozen
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-NEXT = "next."  # how the names of the next sector's degrees of freedom begin
+NEXT = "next."  # prefix of the names of the next sector's degrees of freedom
 
 
 class Ring(Frozen):
-    """Sectors that do the same one after the other: x of sector k at t is x of sector 0 at t + k phi / omega.
+    """Equal sectors that move alike with a time shift: x_k(t) = x_0(t + k phi / omega) for sector k.
 
-    With phi = 2 pi engine_order / sectors: the forces on sector k have the phase k phi, and harmonic h of the
-    motion is X_h exp(i h k phi). In space that is h engine_order waves around the ring, of which sectors see
-    the remainder r by their number: it meets the modes of the nodal diameter r or sectors - r.
+    phi is 2 pi engine_order / sectors. The forces on sector k have the phase k phi, and harmonic h of its
+    motion is X_h exp(i h k phi). This is a wave with h engine_order periods around the ring. The sectors
+    alias it to r = h engine_order mod sectors, so it excites the modes of nodal diameter r or sectors - r.
 
-    The modes of diameter n are those of a sector whose next moves as itself times exp(2 pi i n / sectors).
+    In a mode of diameter n the next sector moves as this one times exp(2 pi i n / sectors).
     """
 
     sectors: int
@@ -33,21 +33,21 @@ class Ring(Frozen):
     damping: FloatArray  # (mode,)
     shapes: ComplexArray  # (mode, dof), of modal mass 1 for each sector
     diameter: npt.NDArray[np.int64]  # (mode,)
-    added: npt.NDArray[np.bool_]  # (mode,) those that stand for the flexibility of modes left out
+    added: npt.NDArray[np.bool_]  # (mode,) True for those that stand for the flexibility of omitted modes
 
     def waves(self, harmonic: int) -> int:
-        """The number of waves of a harmonic around the ring, from 0 to sectors - 1."""
+        """The aliased number of waves of a harmonic around the ring, from 0 to sectors - 1."""
         return harmonic * self.engine_order % self.sectors
 
     def meets(self, harmonic: int) -> int:
-        """The nodal diameter of the modes that a harmonic meets."""
+        """The nodal diameter of the modes that a harmonic excites."""
         waves = self.waves(harmonic)
         return min(waves, self.sectors - waves)
 
     def modes(self, harmonic: int) -> tuple[FloatArray, FloatArray, ComplexArray]:
-        """Frequency (mode,), damping (mode,) and shapes (mode, dof) that a harmonic meets.
+        """Frequency (mode,), damping (mode,) and shapes (mode, dof) of the modes that a harmonic excites.
 
-        Beyond half of the sectors they travel the other way, and the shapes are the conjugates.
+        More waves than sectors / 2 are a backward travelling wave; its shapes are the complex conjugates.
         """
         which = self.diameter == self.meets(harmonic)
         shapes = self.shapes[which]
@@ -55,13 +55,13 @@ class Ring(Frozen):
         return self.frequency[which], self.damping[which], shapes.conj() if backward else shapes
 
     def lacking(self, harmonics: Iterable[int]) -> dict[int, int]:
-        """The nodal diameters of those harmonics that meet no modes (harmonic: diameter)."""
+        """Nodal diameter by harmonic, for those harmonics whose diameter has no modes."""
         there = set(self.diameter.tolist())
         return {h: self.meets(h) for h in harmonics if self.meets(h) not in there}
 
     @property
     def period(self) -> int:
-        """Sectors after which the motion of all harmonics repeats."""
+        """Number of sectors after which the motion repeats."""
         return self.sectors // gcd(self.engine_order, self.sectors)
 
     def at(self, used: npt.NDArray[np.bool_]) -> Ring:
@@ -70,7 +70,7 @@ class Ring(Frozen):
 
 
 def with_own(dofs: tuple[str, ...], used: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Mask of the used degrees of freedom, with a sector's own added for each used one of the next sector.
+    """The mask used (dof,) that also includes x for each used next.x, its copy in the next sector.
 
     >>> with_own(("tip", "root", "next.tip", "next.root"), np.array([False, False, True, False])).tolist()
     [True, False, True, False]
@@ -80,7 +80,7 @@ def with_own(dofs: tuple[str, ...], used: npt.NDArray[np.bool_]) -> npt.NDArray[
 
 
 def of_sector(name: str, sector: int) -> str:
-    """The name of a sector's degree of freedom or contact in the whole ring.
+    """The name in the whole ring of a degree of freedom or contact of a sector.
 
     >>> of_sector("tip", 3)
     'tip@3'

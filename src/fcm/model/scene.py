@@ -1,4 +1,4 @@
-"""A checked scene: the modal structure, its contacts and forces, the range, the curves to trace."""
+"""The checked scene: modal structure, contacts, forces, frequency range and the curves to trace."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 FloatArray = npt.NDArray[np.float64]
-Address = tuple[str | int, ...]  # of a number of a scene, or of a vector whose numbers are all set
-NO_RANGE = (np.nan, np.nan)  # of a scene with nothing to trace
+Address = tuple[str | int, ...]  # of a number of a scene, or of a vector all of whose entries are set
+NO_RANGE = (np.nan, np.nan)  # frequency range of a scene with nothing to trace
 
 
 class Modal(Frozen):
@@ -36,8 +36,8 @@ class Modal(Frozen):
     frequency: FloatArray  # (mode,) undamped, angular [rad/s]
     damping: FloatArray  # (mode,) ratio [-]
     shapes: FloatArray  # (mode, dof)
-    added: int = 0  # the last so many are no modes of the structure, but the flexibility of the others
-    complete: bool = False  # whether it is known that there are no others
+    added: int = 0  # number of modes at the end that stand for the flexibility of omitted modes
+    complete: bool = False  # whether it is known that the structure has no further modes
 
     def at(self, used: npt.NDArray[np.bool_]) -> Modal:
         """The modes restricted to some of the degrees of freedom."""
@@ -48,7 +48,7 @@ class Modal(Frozen):
 class Contact(Frozen):
     """A contact; its relative displacements are ``u = tangential @ x`` and ``v = normal @ x``.
 
-    In a plane it slides along ``second @ x``, too.
+    A planar contact also slides along ``second @ x``.
     """
 
     name: str
@@ -58,14 +58,14 @@ class Contact(Frozen):
     k_u: float
     k_v: float
     n_0: float  # preload, negative for a gap
-    second: FloatArray | None = None  # (dof,) at right angles to the other, of a contact in a plane
-    law: ContactLaw | None = None  # of its own; the numbers then are of what resembles it, to begin with
-    # displacements along its tangential directions at which it starts unstressed, by the scene's [start]
+    second: FloatArray | None = None  # (dof,) of a planar contact, at right angles to tangential
+    law: ContactLaw | None = None  # a user's law; mu, k_u, k_v and n_0 then only approximate it
+    # displacements along the sliding directions at which the friction force is zero, from [start]
     slider: tuple[float, ...] = ()
 
     @property
     def directions(self) -> tuple[FloatArray, ...]:
-        """Directions of the contact: those along which it slides, then the normal."""
+        """Directions of the contact: one or two sliding directions, then the normal."""
         if self.second is None:
             return self.tangential, self.normal
         return self.tangential, self.second, self.normal
@@ -77,7 +77,7 @@ class Contact(Frozen):
 
 
 def has_friction(contact: Contact) -> bool:
-    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
+    """Whether the contact can exert friction; otherwise it only opens and closes."""
     return contact.mu > 0.0 and contact.k_u > 0.0
 
 
@@ -87,7 +87,7 @@ class Force(Frozen):
     direction: FloatArray  # (dof,)
     amplitude: float
     phase: float  # [rad]
-    power: int = 0  # 2 for forces in proportion to omega^2, as of an unbalance; omega in rad/s
+    power: int = 0  # 2 for a force proportional to omega^2, as from unbalance; omega in rad/s
     harmonic: int = 1
 
 
@@ -99,51 +99,51 @@ class Load(Frozen):
 
 
 class Phase(Frozen):
-    """One phase of a schedule: a frequency held for some cycles."""
+    """One phase of a schedule: a constant frequency for a number of cycles."""
 
     frequency: float  # [rad/s]
     cycles: float
 
 
 class Start(Frozen):
-    """The state that a time simulation starts from, and the friction of contacts that never slip."""
+    """The initial state of a time simulation; its friction also holds for contacts that never slip."""
 
     displacement: FloatArray  # (mode,) modal
     velocity: FloatArray  # (mode,) modal
     friction: FloatArray  # (contact,) friction forces
     angle: float  # omega t of the external forces [rad]
-    second: FloatArray | None = None  # (contact,) those along second directions, with contacts in a plane
+    second: FloatArray | None = None  # (contact,) along second directions, if a contact is planar
 
     @property
     def forces(self) -> tuple[FloatArray, ...]:
-        """Friction forces (contact,) along each direction in which contacts slide."""
+        """Friction forces (contact,), one array for each sliding direction."""
         return (self.friction,) if self.second is None else (self.friction, self.second)
 
     @property
     def friction_size(self) -> FloatArray:
-        """Sizes (contact,) of the friction forces."""
+        """Magnitudes (contact,) of the friction forces."""
         found: FloatArray = np.linalg.norm(self.forces, axis=0)
         return found
 
 
 class HeldContact(Frozen):
-    """A contact that is not computed, as it always sticks, or always is open."""
+    """A contact that is not computed because it always sticks or is always open."""
 
-    place: int  # among all contacts of the scene
+    place: int  # index among all contacts of the scene
     contact: Contact
     open: bool
-    rest: float = 0.0  # its slip motion w, if it sticks
+    rest: float = 0.0  # the constant slip motion w of a sticking contact
 
 
 class Aim(Frozen):
-    """Quantity to minimise: the peak of a degree of freedom, or its greatest amplitude including the ends."""
+    """Quantity to minimise: the peak of a degree of freedom; with ends, its maximum on the range."""
 
     dof: str
     ends: bool = False
 
 
 class Optimum(Frozen):
-    """Numbers that are to be chosen so that the greatest of the aims is least."""
+    """A minimax problem: the numbers to vary so that the greatest of the aims becomes least."""
 
     vary: tuple[str, ...]
     bounds: tuple[tuple[float, float], ...]  # of each number
@@ -151,21 +151,21 @@ class Optimum(Frozen):
 
 
 class Measured(Frozen):
-    """Measured points that numbers are fitted to: of a response, or of a backbone if it has damping.
+    """Measured points to fit to: points of a backbone if damping is given, otherwise of a forced response.
 
-    Errors are relative, None where nothing is said of them; see `fcm.fit.options`.
+    The errors are relative, and None where the scene states none; see `fcm.fit.options`.
     """
 
     file: str
-    dof: str  # empty of a backbone whose amplitude is modal
+    dof: str  # empty for a backbone whose amplitude is modal
     frequency: FloatArray  # (point,) [rad/s]
     amplitude: FloatArray  # (point,) of the quantity
-    weight: FloatArray  # (point,) of the square of its residual
-    level: FloatArray  # (point,) of the scene's forces
+    weight: FloatArray  # (point,) weight of the squared residual
+    level: FloatArray  # (point,) factor on the scene's forces
     phase: FloatArray | None = None  # (point,) [rad] of amplitude * sin(omega t + phase)
     damping: FloatArray | None = None  # (point,) ratios
     quantity: str = "displacement"
-    mode: int = 1  # of a backbone
+    mode: int = 1  # number of the mode of a backbone
     amplitude_error: float | None = None
     frequency_error: float | None = None
     damping_error: float | None = None
@@ -183,7 +183,7 @@ class Measured(Frozen):
 
     @property
     def values(self) -> int:
-        """Number of measured values; the frequencies of a response were chosen, and are not counted."""
+        """Number of measured values; the frequencies of a forced response were set, and do not count."""
         return self.points * (self.components if self.damping is not None else self.components - 1)
 
 
@@ -193,11 +193,11 @@ class Fit(Frozen):
     vary: tuple[str, ...]
     bounds: tuple[tuple[float, float] | None, ...]  # of each number
     data: tuple[Measured, ...]
-    starts: int | None = None  # tried at most; None for the usual ones
+    starts: int | None = None  # greatest number of starts; None for the default
 
 
 class SourceKey(Protocol):
-    """A key of a sweep, and whether its values are random draws."""
+    """Protocol of a swept key; drawn tells whether its values are random draws."""
 
     @property
     def key(self) -> str: ...
@@ -207,7 +207,7 @@ class SourceKey(Protocol):
 
 
 class Source(Protocol):
-    """Protocol of what a scene was made of, so that any of its numbers can be changed; `fcm.scene.draft`."""
+    """Protocol of the input that a scene was built from, for changes of its numbers; `fcm.scene.draft`."""
 
     @property
     def parts(self) -> dict[str, Any]: ...
@@ -218,17 +218,17 @@ class Source(Protocol):
     def curve(
         self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}, fix: bool = False
     ) -> Scene:
-        """The scene with swept values, and then numbers at addresses; fix: it is then made of these."""
+        """The scene with swept values, then numbers at addresses; fix: keep them in the new source."""
 
     def fixed(self, scene: Scene) -> Source:
-        """The source of a curve of the scene, with its swept values in place."""
+        """The source of one curve of the sweep, with its swept values written into it."""
 
     def at(self, used: npt.NDArray[np.bool_]) -> Source:
         """The source restricted to some of the degrees of freedom."""
 
 
 class Scene(Frozen):
-    """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
+    """Everything that a calculation needs; immutable, with angular frequencies [rad/s]."""
 
     title: str
     modal: Modal
@@ -236,32 +236,30 @@ class Scene(Frozen):
     forces: tuple[Force, ...]
     frequency_range: tuple[float, float]  # [rad/s], NO_RANGE if nothing is traced
     max_step: float  # longest step along a curve, relative to the curve's own extent
-    harmonics: tuple[int, ...] | None = None  # of the balance, if the scene says so
-    accuracy: float | None = None  # that is to choose them, if the scene says so
+    harmonics: tuple[int, ...] | None = None  # of harmonic balance, if the scene sets them
+    accuracy: float | None = None  # from which harmonics are chosen, if the scene sets it
     frequency_unit: str = "rad/s"  # the unit of the scene's file and of results: "rad/s" or "Hz"
     schedule: tuple[Phase, ...] = ()
-    start: Start | None = None  # of the schedule, and of contacts that never slip; None is rest
+    start: Start | None = None  # initial state of the schedule, friction of stuck contacts; None for rest
     parameters: dict[str, float] = field(default_factory=dict)  # the swept values of this curve
     curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
     name: str = ""  # file or bundled name, for messages
-    reported: tuple[str, ...] = ()  # of modal.dofs, those in results; the others carry loads and contacts
-    output: tuple[str, ...] = ()  # of these, those that the scene asks for; none where it does not say
-    loads: tuple[Load, ...] = ()  # static, beside the forces
+    reported: tuple[str, ...] = ()  # those of modal.dofs in results; the others carry loads and contacts
+    output: tuple[str, ...] = ()  # those of reported that the scene requests; empty if it does not say
+    loads: tuple[Load, ...] = ()  # static loads
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
-    ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
-    notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
+    ring: Ring | None = None  # ring of which this is one sector; modal then holds the modes of the mean
+    notes: tuple[str, ...] = ()  # remarks on how the scene was read, for readers of a result
     read: tuple[str, ...] = ()  # what was read as the matrices of [structure], for `fcm plot modes`
     optimum: Optimum | None = None
     fit: Fit | None = None
-    of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]
-    exchanged: float = 0.0  # [rad/s] of a mode if stiffness and mass are; see `scene.reduction.exchanged`
-    files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
-    interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # where pairs are
-    held: tuple[
-        HeldContact, ...
-    ] = ()  # that are not among the contacts: springs, or nothing, in their places
-    draft: Source | None = field(default=None, repr=False, compare=False)  # what it was made of
-    tuned: Scene | None = field(default=None, repr=False, compare=False)  # of a mistuned ring: a sector of it
+    of_matrices: bool = False  # whether the modes come from [structure]; otherwise from [modal]
+    exchanged: float = 0.0  # [rad/s] of a mode if K and M are swapped; see `scene.reduction.exchanged`
+    files: tuple[Path, ...] = field(default=(), compare=False)  # files that were read
+    interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # places of node pairs
+    held: tuple[HeldContact, ...] = ()  # contacts replaced by springs or by nothing; they are not in contacts
+    draft: Source | None = field(default=None, repr=False, compare=False)  # the input it was built from
+    tuned: Scene | None = field(default=None, repr=False, compare=False)  # a sector of the tuned ring
 
     def __repr__(self) -> str:
         """Name and sizes, without the arrays.
@@ -292,11 +290,11 @@ class Scene(Frozen):
         return () if self.draft is None else tuple(one.key for one in self.draft.swept if one.drawn)
 
     def reports(self, dof: str) -> bool:
-        """Whether results have a degree of freedom; others only carry loads and contacts."""
+        """Whether results contain a degree of freedom; others only carry loads and contacts."""
         return not self.reported or dof in self.reported
 
     def asks_for(self, dof: str) -> bool:
-        """Whether an accuracy is asked of a degree of freedom: one of `output`, or any in the results."""
+        """Whether the accuracy applies to a degree of freedom: one of `output`, or if empty, of results."""
         return dof in self.output if self.output else self.reports(dof)
 
     def with_step(self, max_step: float) -> Scene:
@@ -305,29 +303,30 @@ class Scene(Frozen):
         return replace(self, max_step=max_step, curves=curves)
 
     def holding(self, held: Sequence[HeldContact]) -> Scene:
-        """The scene with some of its contacts held."""
+        """The scene with some of its contacts held, that is, not computed."""
         places = {one.place for one in held}
         contacts = tuple(one for i, one in enumerate(self.contacts) if i not in places)
         return replace(self, contacts=contacts, held=tuple(held), draft=None)
 
     @property
     def with_own_laws(self) -> bool:
-        """Whether a contact of a curve has a law of its own."""
+        """Whether a contact of any curve has a user's contact law."""
         return any(one.law is not None for curve in self.each_curve() for one in curve.contacts)
 
     def with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
-        """The scene with laws of one's own, by the names of the contacts that have them.
+        """The scene with the user's contact laws, a dict by names of contacts.
 
-        The name of a [[contact]] with nodes stands for the contacts of all its pairs. The law of a pair by
-        its own name goes before it.
+        The name of a [[contact]] with nodes stands for the contacts of all its pairs. A law under the name of
+        a single pair takes precedence.
 
-        The search for solutions still begins with the contact's mu, k_u, k_v and n_0. They give the stiffness
-        of what resembles it, and the level of the forces beyond which it may slip or open.
+        The search for solutions still starts from the contact's mu, k_u, k_v and n_0. They give an
+        approximate stiffness, and the force level beyond which the contact may slip or open.
 
         Raises
         ------
         ValueError
-            If there is no contact of a name, or its numbers are swept, which its law has not; and of a ring.
+            If no contact has a name, if numbers of such a contact are swept (its law does not have them), or
+            if the scene is a sector of a ring.
 
         Examples
         --------
@@ -365,7 +364,7 @@ class Scene(Frozen):
         return replace(self._with_laws(laws), curves=tuple(one._with_laws(laws) for one in self.curves))
 
     def _groups(self) -> dict[str, str]:
-        """The name of the [[contact]] with nodes that each contact is of; empty of others."""
+        """By contact, the name of the [[contact]] with nodes that it belongs to; empty for other contacts."""
         drafts = [] if self.draft is None else self.draft.parts["contact"]
         of_pairs = {one["name"]: one["group"] for one in drafts if "group" in one}
         return {one.name: of_pairs.get(one.name, "") for one in self.contacts}
@@ -380,9 +379,9 @@ class Scene(Frozen):
         return replace(self, contacts=contacts)
 
     def started(self) -> Scene:
-        """The scene with the sliders of its contacts where [start] has them.
+        """The scene with the sliders of its contacts set from [start].
 
-        There the friction force is k_u (u - slider), with the displacement u that the scene starts with.
+        The friction force of [start] is k_u (u - slider), with u from the initial displacement.
         """
         start = self.start
         if start is None:
@@ -396,16 +395,16 @@ class Scene(Frozen):
         return replace(self, contacts=tuple(contacts))
 
     def unstressed(self) -> Scene:
-        """The scene with contacts that start unstressed at rest."""
+        """The scene with no initial friction: its contacts are unstressed at zero displacement."""
         return replace(self, contacts=tuple(replace(one, slider=()) for one in self.contacts))
 
     @cached_property
     def strained(self) -> bool:
-        """Whether something strains it at rest: static loads, or friction that contacts start with."""
+        """Whether the structure is strained at rest, by static loads or by initial friction."""
         return bool(self.loads) or any(one.slider for one in self.contacts)
 
     def sliders(self) -> FloatArray:
-        """Displacements (port,) of contacts' directions at which they start unstressed, 0 along normals."""
+        """Displacements (port,) along contact directions at which friction is zero; 0 along normals."""
         found = np.zeros((len(self.contacts), self.directions_of_contact))
         for row, one in zip(found, self.contacts, strict=True):
             row[: len(one.slider)] = one.slider
@@ -421,16 +420,16 @@ class Scene(Frozen):
         return replace(self, contacts=tuple(contacts), held=())
 
     def computed(self) -> list[int]:
-        """The places of the contacts that are not held, among all."""
+        """The places of the contacts that are not held, among all contacts."""
         places = {one.place for one in self.held}
         return [i for i in range(len(self.contacts) + len(self.held)) if i not in places]
 
     def in_use(self) -> Scene:
-        """The scene at those degrees of freedom only that are reported, or that something is attached to."""
+        """The scene restricted to degrees of freedom that are reported or carry a contact, force or load."""
         return self.at_attached_and(np.isin(self.modal.dofs, self.reported))
 
     def at_attached_and(self, chosen: npt.NDArray[np.bool_]) -> Scene:
-        """The scene at chosen degrees of freedom (dof,) and those that something is attached to."""
+        """The scene restricted to a mask chosen (dof,), and to those that carry a contact, force or load."""
         used = chosen.copy()
         different = {id(one): one for curve in self.each_curve() for one in curve.directions()}
         for direction in different.values():
@@ -446,14 +445,14 @@ class Scene(Frozen):
 
     @cached_property
     def planar(self) -> bool:
-        """Whether a contact slides in a plane."""
+        """Whether any contact slides in a plane."""
         return any(contact.second is not None for contact in self.contacts)
 
     @property
     def directions_of_contact(self) -> int:
         """Number of directions of each contact, including its normal.
 
-        Beside one in a plane those on a line have a second direction as well, in which nothing moves.
+        If any contact is planar, the others get a second direction too, along which nothing moves.
         """
         return 3 if self.planar else 2
 
@@ -487,7 +486,7 @@ class Scene(Frozen):
 
 
 class InTime(Enum):
-    """Whether there is an exact motion in time of a scene; the values are those of a summary as JSON."""
+    """Whether the exact motion in time of a scene is computed, or why not; values as in a JSON summary."""
 
     COMPUTED = "computed"
     RING = "not of a ring of sectors"
@@ -496,7 +495,7 @@ class InTime(Enum):
 
 
 def in_time(scene: Scene) -> InTime:
-    """Whether the exact motion of a scene is computed.
+    """Whether the exact motion in time of a scene is computed, or why not.
 
     >>> import fcm
     >>> in_time(fcm.load_scene("yang1998-n5")), in_time(fcm.load_scene("bladed-disk"))
