@@ -1,4 +1,4 @@
-"""A scene: the structure, its contacts and forces, what to trace; from TOML, and checked."""
+"""Reads scenes from TOML and checks them: the structure, its contacts and forces, and what to trace."""
 
 import sys
 
@@ -22,7 +22,7 @@ __all__ = [
     "scene_from_dict",
 ]
 
-# the names that these modules had
+# earlier names of these modules
 sys.modules.update(
     {"fcm.scene.model": model_scene, "fcm.scene.ring": model_ring, "fcm.scene.interface": model_interface}
 )

@@ -1,4 +1,4 @@
-"""Finds the place in a scene of a key path such as "contact.shroud.n_0"."""
+"""Finds the addresses in a scene of a key path such as "contact.shroud.n_0"."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from fcm.scene.section import SYNONYMS
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
-LEVEL = "level"  # of the forces: all amplitudes times this
-TOTAL = "total"  # of numbers that the pairs of a contact have each their own of, beside areas
+LEVEL = "level"  # force level: a factor on all amplitudes
+TOTAL = "total"  # key of the totals of numbers given for each pair, if areas are given too
 STOP = "stop"  # of a contact without friction, which has no tangential direction
 _NO_FRICTION = "; as it has no tangential direction, it has no friction"
-OF_SECTOR = re.compile(r"@\d+")  # in the name of a contact of a mistuned ring
-NUMBERS = {  # of each kind of table
+OF_SECTOR = re.compile(r"@\d+")  # suffix of the names of contacts of a mistuned ring
+NUMBERS = {  # keys of numbers by kind of table
     "contact": ("n_0", "gap", "mu", "k_u", "k_v"),
     "force": ("amplitude", "phase"),
     "load": ("force",),
@@ -39,7 +39,7 @@ class Addresses:
         self.arrays = dict(_arrays(parts))
 
     def find(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
-        """The addresses of a key path; none after a mistake."""
+        """The addresses of a key path; empty after a mistake, which is noted."""
         if "*" in key and key not in self.numbers:
             return self._matching(key, path, mistakes)
         address = self.numbers.get(key) or self._element(key)
@@ -57,7 +57,7 @@ class Addresses:
         return ()
 
     def _of_one_name(self, key: str) -> str:
-        """Mistake of a name that several forces, loads or contacts share, with their indices; or ''."""
+        """Message on a name that several forces, loads or contacts share, with their indices; or ''."""
         for kind, what in (
             ("force", "forces act at"),
             ("load", "loads act at"),
@@ -87,14 +87,14 @@ class Addresses:
         return f"{swept} the level at one frequency by fcm respond --level FROM:TO --at F"
 
     def _other_word(self, key: str) -> str:
-        """Hint for a number under another common name (a preload, say) with its key path here; or ''."""
+        """Hint with the right key path for a common synonym such as "preload"; or ''."""
         label, _, field = key.rpartition(".")
         meant = f"{label}.{SYNONYMS.get(field, field)}"
         there = meant != key and (meant in self.numbers or self._members(meant, "", Mistakes("")) is not None)
         return f"; did you mean {quoted(meant)}?" if there else ""
 
     def _contact_meant(self, key: str) -> str:
-        """Hint for a contact that does not exist: the likely name, or those that exist; or ''."""
+        """Hint for an unknown contact: the likely name, or the existing names; or ''."""
         kind, _, rest = key.partition(".")
         label, _, field = rest.rpartition(".")
         drafts = self.parts["contact"]
@@ -106,7 +106,7 @@ class Addresses:
         return f"; contacts are {choices(names)}, or * for all"
 
     def _those_there(self, key: str) -> str:
-        """The numbers that end as a key path does, or else those of contacts, by the names of these."""
+        """Hint with the numbers that have the same last key, or else those of contacts; or ''."""
         every = list({address: one for one, address in self.numbers.items()}.values())
         last = f".{key.rpartition('.')[2]}"
         same = [one for one in every if one.endswith(last)]
@@ -115,7 +115,7 @@ class Addresses:
         return f"; {there} {choices(found, MESSAGES.groups)}" if found else ""
 
     def _matching(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
-        """The numbers of all contacts or forces whose names match a key path with a *; of all modes."""
+        """The addresses that match a key path with a *: of contacts, forces and loads, or of all modes."""
         if (whole := self.numbers.get(key.removesuffix(".*"))) is not None:
             return (whole,)
         prefix, _, field = key.rpartition(".")
@@ -126,7 +126,7 @@ class Addresses:
         }
         matched = [at for at, label in labels.items() if fnmatchcase(label, prefix)]
         if not matched and prefix.startswith("contact.") and not self.parts["contact"] and mistakes.count:
-            return ()  # those that there would be have mistakes of their own
+            return ()  # the contacts could not be read, which is already reported
         if not matched:
             mistakes.add(path, f"nothing in the scene matches {quoted(prefix)}")
             return ()
@@ -144,9 +144,9 @@ class Addresses:
         return (*contacts, *others)
 
     def _members(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...] | None:
-        """The numbers of all contacts of a group, which one [[contact]] has made of nodes, or of sectors.
+        """The addresses of a number of all contacts that one [[contact]] makes, for node pairs or sectors.
 
-        None where there is no such group.
+        None if there is no such group; empty after a mistake.
         """
         prefix, _, field = key.rpartition(".")
         drafts = enumerate(self.parts["contact"])
@@ -160,9 +160,9 @@ class Addresses:
         return self._together(same, field, path, mistakes)
 
     def _together(self, indices: list[int], field: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
-        """A number of several contacts: of all pairs of a [[contact]] with areas it is the total.
+        """The addresses of a number of several contacts; empty after a mistake.
 
-        None of them after a mistake.
+        For all pairs of a [[contact]] with areas, it is the address of their total.
         """
         drafts, found = self.parts["contact"], list[Address]()
         every = Counter(map(_of_one_table, drafts))
@@ -183,7 +183,7 @@ class Addresses:
         return tuple(found)
 
     def _element(self, key: str) -> Address | None:
-        """A number in an array: a dof's weight, or a mode's value at a dof."""
+        """The address of a number in an array: the weight of a dof, or a mode's value at a dof; else None."""
         for prefix, address in self.arrays.items():
             rest = key.removeprefix(f"{prefix}.")
             if rest != key and rest in self.dofs:
@@ -197,13 +197,13 @@ class Addresses:
         return dofs is not None and "structure" in dofs.key
 
     def _of_ring(self, key: str) -> bool:
-        """Whether it is a number of a mistuned ring that is not made, as something else is wrong."""
+        """Whether it is a number of a mistuned ring that was not built because of another mistake."""
         mistuned = any("mistuning" in one for one in self.parts.get("cyclic", ()))
         known = key == SCALE or OF_SECTOR.sub("", key) in self.numbers
         return mistuned and not self.parts.get("whole") and known
 
     def _excused(self, key: str, path: str, mistakes: Mistakes) -> bool:
-        """Keys with a better explanation than that they are not there."""
+        """Whether a key needs no message "there is no such number", as a better one is or was noted."""
         if key.startswith("structure.") and self._of_matrices():
             ratios = '; the damping ratios of its modes are "modal.damping"'
             what = f"matrices and what is read with them cannot be swept{ratios if 'damping' in key else ''}"
@@ -213,7 +213,7 @@ class Addresses:
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")
         elif key.partition(".")[0] in self.parts.get("unread", ()) or self._of_ring(key):
-            return True  # what is wrong with its table is said already
+            return True  # the mistake in its table is already reported
         else:
             needed = (self.parts["modal"][part] for part in ("dofs", *VECTORS, "shapes"))
             return key.startswith("modal.") and any(part is None for part in needed)
@@ -221,7 +221,7 @@ class Addresses:
 
 
 def replaced(tree: Any, address: Address, value: float) -> Any:
-    """The tree with a number replaced; what is not on the way to it is shared.
+    """The tree with a number replaced; branches that do not lead to it are shared, not copied.
 
     >>> replaced({"contact": [{"mu": 0.4}, {"mu": 0.5}]}, ("contact", 1, "mu"), 0.6)
     {'contact': [{'mu': 0.4}, {'mu': 0.6}]}
@@ -237,19 +237,19 @@ def replaced(tree: Any, address: Address, value: float) -> Any:
 
 
 def overlap(one: Address, other: Address) -> bool:
-    """Whether two addresses share a number: one is within the other; a total has those of its pairs."""
+    """Whether two addresses share a number: one contains the other; a total contains those of its pairs."""
     one, other = (tuple(step for step in address if step != TOTAL) for address in (one, other))
     return one[: len(other)] == other[: len(one)]
 
 
 def _of_one_table(draft: Mapping[str, Any]) -> tuple[str, str]:
-    """What the contacts of one [[contact]] table share: its name, and the sector of a mistuned ring."""
+    """Identifies the [[contact]] table of a contact: its name, and the sector of a mistuned ring."""
     name: str = draft["name"]
     return draft.get("group", name), name.removeprefix(draft["of"]) if "of" in draft else ""
 
 
 def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
-    """Key paths that are a number each, or a whole vector of the modal table; names go before indices."""
+    """Yields key path and address of each number, and of each whole vector of the modal table."""
     for key in VECTORS:
         values = parts["modal"][key]
         if values is not None:
@@ -273,7 +273,7 @@ def _has(draft: Mapping[str, Any], key: str) -> bool:
 
 
 def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
-    """Key paths of arrays over the dofs."""
+    """Yields key path and address of each array over the dofs."""
     shapes = None if parts.get("cyclic") or parts.get("whole") else parts["modal"]["shapes"]
     for index in range(0 if shapes is None else len(shapes)):
         yield f"modal.shapes.{index}", ("modal", "shapes", index)
@@ -281,7 +281,7 @@ def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
         return
     for kind, keys in (("contact", ("tangential", "normal")), ("force", ("dof",)), ("load", ("dof",))):
         for prefix, index, draft in _named(parts, kind):
-            if "second" in draft:  # of a contact in a plane the two are numbered, as they are in a list
+            if "second" in draft:  # the two sliding directions of a planar contact are numbered
                 yield f"{prefix}.tangential.0", (kind, index, "tangential")
                 yield f"{prefix}.tangential.1", (kind, index, "second")
                 yield f"{prefix}.normal", (kind, index, "normal")
@@ -290,10 +290,10 @@ def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
 
 
 def _named(parts: Mapping[str, Any], kind: str) -> Iterator[tuple[str, int, dict[str, Any]]]:
-    """Yields each contact or force under its index, and under its name where that is unique."""
+    """Yields the key prefix, index and draft of each part: by its index, then by a unique name."""
     names = [draft["name"] for draft in parts[kind]]
     for index, draft in enumerate(parts[kind]):
-        if "of" not in draft:  # those of sectors are known by their names alone
+        if "of" not in draft:  # contacts of the sectors of a mistuned ring are addressed only by name
             yield f"{kind}.{index}", index, draft
     for index, draft in enumerate(parts[kind]):
         if names[index] and names.count(names[index]) == 1:

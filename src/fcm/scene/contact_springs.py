@@ -1,4 +1,4 @@
-"""The springs of contacts beside the structure, in its modes of mass 1."""
+"""Stiffness matrices with contact springs, in coordinates of modes of mass 1."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fcm.model.scene import FloatArray, Scene
 
 
 def along_contacts(scene: Scene, normal: bool) -> FloatArray:
-    """Displacements (mode, direction) of modes of mass 1 along the contacts' normals, or where they slide."""
+    """Displacements (mode, direction) of modes of mass 1 along contact normals, or sliding directions."""
     each = [one.directions[-1:] if normal else one.directions[:-1] for one in scene.contacts]
     moved: FloatArray = scene.modal.shapes @ np.array([one for many in each for one in many]).T
     return moved / np.sqrt(scene.modal.mass)[:, None]

@@ -1,4 +1,4 @@
-"""Contacts whose springs are far stiffer, or far softer, than the structure: mostly of another unit."""
+"""Questions contacts that are far stiffer or softer than the structure, mostly by a wrong unit."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from fcm.scene.force_reach import pushed
 from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.units import UNIT
 
-SHORTER = {"m": "mm", "mm": "um"}  # by a thousand: a stiffness per shorter unit is a thousand times as much
+SHORTER = {"m": "mm", "mm": "um"}  # units shorter by 1000, in which a stiffness has a 1000 times larger unit
 
 
 def notes_of_stiffness(scene: Scene) -> list[str]:
-    """Questions about contacts far stiffer than the structure at them, and about those that are far softer.
+    """Questions about contacts far stiffer or far softer than the structure.
 
-    The measure of stiff ones is k times the flexibility of the elastic modes along the contact's
-    displacement, sum phi^2 / (m omega^2). Contacts are soft if they change no resonance up to the range's
-    end while all of them stick. Where units are given, k_u and k_v of very different size are asked about.
-    Nothing is said of rings, nor of stiffnesses that are swept, chosen or fitted.
+    A contact is stiff by k times the flexibility of the elastic modes along its displacement,
+    sum phi^2 / (m omega^2). Contacts are soft if they change no resonance up to the end of the range while
+    all of them stick. If units are given, very different k_u and k_v are questioned too. There are no
+    questions on rings, nor on stiffnesses that are swept, optimised or fitted.
     """
     if scene.ring is not None or not scene.contacts or varies(scene, ".k_u", ".k_v"):
         return []
@@ -41,13 +41,13 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
 
 
 def varies(scene: Scene, *ends: str) -> bool:
-    """Whether numbers whose paths end so are swept, chosen or fitted."""
+    """Whether a key path with one of these ends is swept, optimised or fitted."""
     keys = [] if scene.draft is None else [one.key for one in scene.draft.swept]
     return any(key.endswith(ends) for key in keys) or are_sought(scene, *ends)
 
 
 def are_sought(scene: Scene, *ends: str) -> bool:
-    """Whether numbers whose paths end so are chosen or fitted."""
+    """Whether a key path with one of these ends is optimised or fitted."""
     tables = [one for one in (scene.optimum, scene.fit) if one is not None]
     return any(key.endswith(ends) for one in tables for key in one.vary)
 
@@ -55,10 +55,10 @@ def are_sought(scene: Scene, *ends: str) -> bool:
 def _soft(scene: Scene, ratio: float) -> str:
     """Question about contacts that change no resonance up to the range's end while they stick; or ''.
 
-    Nothing where they would not even if the stiffest were as stiff as the structure there, by the ratio: then
-    these resonances do not move them. Where rigid bodies float, motions that no force pushes are taken as
-    held, as a damper's beside a blade: can friction change a resonance of the forces? Nothing where they push
-    a rigid body that the contacts hold in resonance within the range, as on soft mounts.
+    ratio is that of the stiffest contact to the structure there. Contacts that even with 1 / ratio times
+    their stiffness change no resonance are not questioned: these resonances do not move them. If there are
+    rigid-body modes, only elastic modes that forces excite count. Nothing is asked if the forces excite a
+    rigid-body mode whose resonance on the contact springs is within the range, as on soft mounts.
     """
     modal = scene.modal
     floating = modal.frequency == 0.0
@@ -98,7 +98,7 @@ def _soft(scene: Scene, ratio: float) -> str:
 
 
 def _per_shorter(length: str, force: str) -> str:
-    """Sentence on the usual slip of units by which stiffnesses are a thousand times too small; or ''.
+    """Sentence on the common unit mistake that makes stiffnesses a thousand times too small; or ''.
 
     >>> _per_shorter("m", "N"), _per_shorter("", "")
     (' They are read in N/m; if they are in N/mm, write 1000 times as much', '')
@@ -110,7 +110,7 @@ def _per_shorter(length: str, force: str) -> str:
 
 
 def _unequal(scene: Scene) -> str:
-    """Question about a contact whose springs differ as by a slip of units, where units are given; or ''."""
+    """Question about a contact whose k_u and k_v differ as by a unit mistake, if units are given; or ''."""
     if not all(scene.units):
         return ""
     length, force = scene.units
@@ -135,10 +135,10 @@ def _stiffness_beside_structure(scene: Scene) -> FloatArray:
 
 
 def contact_flexibility(scene: Scene) -> FloatArray:
-    """Displacement (contact, 2) per unit load, by elastic modes: where each contact slides, and its normal.
+    """Flexibility (contact, 2) of the elastic modes along each contact's sliding direction and normal.
 
-    Of a contact in a plane the greater one of both directions. Zero where it is rounding beside the greatest
-    displacement of a mode of mass 1.
+    For a planar contact the greater of both sliding directions is used. Displacements that are rounding
+    compared with the greatest of any mode of mass 1 count as zero.
     """
     modal = scene.modal
     elastic = modal.frequency > 0.0

@@ -1,4 +1,4 @@
-"""The [cyclic] table: of a ring of equal sectors, of which the scene describes one."""
+"""Reads the [cyclic] table: the scene then describes one sector of a ring of equal sectors."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from fcm.scene.rules import RULES
 from fcm.scene.section import Part, Section
 
 WHOLE_RING = "needs the whole ring: write all its sectors out as a scene without [cyclic]"
-TABLES = {  # that have no meaning for one sector, and why
+TABLES = {  # tables that have no meaning for one sector, and why
     "schedule": f"a simulation in time {WHOLE_RING}",
     "start": f"a simulation in time {WHOLE_RING}",
 }
@@ -27,7 +27,7 @@ SHAKES = "a base that moves shakes all sectors alike, along the axis; give [[for
 
 
 class RingNames(Names):
-    """The degrees of freedom of a sector, and behind them those of the next."""
+    """The names of a sector's degrees of freedom, followed by those of the next sector."""
 
     @cached_property
     def own(self) -> Names:
@@ -49,7 +49,7 @@ class RingNames(Names):
 
 
 def own_name(name: str) -> str:
-    """The degree of freedom of the sector itself that one of the next is.
+    """The name without "next.": the sector's own degree of freedom for one of the next sector.
 
     >>> own_name("next.tip"), own_name("tip")
     ('tip', 'tip')
@@ -110,7 +110,7 @@ def only_own(top: Section, drafts: Mapping[str, list[Part]], dofs: RingNames | N
 
 
 def ring_of(modal: Part, cyclic: Part, unit: float) -> tuple[Modal, Ring]:
-    """The modes for the mean and the whole ring, from what was read; `unit` is rad/s per unit."""
+    """The modes of diameter 0, which the mean excites, and the ring; unit is rad/s per frequency unit."""
     dofs = tuple(modal["dofs"])
     sectors, order = int(cyclic["sectors"]), int(cyclic["engine_order"])
     diameter = modal["diameter"]
@@ -133,7 +133,7 @@ def ring_of(modal: Part, cyclic: Part, unit: float) -> tuple[Modal, Ring]:
 
 
 def check_diameters(curve: Scene, mistakes: Mistakes, where: str) -> bool:
-    """Whether all harmonics of a curve meet modes; note those that do not."""
+    """Whether all harmonics of a curve excite modes; notes those that have none."""
     if curve.ring is None:
         return True
     before = mistakes.count
@@ -158,8 +158,10 @@ def note_of_stability(scene: Scene) -> list[str]:
 
 
 def question_of_joints(scene: Scene) -> list[str]:
-    """A question where nothing joins the sectors: the modes of all diameters are one sector's, and no contact
-    reaches the next."""
+    """A question if nothing couples the sectors.
+
+    Then all diameters have the same frequencies, and no contact reaches the next sector.
+    """
     ring = scene.ring
     if ring is None:
         return []
@@ -187,5 +189,5 @@ def lacks(ring: Ring, harmonic: int, diameter: int) -> str:
 
 
 def own_names(dofs: Names | None) -> Names | None:
-    """The degrees of freedom that can be in results: a sector's own."""
+    """The degrees of freedom that results can have: for a sector, its own."""
     return dofs.own if isinstance(dofs, RingNames) else dofs

@@ -1,4 +1,4 @@
-"""Asks about directions of contacts that are not of length 1: their weights change stiffness and friction."""
+"""Questions contact directions that do not have length 1, which scales stiffness and friction."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _AXIS = re.compile(r"(.*[\d_:. ]u?)([xyz])", re.IGNORECASE)  # a node, and a tra
 
 
 class GivenDirections(NamedTuple):
-    """The directions of a contact in the words of the scene, weights of axes of its nodes or of dofs."""
+    """The directions of a contact as given in the scene: weights of dofs, or of axes at its nodes."""
 
     contact: str
     load: str  # n_0 or gap
     weights: Mapping[str, Weights]  # by tangential, second and normal
     dofs: Names
-    node: str = ""  # one of those whose axes have the weights
+    node: str = ""  # one of the nodes, if weights are those of axes
 
 
 def of_dofs(directions: Mapping[str, FloatArray | None], dofs: Names) -> dict[str, Weights]:
@@ -38,7 +38,7 @@ def of_dofs(directions: Mapping[str, FloatArray | None], dofs: Names) -> dict[st
 
 
 def questions_of_lengths(contacts: Iterable[GivenDirections]) -> list[str]:
-    """A question on the first contact with a direction of nodes that is not of length 1, with the others.
+    """A question on the first contact with a direction that is not of length 1; it names the others.
 
     >>> blade = Names(("7x", "7y", "7z"))
     >>> given = GivenDirections("tip", "n_0", {"normal": {"x": 1.0, "y": 1.0}}, blade, "7")
@@ -57,7 +57,7 @@ def questions_of_lengths(contacts: Iterable[GivenDirections]) -> list[str]:
 
 
 def _said(contact: GivenDirections) -> str:
-    """What is asked of the directions of a contact; empty where all are of length 1."""
+    """The question on the directions of a contact; empty if all have length 1."""
     said = []
     for key, number in (("tangential", "k_u"), ("normal", "k_v")):
         weights = contact.weights.get(key, {})
@@ -81,11 +81,12 @@ def _said(contact: GivenDirections) -> str:
 
 
 def _length(weights: Weights, dofs: Names, node: str = "") -> float:
-    """The length of a direction; 0 where weights are not those of one node, or of the motion between two.
+    """The length of a direction; 0 if it is unknown.
 
-    Rotations have lever arms for weights. Where a node has no row along an axis, a length below 1 may be of
-    a direction that leaves it out, and is 0 as well. Names without an axis say neither which degrees of
-    freedom are perpendicular, nor that a weight is no lever arm: 0.2 of one may be right.
+    It is known for weights at one node, or of the relative motion of two. The weights of rotations are lever
+    arms, and do not count. If a node has no row along an axis, a direction may lack that component, so that
+    a length below 1 is unknown. It is also unknown for names without an axis: their degrees of freedom may
+    not be perpendicular, and a weight such as 0.2 may be a lever arm.
 
     >>> dofs = Names(("1x", "1y", "1z", "1rz", "2x", "u", "v"))
     >>> _length({"1x": 1.0, "2x": -1.0}, dofs), _length({"1x": 3.0, "1y": 4.0, "1rz": 9.0}, dofs)
@@ -97,7 +98,7 @@ def _length(weights: Weights, dofs: Names, node: str = "") -> float:
     >>> _length({"n1_ux": 0.3, "n1_uy": 0.4}, Names(("n1_ux", "n1_uy", "n1_uz")))
     0.5
     """
-    at: dict[str, dict[str, float]] = {}  # of each node, by its axes
+    at: dict[str, dict[str, float]] = {}  # weights by node and axis
     for name, weight in weights.items():
         if node:
             match = _AXIS.fullmatch(f"{node}_{name}")
@@ -118,7 +119,7 @@ def _length(weights: Weights, dofs: Names, node: str = "") -> float:
 
 
 def _written(directions: Sequence[Weights], length: float = 1.0) -> str:
-    """Directions as a scene has them, divided by a length."""
+    """Directions divided by a length, as written in a scene."""
     each = [
         f"{{ {', '.join(f'{bare(name)} = {weight / length:.6g}' for name, weight in one.items())} }}"
         for one in directions

@@ -1,4 +1,4 @@
-"""The draft of a scene: what it was made of, so that any of its numbers can be changed."""
+"""The draft of a scene: the input it is built from, so that it can be rebuilt with other numbers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from fcm.units import UNIT
 
 
 class Draft(Frozen):
-    """The parts of a scene as read, and its swept keys; the same for all of its curves."""
+    """The parts of a scene as read, and its swept keys; all curves of a scene share one draft."""
 
     parts: Parts
     swept: tuple[SweptKey, ...]
@@ -34,8 +34,10 @@ class Draft(Frozen):
     def curve(
         self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}, fix: bool = False
     ) -> Scene:
-        """The scene with swept values, and then numbers at addresses; what does not change is shared. fix: it
-        is then made of these."""
+        """The scene with swept values, then numbers (more) at addresses; unchanged parts are shared.
+
+        fix: whether the new scene's draft contains these values, without a sweep.
+        """
         parts, draft = self.parts, self._with(values, more)
         changed: dict[str, Any] = {"draft": Draft(draft, ())} if fix else {}
         if draft["modal"] is not parts["modal"] or _mistuned_otherwise(draft, parts):
@@ -56,11 +58,11 @@ class Draft(Frozen):
         return [_at(self.fixed(scene).parts, address) for address in addresses]
 
     def fixed(self, scene: Scene) -> Draft:
-        """The draft of a curve of the scene, with its swept values in place."""
+        """The draft of one curve, with its swept values written into it."""
         return Draft(self._with(scene.parameters, {}), ())
 
     def _with(self, values: Mapping[str, float], more: Mapping[Address, float]) -> Parts:
-        """The parts with swept values, and then numbers at addresses."""
+        """The parts with swept values, then numbers at addresses."""
         parts = self.parts
         for one in self.swept:
             for address in one.addresses:
@@ -81,7 +83,7 @@ class Draft(Frozen):
     def at(self, used: npt.NDArray[np.bool_]) -> Draft:
         """The draft restricted to some of the degrees of freedom."""
         modal = self.parts["modal"]
-        shapes = modal["shapes"]  # of a sector of a ring on its own, which are the first
+        shapes = modal["shapes"]  # for a sector of a ring only at its own dofs, which come first
         names = tuple(name for name, one in zip(modal["dofs"], used, strict=True) if one)
         parts = self.parts | {
             "modal": modal
@@ -95,22 +97,22 @@ class Draft(Frozen):
 
 
 class Number(Frozen):
-    """A number of a scene under its key path, "contact.shroud.n_0"; with a * in it, or a group, several.
+    """A number of a scene by its key path, such as "contact.shroud.n_0"; a group or a * stands for several.
 
-    The level of the forces is one, too: what stands at each address is then the level times a weight.
+    The force level is a number too: the value at each address is then the level times a weight.
     """
 
     key: str
     addresses: tuple[Address, ...]
-    weights: tuple[float, ...] = ()  # 1 where there are none
+    weights: tuple[float, ...] = ()  # by address; all 1 if empty
 
     @property
     def rule(self) -> Rule:
-        """Rule that a value of the number must obey."""
+        """The rule that a value of the number must obey."""
         return RULES[field_of(self.addresses[0])]
 
     def value(self, scene: Scene) -> float:
-        """The value that it has in a scene; NaN where it stands for several that differ."""
+        """Its value in a scene; NaN if it stands for several that differ."""
         values = {value / weight for _, value, weight in self.each(scene)}
         return values.pop() if len(values) == 1 else np.nan
 
@@ -128,12 +130,12 @@ class Number(Frozen):
         return found
 
     def values(self, value: float) -> dict[Address, float]:
-        """Value at each address of the number for a common value."""
+        """The value at each address for a given value of the number."""
         weights = self.weights or (1.0,) * len(self.addresses)
         return {address: value * weight for address, weight in zip(self.addresses, weights, strict=True)}
 
     def put(self, scene: Scene, value: float) -> Scene:
-        """The scene with another value of it."""
+        """The scene with another value of the number."""
         return _draft(scene).curve(scene, scene.parameters, self.values(value))
 
     def freed(self, scene: Scene) -> Scene:
@@ -184,11 +186,11 @@ def number_in(draft: Draft, key: str, path: str, mistakes: Mistakes) -> Number |
     return Number(key, addresses) if addresses else None
 
 
-AT_REST = "at 0 nothing moves"  # by a number that is the only force
+AT_REST = "at 0 nothing moves"  # said of a number that is the only force
 
 
 def only_force(parts: Parts, number: Number) -> bool:
-    """Whether nothing but a number moves the structure: it is the amplitude of all forces and of the base."""
+    """Whether only this number excites the structure: it sets all amplitudes of forces and of the base."""
     return all(address in number.addresses for address, _ in _amplitudes(parts))
 
 
@@ -200,7 +202,7 @@ def _amplitudes(parts: Parts) -> list[tuple[Address, float]]:
 
 
 def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
-    """Number for the level: all amplitudes of forces, and of the base's motion, in proportion."""
+    """The force level as a number: a common factor on all amplitudes of forces and of the base."""
     found = _amplitudes(parts)
     if not found:
         mistakes.add(path, "no force has an amplitude that a level could multiply")
@@ -210,7 +212,7 @@ def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
 
 
 def modes_of(parts: Parts, unit: str) -> tuple[Modal, Ring | None]:
-    """The modes, which are those that the mean meets where the scene is a sector of a ring."""
+    """The modes, and the ring if the scene is a sector of one; the modes are then those of the mean."""
     if parts["cyclic"]:
         return ring_of(parts["modal"], parts["cyclic"][0], UNIT[unit])
     if parts.get("whole"):
@@ -219,7 +221,7 @@ def modes_of(parts: Parts, unit: str) -> tuple[Modal, Ring | None]:
 
 
 def forces_of(parts: Parts) -> tuple[Force, ...]:
-    """The harmonic forces, and those by which a base that moves pushes the structure."""
+    """The harmonic forces, and the inertial forces of a moving base."""
     of_base = (base_force(draft, parts["modal"]["dofs"]) for draft in parts["base"])
     own = parts["force"]
     if parts.get("whole"):
@@ -228,7 +230,7 @@ def forces_of(parts: Parts) -> tuple[Force, ...]:
 
 
 def _mistuned_otherwise(draft: Parts, parts: Parts) -> bool:
-    """Whether the blades of a ring have other factors."""
+    """Whether two drafts of a mistuned ring have different factors of the blades."""
     if draft.get("whole") is parts.get("whole"):
         return False
     one, other = draft["whole"][0], parts["whole"][0]

@@ -1,8 +1,8 @@
-"""Random values of a swept number: normal, uniform, or by any distribution of scipy.stats; correlated or not.
+"""Random values of a swept number: normal, uniform, or from scipy.stats, with or without correlation.
 
-Draws depend on the seed (0 when not given) and on the key, so two keys with one seed are independent, and
-adding a key changes no other key's draws. Keys with a correlation have it through a Gaussian copula: normal
-scores, of which each value is the quantile of its own distribution.
+Draws depend on the seed (default 0) and on the key. So two keys with one seed are independent, and a further
+key does not change the draws of the others. Correlated keys use a Gaussian copula: each key's normal scores
+are mapped to the quantiles of its own distribution.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from fcm.scene.rules import ANY, POSITIVE, as_float
 from fcm.scene.section import Section
 
 FORMS = ("normal", "uniform", "distribution")
-OTHER_NAMES = {"gauss": "norm", "gaussian": "norm", "normal": "norm"}  # of distributions of scipy.stats
+OTHER_NAMES = {"gauss": "norm", "gaussian": "norm", "normal": "norm"}  # synonyms of names in scipy.stats
 
 
-Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
+Quantile = Callable[[FloatArray], FloatArray]  # takes probabilities
 
 
 class Draws(Frozen):
@@ -38,8 +38,8 @@ class Draws(Frozen):
 
     key: str
     form: str  # one of FORMS
-    pair: tuple[float, float]  # of normal and uniform
-    quantile: Quantile | None  # of a distribution
+    pair: tuple[float, float]  # mean and deviation of "normal", ends of "uniform"
+    quantile: Quantile | None  # of "distribution"
     count: int
     seed: int
 
@@ -47,7 +47,7 @@ class Draws(Frozen):
         return np.random.default_rng([self.seed, crc32(self.key.encode("utf-8", "replace"))])
 
     def values(self) -> FloatArray:
-        """The draws, (count,), independent of others."""
+        """The draws (count,), independent of those of other keys."""
         generator, (low, high) = self._generator(), self.pair
         if self.form == "normal":
             return generator.normal(low, high, self.count)
@@ -60,7 +60,7 @@ class Draws(Frozen):
         return self._generator().standard_normal(self.count)
 
     def at(self, scores: FloatArray) -> FloatArray:
-        """The draws that have normal scores."""
+        """The draws that belong to given normal scores."""
         from scipy.special import ndtr
 
         low, high = self.pair
@@ -80,13 +80,13 @@ class Draws(Frozen):
     def _quantiles(self, probability: FloatArray) -> FloatArray:
         assert self.quantile is not None
         with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")  # what is not finite is said of the number itself
+            warnings.simplefilter("ignore")  # a value that is not finite is reported later
             found: FloatArray = np.asarray(self.quantile(probability), dtype=np.float64)
         return found
 
 
 def read_draws(table: Section, form: str, key: str, integer: Callable[..., int | None]) -> Draws | None:
-    """{ normal = [..], count, seed }, or uniform, or distribution = "name"; None after a mistake."""
+    """Reads { normal = [..], count, seed }, or with uniform or distribution; None after a mistake."""
     before = table.mistakes.count
     pair, quantile = (0.0, 1.0), None
     if form == "distribution":
@@ -149,7 +149,7 @@ def _deviation_in_percent(pair: list[Any]) -> str:
 
 
 def _distribution(table: Section) -> Quantile | None:
-    """The quantiles of a distribution of scipy.stats, whose parameters stand beside its name."""
+    """The quantile function of a distribution of scipy.stats with its parameters; None after a mistake."""
     name = table.text("distribution")
     if not name:
         if table.data.get("distribution") == "":
@@ -180,7 +180,7 @@ def _distribution(table: Section) -> Quantile | None:
 
 
 class _Family(NamedTuple):
-    """Distributions of one name: their shape parameters, and the quantiles of probabilities and these."""
+    """A family of distributions: names of its shape parameters, and its quantile function."""
 
     shapes: tuple[str, ...]
     continuous: bool
@@ -188,9 +188,9 @@ class _Family(NamedTuple):
 
 
 def _family(name: str, table: Section) -> _Family | None:
-    """Distribution of scipy.stats with a name; None after a mistake.
+    """The family of a name in scipy.stats; None after a mistake.
 
-    scipy.stats takes long to import.
+    "lognorm" does without scipy.stats, whose import takes long.
     """
     if name == "lognorm":
         return _Family(("s",), True, _lognormal)
@@ -208,7 +208,7 @@ def _family(name: str, table: Section) -> _Family | None:
 
 
 def _lognormal(probability: FloatArray | float, s: float, loc: float, scale: float) -> FloatArray:
-    """loc + scale exp(s x), with x the standard normal score; as of scipy.stats, without its import.
+    """loc + scale exp(s x), with x the standard normal score; as in scipy.stats, without its import.
 
     >>> _lognormal(0.5, 0.2, 0.0, 8.0).item()
     8.0
@@ -220,7 +220,7 @@ def _lognormal(probability: FloatArray | float, s: float, loc: float, scale: flo
 
 
 class Correlation(Frozen):
-    """Correlated keys, and the factor L of their correlation matrix, L L^T."""
+    """Correlated keys, and the factor L of their correlation matrix L L^T."""
 
     keys: tuple[str, ...]
     factor: FloatArray
@@ -232,7 +232,7 @@ class Correlation(Frozen):
 
 
 def read_correlation(section: Section) -> Correlation | None:
-    """[sweep.correlation]: keys, and the matrix of their normal scores."""
+    """Reads [sweep.correlation]: keys, and the correlation matrix of their normal scores."""
     table = section.table("correlation", "")
     if table is None:
         return None
@@ -289,7 +289,7 @@ def _shape(rows: Sequence[Any]) -> str:
 
 
 def _fault(matrix: FloatArray) -> str:
-    """Fault of a square matrix of correlations as text; empty if there is none."""
+    """What is wrong with a square correlation matrix; empty if nothing is."""
     if (matrix.diagonal() != 1.0).any():
         return "must have 1 everywhere on its diagonal"
     if (matrix != matrix.T).any():
@@ -307,7 +307,10 @@ def _fault(matrix: FloatArray) -> str:
 
 
 def _factor(matrix: FloatArray) -> FloatArray:
-    """Lower triangular where the matrix is regular: the first key's draws are then as without it."""
+    """A factor L of the matrix L L^T; for a regular matrix lower triangular.
+
+    The first key's normal scores are then the same as without correlation.
+    """
     try:
         found: FloatArray = np.asarray(np.linalg.cholesky(matrix), dtype=np.float64)
     except np.linalg.LinAlgError:

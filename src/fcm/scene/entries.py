@@ -1,4 +1,4 @@
-"""The entries of a matrix of a structure: numbers to calculate with, symmetric; which of them are not."""
+"""Checks the entries of a structure's matrix: finite, not too large, symmetric."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcm.scene.section import Section
 
 
 def check_numbers(section: Section, key: str, matrix: Any) -> bool:
-    """Whether all entries are finite and not too large; note those that are not, as [row][column]."""
+    """Whether all entries are finite and not too large; notes those that are not, as [row][column]."""
     entries = scipy.sparse.coo_array(matrix)
     wrong = ANY.faulty(entries.data)[:, 0].tolist()
     if not wrong:
@@ -28,8 +28,10 @@ def check_numbers(section: Section, key: str, matrix: Any) -> bool:
 
 
 def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str] | None) -> float:
-    """The greatest difference across the diagonal, relative to the greatest entry; note those that are no
-    rounding."""
+    """The greatest difference across the diagonal, relative to the greatest entry.
+
+    Differences beyond rounding are noted, and the result is then infinite.
+    """
     if matrix is None:
         return 0.0
     difference = abs(matrix - matrix.T).tocoo()
@@ -60,12 +62,12 @@ def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str]
 
 
 def _one_triangle(matrix: Any) -> str:
-    """A remark for a matrix of which one half is not there, as programs write symmetric ones."""
+    """A remark on a matrix with only one triangle, as programs write symmetric ones; else ''."""
     halves = {"lower": scipy.sparse.tril(matrix, -1), "upper": scipy.sparse.triu(matrix, 1)}
     there = [name for name, half in halves.items() if half.count_nonzero()]
     return f"; only its {there[0]} triangle is there: give both" if len(there) == 1 else ""
 
 
 def symmetric(matrix: Any) -> Any:
-    """The matrix without what rounding has left of asymmetry."""
+    """The symmetric part of the matrix, without asymmetry from rounding."""
     return scipy.sparse.csc_array((matrix + matrix.T) / 2)

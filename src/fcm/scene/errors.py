@@ -9,7 +9,7 @@ from fcm import quoting
 from fcm.scene.options import MESSAGES
 from fcm.scene.size_notices import SizeNotices
 
-_NUMBER = re.compile(r"[0-9]{1,18}")  # of a node, at the beginning of a name
+_NUMBER = re.compile(r"[0-9]{1,18}")  # number of a node, at the beginning of a name
 
 
 class SceneError(ValueError):
@@ -44,7 +44,7 @@ class Mistakes:
     """
 
     def __init__(self, source: str, notices: SizeNotices | None = None) -> None:
-        """Starts the list of mistakes of a file; `notices` hears of what takes long to read."""
+        """Starts the list of mistakes of a file; `notices` announces what takes long to read."""
         self.source = source
         self.notices = notices or SizeNotices()
         self.count = 0
@@ -74,7 +74,7 @@ def suggestion(word: str, among: Iterable[str]) -> str:
 
 
 def nearest(word: str, among: Iterable[str]) -> str:
-    """The name that a word may be a misspelling of; empty when none is close. Nodes are compared by number.
+    """The name closest to a misspelt word; empty when none is close. Nodes are compared by number.
 
     >>> nearest("frequncy", ["frequency", "damping"]), nearest("x", ["frequency"])
     ('frequency', '')
@@ -93,7 +93,7 @@ def nearest(word: str, among: Iterable[str]) -> str:
 
 
 def _of_nearest_number(word: str, among: Iterable[str]) -> list[str]:
-    """Names that begin with the number nearest to that of a word; none if there is none so near."""
+    """Names that begin with the number nearest to that of a word; none if no number is near enough."""
     if not (wanted := _NUMBER.match(word)):
         return []
     numbers = {name: int(match[0]) for name in among if (match := _NUMBER.match(name))}

@@ -1,4 +1,4 @@
-"""Excitation beside harmonic forces: motion of the base, and static loads."""
+"""Reads base motion and static loads."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section
 
 TRANSLATIONS = ("x", "y", "z")
-DIRECTIONS = {  # keys that are arrays over the degrees of freedom; second is of contacts in a plane alone
+DIRECTIONS = {  # keys of arrays over the degrees of freedom; only planar contacts have second
     "contact": ("tangential", "second", "normal"), "force": ("dof",), "load": ("dof",)
 }  # fmt: skip
 MASS_UNITS = {("m", "N"): "kg", ("mm", "N"): "t", ("mm", "mN"): "kg", ("mm", "kN"): "10^3 t"}
-BASE = "\0base"  # of the displacement that the base's acceleration works on; no name of a file begins so
-LOAD = "\0load"  # of the displacement that a distributed load works on
+BASE = "\0base"  # name of the displacement conjugate to base acceleration; no name in a file begins so
+LOAD = "\0load"  # prefix of the name of the displacement conjugate to a distributed load
 
 
 def read_base(top: Section, dofs: Names | None, matrices: bool) -> list[dict[str, Any]]:
@@ -93,7 +93,7 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
 
 
 def along_axis(name: str, axis: str) -> bool:
-    """Whether a degree of freedom is called as an axis, or as a node and that.
+    """Whether a degree of freedom is named by an axis, or by a node and that axis.
 
     >>> [along_axis(name, "x") for name in ("x", "12x", "tip_x", "n1_ux", "12rx", "tip_rx", "max")]
     [True, True, True, True, False, False, False]
@@ -102,7 +102,7 @@ def along_axis(name: str, axis: str) -> bool:
 
 
 def base_force(draft: dict[str, Any], dofs: tuple[str, ...]) -> Force:
-    """The inertial force -M d a of a base that moves by the acceleration a."""
+    """The inertial force -M d a of a base with the acceleration a along d."""
     direction = _unit(dofs, BASE)
     return Force(direction=direction, amplitude=-draft["acceleration"], phase=draft["phase"])
 
@@ -132,7 +132,7 @@ def _load(section: Section, files: Files, dofs: Names | None, matrices: bool) ->
 
 
 def _net(weights: FloatArray | None, dofs: Names | None) -> FloatArray | None:
-    """Sum of a load along x, y and z, and of its magnitudes, (3, 2); None where names do not tell."""
+    """Sums along x, y and z of a load and of its magnitudes, (3, 2); None if names do not tell the axes."""
     if weights is None or dofs is None:
         return None
     loaded = np.flatnonzero(weights)
@@ -147,10 +147,10 @@ def _net(weights: FloatArray | None, dofs: Names | None) -> FloatArray | None:
 def note_of_mass(
     masses: Mapping[str, float], length: str, force: str, floats: bool = False, mesh: bool = False
 ) -> list[str]:
-    """The mass of a structure along each axis, in the unit that follows from those of length and force.
+    """Note on the mass of a structure along each axis, in the unit derived from those of length and force.
 
-    Of one that floats it is the same along all: else a question. So it is of a mesh whose nodes are held as
-    a whole, but for the elements at them.
+    Different masses along the axes are questioned: for a floating structure they should be the same, and
+    for a mesh nearly so, if nodes are held in all directions or not at all.
 
     >>> note_of_mass({"x": 0.25, "y": 0.25, "z": 0.2}, "mm", "N")
     ['structure: its mass along x, y, z is 0.25, 0.25, 0.2 t, without rows that are held']
@@ -196,9 +196,9 @@ def note_of_mass(
 
 
 def notes_of_loads(drafts: Sequence[Mapping[str, Any]], unit: str) -> list[str]:
-    """The sum of all static loads along each direction, by the names of their degrees of freedom.
+    """Note on the net static load along each axis, by the names of its degrees of freedom.
 
-    Forces within a structure, as those of a bolt, cancel; what does not is held by supports and contacts.
+    Forces within a structure, as those of a bolt, cancel; supports and contacts hold the rest.
     """
     every = [draft["force"] * draft["net"] for draft in drafts if draft.get("net") is not None]
     if not every or len(every) < len(drafts):
@@ -243,13 +243,13 @@ def _distribution(section: Section, files: Files, dofs: Names | None) -> FloatAr
 
 
 def load_of(draft: dict[str, Any]) -> Load:
-    """The static load of what was read."""
+    """The `Load` made from a draft that was read."""
     draft["dof"].flags.writeable = False
     return Load(direction=draft["dof"], force=draft["force"])
 
 
 def distributions(parts: dict[str, Any], mass: Any) -> dict[str, FloatArray]:
-    """Loads over all rows of the matrices, by the names of the displacements that they work on."""
+    """Load vectors (row,) of distributed loads and of the base, by names of their conjugate displacements."""
     found = {f"{LOAD}{number}": draft["distribution"] for number, draft in enumerate(parts["load"])}
     for draft in parts["base"]:
         found[BASE] = mass @ draft["direction"]
@@ -257,7 +257,10 @@ def distributions(parts: dict[str, Any], mass: Any) -> dict[str, FloatArray]:
 
 
 def with_displacements(parts: dict[str, Any], columns: dict[str, FloatArray]) -> dict[str, Any]:
-    """The parts with displacements that loads over many rows work on: shapes along them (mode,), by name."""
+    """The parts with one more degree of freedom for each load over many rows.
+
+    columns: the mode shapes (mode,) along each, by its name. The load is then a force on that displacement.
+    """
     if not columns:
         return parts
     modal = parts["modal"]

@@ -1,4 +1,4 @@
-"""Files that a scene names beside itself: where they are, and how much of them is read."""
+"""Files that a scene refers to: where they are, and how large they may be."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.scene.options import FILES, MESSAGES
 
 
 class DataFileError(ValueError):
-    """A file of modes, matrices or names that cannot be read: why, in a sentence for each reason."""
+    """Raised for a file of modes, matrices or names that cannot be read, with a sentence for each reason."""
 
     def __init__(self, *faults: str) -> None:
         self.faults = faults
@@ -24,11 +24,11 @@ class DataFileError(ValueError):
 
 
 class UnreadableError(ValueError):
-    """Raised for a file that cannot be read; the message, without the file's name, is for its owner."""
+    """Raised for a file that cannot be read; the message is for users, and lacks the name of the file."""
 
 
 def reason_of(error: Exception, ending: str) -> str:
-    """Why a file cannot be read; what a library says of a damaged one is for its programmers.
+    """Why a file cannot be read, in words for users: errors of libraries are replaced by a general reason.
 
     >>> reason_of(UnreadableError("it is cut off"), ".npz"), reason_of(ValueError("zip() argument"), ".npz")
     ('it is cut off', 'it is damaged, or no .npz file')
@@ -43,20 +43,20 @@ def reason_of(error: Exception, ending: str) -> str:
 
 
 class Files(Frozen):
-    """The files beside a scene."""
+    """The files that a scene refers to, and what was noted while they were read."""
 
     folder: Path = Path()
     largest: int = FILES.largest  # bytes, unpacked
     read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
-    said: list[str] = field(default_factory=list, compare=False)  # of the matrices that were read
-    masses: dict[str, float] = field(default_factory=dict, compare=False)  # of the structure, along axes
+    said: list[str] = field(default_factory=list, compare=False)  # sentences on the matrices
+    masses: dict[str, float] = field(default_factory=dict, compare=False)  # of the structure, by axis
     meshes: list[bool] = field(default_factory=list, compare=False)  # see `structure_table.is_mesh`
-    noted: list[str] = field(default_factory=list, compare=False)  # of the pairs that were made
-    interfaces: list[Interface] = field(default_factory=list, compare=False)  # whose nodes have places
+    noted: list[str] = field(default_factory=list, compare=False)  # notes on node pairs and measured data
+    interfaces: list[Interface] = field(default_factory=list, compare=False)  # contacts with node places
 
     @contextmanager
     def opened(self, name: str) -> Iterator[Path]:
-        """The path of a file that is there and not too large; whatever fails within is said of the file."""
+        """The path of a file that exists and is not too large; any error within becomes a DataFileError."""
         path = self.folder / name
         self.read.append(path)
         try:
@@ -70,12 +70,12 @@ class Files(Frozen):
             yield path
         except DataFileError:
             raise
-        except Exception as error:  # whatever a damaged file does to its reader, the file is at fault
+        except Exception as error:  # a damaged file can cause any error in its reader
             reason = reason_of(error, path.suffix)
             raise DataFileError(f"{_shown(path)} cannot be read: {reason[:500]}") from None
 
     def check_size(self, path: Path, size: int) -> None:
-        """Refuse a file that is too large when it is unpacked."""
+        """Refuse a file whose unpacked size is too large."""
         if size > self.largest:
             raise DataFileError(
                 f"{_shown(path)} holds {megabytes(size)}; at most {megabytes(self.largest)} are read: "
@@ -84,7 +84,7 @@ class Files(Frozen):
 
 
 def megabytes(size: int) -> str:
-    """Bytes in the unit of the option.
+    """A number of bytes in MB, the unit of the option.
 
     >>> megabytes(3_000_000_000)
     '3000 MB'

@@ -1,4 +1,4 @@
-"""The [fit] table of a scene: numbers to be fitted, their bounds, and the measured data."""
+"""Reads the [fit] table of a scene: the numbers to fit, their bounds, and the measured data."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ RIGHT = {
 
 
 def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], unit: str) -> Fit | None:
-    """Reads which numbers are fitted to which data; None without the table, or after a mistake."""
+    """Reads the [fit] table; None without it, or after a mistake."""
     section = top.table("fit", "") if "fit" in top.data else None
     if section is None:
         return None
@@ -85,8 +85,7 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
 
 
 def notes_of_data(fit: Fit | None, ends: tuple[float, float], unit: str) -> list[str]:
-    """A question for each file of a response whose frequencies are all outside the range of the scene
-    [rad/s]."""
+    """A question on each measured response with all frequencies outside the scene's range, ends [rad/s]."""
     said = list[str]()
     for one in fit.data if fit is not None else ():
         low, high = float(one.frequency.min()), float(one.frequency.max())
@@ -199,7 +198,7 @@ def _data(section: Section, files: Files, draft: Draft, scene: Surroundings, uni
 def _function_of_table(
     section: Section, read: MeasuredFile, omega: FloatArray, name: str, dof: str, scene: Surroundings
 ) -> Function | None:
-    """The function that a table with a unit of amplitudes is; None without one, or in the scene's own."""
+    """The measured function of a table whose amplitude unit differs from the scene's; None if it does not."""
     unit, backbone = read.units.get("amplitude", ""), "backbone" in section.data
     quantity = str(section.data.get("quantity", "displacement"))
     length = dof_unit(dof, scene.units[0])
@@ -231,7 +230,7 @@ def _columns(
     others: Mapping[str, str],
     driven: Excitation | None,
 ) -> MeasuredFile | None:
-    """The columns of a file, or its function; None after a mistake."""
+    """The columns of a file, or its measured function; None after a mistake."""
     from fcm.scene.measured_file import read_measured
 
     backbone = "backbone" in section.data
@@ -280,7 +279,7 @@ def _dof(section: Section, reported: Sequence[str], needed: bool) -> str:
 
 
 def _level(section: Section, draft: Draft) -> float | str:
-    """The level of the scene's forces, or the column that has the force of each point."""
+    """The level of the scene's forces, or the name of the column with the force of each point."""
     value = section.data.get("level", 1.0)
     if not isinstance(value, str):
         return section.number("level", POSITIVE, 1.0)
@@ -292,14 +291,14 @@ def _level(section: Section, draft: Draft) -> float | str:
 
 
 def _force(driven: Excitation | None) -> complex:
-    """The amplitude of the scene's one force, which its level multiplies; 0 where there are several."""
+    """The amplitude of the scene's only force, which the level multiplies; 0 if there is not exactly one."""
     return driven.amplitude if driven is not None else 0.0
 
 
 def _excitation(draft: Draft) -> Excitation | None:
-    """The one force of a scene, or the motion of its base; None where there are several.
+    """The only force of a scene, or its base motion; None if there is not exactly one.
 
-    A force on one degree of freedom is that along its axis.
+    For a force on a single degree of freedom the amplitude includes its weight.
     """
     found = []
     for one in draft.parts["force"]:

@@ -1,4 +1,4 @@
-"""Modes that the forces of a scene push, and the question whether a force is where it is meant."""
+"""Finds the modes that the forces of a scene excite, and questions forces that excite none."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from fcm.units import UNIT
 
 
 def pushed(scene: Scene, turn: FloatArray) -> NDArray[np.bool_]:
-    """Mask of combinations (one, mode) of modes of mass 1 that forces push, beyond rounding."""
+    """Mask (combination,) of combinations turn (combination, mode) of modes of mass 1 that forces excite.
+
+    A projection of a force that is rounding counts as zero.
+    """
     mass_one = scene.modal.shapes / np.sqrt(scene.modal.mass)[:, None]
     directions = np.array([one.direction for one in scene.forces]).reshape(-1, mass_one.shape[1]).T
     size = np.abs(mass_one).max(axis=0) @ np.abs(directions)
@@ -24,9 +27,9 @@ def pushed(scene: Scene, turn: FloatArray) -> NDArray[np.bool_]:
 
 
 def question_of_forces(scene: Scene) -> list[str]:
-    """Question about forces that push no mode up to twice the range's end, with contacts open or stuck.
+    """Question about forces that excite no mode up to `range_near` times the end of the range.
 
-    Nothing is said of rings, nor where there is no such mode.
+    Modes with contacts open and with contacts stuck count. There is none for rings, nor without such modes.
     """
     if scene.ring is not None or not scene.has_range or not scene.forces:
         return []

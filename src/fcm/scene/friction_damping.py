@@ -1,25 +1,24 @@
-r"""Estimate of the damping that friction can add to each resonance, by one harmonic.
-
-Contacts stay closed.
+r"""Estimate of the damping that friction can add to each resonance, with one harmonic and closed contacts.
 
 A Jenkins element in harmonic motion of amplitude X is a stiffness and a damping force in phase with the
 velocity, with cos(theta) = 1 - 2 mu n_0 / (k_u X):
 
 .. math:: k_r = k_u \frac{\theta - \sin\theta\cos\theta}{\pi}, \qquad k_i = k_u \frac{\sin^2\theta}{\pi}.
 
-A mode phi of mass 1 and frequency omega, of the structure with its contacts at k_v and k_r, has the ratio
+Let phi be a mode of mass 1 and frequency omega of the structure with contact stiffnesses k_v and k_r. Its
+damping ratio from friction is
 
 .. math:: \zeta = \frac{1}{2 \omega^2} \sum_c k_i (\phi^T t_c)^2.
 
-Its maximum over theta, the same for all contacts, is what friction can add. For one degree of freedom it is
-the greatest damping ratio of the nonlinear mode (Krack 2015) of one harmonic.
+The estimate is the maximum over theta, which is the same for all contacts. For one degree of freedom it is
+the greatest damping ratio of the nonlinear mode (Krack 2015) with one harmonic.
 
-In resonance with the forces f, with that and its own ratio, the mode and the contacts move by
+With this ratio and its own ratio zeta_0, the mode in resonance with the forces f and the contacts move by
 
 .. math:: q = \frac{|\phi^T f|}{2 (\zeta + \zeta_0) \omega^2}, \qquad X_c = |\phi^T t_c|\, q,
 
 and the preload that gives theta at a contact is n_0 = k_u X_c (1 - cos(theta)) / (2 mu). Along its normal n_c
-the contact moves by |phi^T n_c| q. Where that times k_v is more than the preload, it would open, and the
+the contact moves by |phi^T n_c| q. If k_v times this exceeds the preload, the contact would open, and the
 estimate does not hold.
 """
 
@@ -37,15 +36,16 @@ from fcm.units import UNIT
 
 
 def friction_damping(scene: Scene) -> list[dict[str, Any]]:
-    """Frequencies of the first elastic modes with contacts stuck, of those alike when open, and the damping.
+    """The first elastic modes with all contacts stuck, and how much friction can damp each.
 
-    `open_mode` counts the mode without contacts of the most alike shape from 1, `open` is its frequency and
-    `mac` its modal assurance criterion. Each is followed by its shape as the contacts slip.
+    `stuck` is the mode's frequency. `open_mode` is the number, from 1, of the mode without contacts whose
+    shape is most alike, `open` its frequency and `mac` the modal assurance criterion. Each mode is followed
+    by its shape as the contacts slip.
 
-    `friction_damping` is the greatest ratio [-] that friction adds, `by_contact` the share of each contact
-    in it, `preload` that of each contact which gives it with the forces of the scene. Where these do not move
-    the mode it is 0, and `excited` is false. `opens` are the contacts that would open with it. Empty without
-    contacts. Modes are counted among those that are elastic while the contacts stick.
+    `friction_damping` is the greatest ratio [-] that friction adds, and `by_contact` the share of each
+    contact. `preload` gives the preload of each contact for this damping under the scene's forces. If these
+    do not excite the mode, it is 0 and `excited` is false. `opens` lists the contacts that would open then.
+    The result is empty without contacts.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
     most = min(2 * modes[-1].number + 2, modal.frequency.size) if modes else 0
 
     best, excited = np.zeros(len(modes)), np.zeros(len(modes), dtype=np.bool_)
-    # of each contact, at the best theta of each mode
+    # for each mode and contact, at the mode's best theta
     ratio, preload, load = np.zeros((3, len(modes), len(contacts)))
     angles = np.geomspace(FRICTION_DAMPING.least_angle, np.pi, FRICTION_DAMPING.angles, endpoint=False)
     for theta in angles[::-1] if modes else ():
@@ -128,9 +128,9 @@ def friction_damping(scene: Scene) -> list[dict[str, Any]]:
 
 
 def _force_on(scene: Scene, shape: FloatArray, omega: float) -> complex:
-    """The amplitude of the forces of the fundamental on a combination (mode,) of the modes.
+    """The complex amplitude of the forces of harmonic 1 on a combination shape (mode,) of the modes.
 
-    0 within the rounding of its shape, which is that of the greatest stiffness beside its own.
+    0 if it is rounding, which grows with the ratio of the greatest stiffness to that of the shape.
     """
     moved = shape @ scene.modal.shapes
     total, size = 0.0j, 0.0

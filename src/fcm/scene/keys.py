@@ -1,7 +1,6 @@
-"""Every key of a scene: what it means, what it may be, and what it is when it is not given.
+"""All keys of a scene: what each means, its allowed values, and its default.
 
-The tables are read against these names: a key that is not here is refused, and `fcm respond --keys` prints
-what is here.
+Readers of tables refuse a key that is not here; `fcm respond --keys` prints all keys.
 """
 
 from __future__ import annotations
@@ -16,8 +15,8 @@ class Key(Frozen):
     """Description of one key of a table."""
 
     meaning: str
-    value: str | Rule  # what it may be
-    default: str = REQUIRED  # what it is when it is not given
+    value: str | Rule  # allowed values
+    default: str = REQUIRED  # value if it is not given
 
     @property
     def kind(self) -> str:
@@ -30,7 +29,7 @@ def _in_words(rule: Rule) -> str:
 
 
 def _rule(key: str, more: str) -> str:
-    """What values a number may have, in words, and that there may be several."""
+    """The values that a number may have, in words, and whether several may be given."""
     return f"{_in_words(RULES[key])}{more}"
 
 
@@ -231,10 +230,10 @@ TABLES: dict[str, dict[str, Key]] = {
     },
 }  # fmt: skip
 
-OMEGA = "rad/s or Hz"  # by frequency_unit
+OMEGA = "rad/s or Hz"  # depends on frequency_unit
 STIFFNESS = "force / length"
 MASS = "force s^2 / length"
-UNITS = {  # of numbers by their paths; "1" of those that have none
+UNITS = {  # units of numbers by path; "1" for dimensionless ones
     "modal.mass": MASS,
     "modal.frequency": OMEGA,
     "modal.damping": "1",
@@ -310,7 +309,7 @@ def names(table: str) -> tuple[str, ...]:
 
 
 def unit_of(table: str, name: str) -> str:
-    """The unit of a number of a table; empty of what is none.
+    """The unit of a number of a table; empty for keys that are not numbers.
 
     >>> unit_of("contact", "k_u"), unit_of("contact", "name")
     ('force / length', '')
@@ -319,7 +318,7 @@ def unit_of(table: str, name: str) -> str:
 
 
 def as_lines() -> list[tuple[str, str, str, str]]:
-    """Every key with its table: path, what it may be, what it is when it is not given, what it means.
+    """All keys as (path, allowed values, default, meaning).
 
     >>> as_lines()[0]
     ('title', 'string', 'empty', 'of the scene, for pictures and files')

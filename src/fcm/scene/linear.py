@@ -1,4 +1,4 @@
-"""The linear structure of a scene: modes as given, or those of matrices, at the degrees of freedom in use."""
+"""The linear structure of a scene: given modes, or modes of matrices, at the degrees of freedom in use."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from fcm.units import UNIT
 if TYPE_CHECKING:
     from fcm.scene.structure_table import StructureMatrices
 
-HIDDEN = "\0"  # how the name of a displacement begins that a load over many rows works on
+HIDDEN = "\0"  # prefix of the name of a displacement conjugate to a load over many rows
 
 
 def read_linear(
     top: Section, files: Files, unit: str, cyclic: list[Part]
 ) -> tuple[Parts, StructureMatrices | None]:
-    """The draft of the modal table, and the matrices that it is still to be made of.
+    """The draft of the modal table, and the matrices from which it is still to be computed, if any.
 
-    Of a ring's sector, the degrees of freedom of the next are there as well.
+    For a sector of a ring, dofs include those of the next sector.
     """
     if "structure" not in top.data:
         modal = read_modal(top, files, unit, cyclic)
@@ -59,7 +59,7 @@ def with_modes(
     ends: tuple[float, float],
     unit: str,
 ) -> tuple[Parts, list[str]]:
-    """The parts with the modes of matrices at all rows, and what is to be said of them."""
+    """The parts with the modes of matrices at all rows, and notes on them."""
     from fcm.scene.reduction import exchanged, modal_of_matrices
     from fcm.structure.eigen import unit_columns
 
@@ -87,7 +87,7 @@ def with_modes(
 
 
 def _room_for(top: Section, directions: int, rows: int) -> bool:
-    """Whether memory holds what the flexibility along directions takes; else it is noted."""
+    """Whether there is memory for the flexibility along a number of directions; notes it if not."""
     taken = float(LIMITS.bytes_of_direction * directions * rows)
     said = f"its flexibility along {directions} directions of contacts and forces, at {rows} rows, takes"
     notices = top.mistakes.notices
@@ -107,7 +107,7 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
 def check_matrices(
     top: Section, matrices: StructureMatrices, cyclic: list[Part], ends: tuple[float, float]
 ) -> None:
-    """Note that matrices are not those of a structure, of a scene that has other mistakes."""
+    """Checks the matrices of a scene that already has other mistakes, to note their mistakes as well."""
     from fcm.scene.reduction import modal_of_matrices
     from fcm.scene.ring_reduction import LoadedRing, modal_of_ring
 
@@ -152,7 +152,7 @@ def _of_ring(
         found = parts["cyclic"][0]["mistuning"]
         draft["energy"] = energy_of_matrices(found, matrices.K, draft["shapes"])
     draft["exchanged"] = exchanged(all_alike(matrices), draft["frequency"][~draft["flexible"]], ends)
-    of_next = np.zeros_like(draft["shapes"])  # what they are follows from the sector's own
+    of_next = np.zeros_like(draft["shapes"])  # placeholders: they follow from the sector's own
     columns = {name: draft["shapes"] @ load for name, load in over_rows.items()}
     shapes = np.concatenate((draft["shapes"], of_next), axis=1)
     draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNIT[unit], "shapes": shapes}
@@ -160,14 +160,14 @@ def _of_ring(
 
 
 def with_base(parts: Parts) -> Parts:
-    """The parts of a scene of modes with what its base works on."""
+    """The parts of a scene with given modes, with the displacement conjugate to base acceleration."""
     return with_displacements(parts, {BASE: parts["modal"]["participation"]}) if parts["base"] else parts
 
 
 def with_exact_rigid_modes(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
-    """The parts with frequencies that are the rounding of rigid-body modes set to 0."""
+    """The parts with frequencies of rigid-body modes, which rounding made positive, set to 0; and notes."""
     frequency = parts["modal"]["frequency"]
-    bodies = len(parts["contact"]) + 1  # that are held together by contacts alone
+    bodies = len(parts["contact"]) + 1  # greatest number of bodies that only contacts join
     count = rigid_by_gap(frequency, most=MOST * bodies)
     if not count or np.isnan(ends[0]):
         return parts, []
@@ -187,7 +187,7 @@ OF_ALL_SECTORS = "; a name of the sector is that of all sectors"
 
 
 def read_output(section: Section, dofs: Names | None) -> list[str]:
-    """Degrees of freedom that are asked for, by names or patterns such as "40*", in the order of the dofs."""
+    """Requested degrees of freedom, from names or patterns such as "40*", in the order of the dofs."""
     if "output" not in section.data:
         return []
     value = section.data["output"]
@@ -202,7 +202,7 @@ def read_output(section: Section, dofs: Names | None) -> list[str]:
 
 
 def _matching(section: Section, key: str, pattern: object, dofs: Names | None) -> set[str]:
-    """The degrees of freedom that one entry asks for."""
+    """The degrees of freedom that one entry requests."""
     if not isinstance(pattern, str):
         what = 'must be a degree of freedom or a pattern such as "40*"'
         section.wrong(key, f"{what}, is {described(pattern)}")
@@ -221,7 +221,10 @@ def _matching(section: Section, key: str, pattern: object, dofs: Names | None) -
 
 
 def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]:
-    """The degrees of freedom in results: those of contacts and forces and those asked for, or all of few."""
+    """The degrees of freedom in results: requested ones and those of contacts and forces.
+
+    If none are requested (asked) and there are few, these are all.
+    """
     dofs: Names = parts["modal"]["dofs"]
     own = [name for name in dofs if not name.startswith((HIDDEN, NEXT))]
     if not asked and len(own) <= LIMITS.reported:
@@ -232,7 +235,7 @@ def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]
 
 
 def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Parts:
-    """The parts without the rows of matrices that nothing is attached to and that are not reported."""
+    """The parts restricted to rows that are reported, named by a sweep, or conjugate to distributed loads."""
     dofs: Names = parts["modal"]["dofs"]
     needed = {*reported, *map(own_name, _swept(top, dofs))}
     kept = [i for i, name in enumerate(dofs) if own_name(name) in needed or name.startswith(HIDDEN)]
@@ -251,7 +254,7 @@ def _directions(parts: Mapping[str, Any]) -> list[FloatArray]:
 
 
 def _springs(parts: Mapping[str, Any], loads: int) -> FloatArray:
-    """Stiffness of the contacts along their directions, which are the first of all loads; 0 along others."""
+    """Contact stiffnesses (load,) along the contact directions, which come first; 0 along other loads."""
     own = [
         draft["k_v" if key == "normal" else "k_u"]
         for draft in parts["contact"]
@@ -266,7 +269,7 @@ def _columns(directions: list[FloatArray], rows: int) -> FloatArray:
 
 
 def _swept(top: Section, dofs: Names) -> set[str]:
-    """Degrees of freedom that a swept key names, as in "contact.shroud.normal.40x"."""
+    """Degrees of freedom in swept keys such as "contact.shroud.normal.40x"."""
     sweep = top.data.get("sweep")
     keys = list(sweep) if isinstance(sweep, Mapping) else []
     return {name for name in dofs if any(str(key).endswith(f".{name}") for key in keys)}

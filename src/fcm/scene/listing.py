@@ -1,4 +1,4 @@
-"""Describes the structure of a scene before anything is solved: modes, excitation, and doubts."""
+"""Describes the structure of a scene before anything is solved: modes, excitation, and warnings."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 from fcm.units import UNIT
 
-METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
-POUND_AND_INCH = float(np.sqrt(386.09))  # of frequencies, by the acceleration of gravity in in/s^2
-METRIC_SLIPS = {  # what the frequencies are to be multiplied by: how that comes, and what helps
+METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # frequency factor if stiffness and mass mix m and mm units
+POUND_AND_INCH = float(np.sqrt(386.09))  # frequency factor from the acceleration of gravity in in/s^2
+METRIC_SLIPS = {  # factors that correct the frequencies, with cause and remedy
     METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as high. So it is "
     "with a stiffness in N/mm and a mass in kg: give the mass in t",
     1.0 / METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as low. So it is "
@@ -30,22 +30,22 @@ IMPERIAL_SLIPS = {
     "stiffness in lbf/in and a mass in lb: divide the mass by 386"
 }
 
-FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out
+FLEXIBILITY = "flexibility"  # kind of a mode that stands for the flexibility of omitted modes
 
 
 def listing(scene: Scene) -> dict[str, Any]:
     """Modes with frequency, damping, mass and participation; how they are normalised; notes and warnings.
 
-    Beside them the resonances with open and with stuck contacts, how much friction can damp them, and the
-    stiffness of the structure at each contact; of a ring of sectors they are left to `fcm plot campbell`.
+    It also has the resonances with open and with stuck contacts, how much friction can damp them, and the
+    stiffness of the structure at each contact. For a ring of sectors it leaves these to `fcm plot campbell`.
 
     The participation of a mode in a direction (of a contact or a force) is its share of the static
-    flexibility along it, phi^2 / (m omega^2) by the sum over all modes; None where rigid-body modes make
-    that infinite. `displacement` is phi / sqrt(m), the motion of the mode of mass 1.
+    flexibility along it: phi^2 / (m omega^2) over the sum of all modes. It is None if rigid-body modes make
+    the flexibility infinite. `displacement` is phi / sqrt(m), the displacement of the mode of mass 1.
     """
     if scene.ring is not None:
         return _of_ring(scene, scene.ring)
-    from fcm.scene.friction_damping import friction_damping  # for this list alone
+    from fcm.scene.friction_damping import friction_damping  # only needed here
 
     modal, directions = scene.modal, _directions(scene)
     motion = {name: modal.shapes @ direction / np.sqrt(modal.mass) for name, direction in directions.items()}
@@ -81,22 +81,23 @@ def listing(scene: Scene) -> dict[str, Any]:
 
 
 def _of_pairs(scene: Scene) -> list[str]:
-    """Names of the contacts that are one pair of nodes of several."""
+    """Names of the contacts that come from a [[contact]] with node pairs."""
     drafts = [] if scene.draft is None else scene.draft.parts["contact"]
     return [one["name"] for one in drafts if "group" in one]
 
 
 def _preload_shares(scene: Scene) -> dict[str, float]:
-    """Share of each pair of nodes in the n_0 of its contact, where that is a total for all pairs."""
+    """Share of each node pair in the n_0 of its contact, if that is a total for all pairs."""
     drafts = [] if scene.draft is None else scene.draft.parts["contact"]
     return {one["name"]: one["share"]["n_0"] for one in drafts if "n_0" in one.get("share", ())}
 
 
 def _beside_structure(scene: Scene, shares: dict[str, Any]) -> dict[str, dict[str, float | None]]:
-    """Of each contact k_u and k_v, and the force per unit displacement of the structure without contacts.
+    """By contact, k_u and k_v, and the stiffness of the structure without contacts along its directions.
 
-    None where no load is held: rigid-body modes move along it. Nor where no mode does. `elastic_tangential`
-    and `elastic_normal` are those of elastic modes alone, None where no such mode moves along it.
+    `structure_tangential` and `structure_normal` are None if a rigid-body mode moves along the direction, or
+    if no mode does. `elastic_tangential` and `elastic_normal` are the stiffnesses by elastic modes alone;
+    None if no such mode moves along the direction.
     """
     found: dict[str, dict[str, float | None]] = {}
     for contact, (along, across) in zip(scene.contacts, contact_flexibility(scene).tolist(), strict=True):
@@ -120,27 +121,26 @@ _IN_HERTZ = 'the range would hold modes if its numbers were in Hz: frequency_uni
 
 
 def resonance_doubt(scene: Scene) -> str:
-    """Warning that no resonance is near the range of frequencies, with the nearest modes and a usual slip of
-    units; empty without one.
+    """Warning that no resonance is near the frequency range, with the nearest modes and likely mistake.
 
-    A resonance lies between a mode of the structure alone and that with all contacts stuck: springs only
-    raise frequencies, and a contact in motion is softer than its spring (Rayleigh). One that is near the
-    range, and not within it, is enough, unless the range of a structure of matrices would hold it if its
-    numbers were in Hz.
+    It is empty if there is a resonance. A resonance lies between a mode without contacts and the same mode
+    with all contacts stuck: springs only raise frequencies, and a moving contact is softer than its spring
+    (Rayleigh). A resonance near the range suffices. For a structure of matrices it does not, if the range
+    would contain it with its numbers in Hz.
     """
     if not scene.has_range:
         return ""
     ranges, room = _ranges_of_forces(scene), MESSAGES.range_near
     near, alone = [(low / room, high * room) for low, high in ranges], _modes_alone(scene)
     enough = ranges if scene.of_matrices else near
-    if _resonance_within(alone, alone, *enough):  # the contacts need not be asked
+    if _resonance_within(alone, alone, *enough):  # modes with stuck contacts are not needed
         return ""
     opened, stuck = _modes_open_and_stuck(scene)
     if not opened.size or _resonance_within(opened, stuck, *enough):
         return ""
     ends, unit = ranges[0], scene.frequency_unit
     is_near = _resonance_within(opened, stuck, *near)
-    margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
+    margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # a mode close to an end may be chance
     within = (ends[0] * margin, ends[1] / margin)
     slip = _slip_of_units(opened[:1], stuck[:1], within, unit, imperial="lbf" in scene.units)
     if is_near and slip != _IN_HERTZ:
@@ -159,14 +159,14 @@ def resonance_doubt(scene: Scene) -> str:
 
 
 def _ranges_of_forces(scene: Scene) -> list[tuple[float, float]]:
-    """Ranges of frequency [rad/s] in which forces act: the scene's range times each force harmonic."""
+    """Frequency ranges [rad/s] in which forces act: the scene's range times each harmonic of the forces."""
     low, high = scene.frequency_range
     driven = sorted({force.harmonic for force in scene.forces}) or [1]
     return [(h * low, h * high) for h in driven]
 
 
 def _modes_alone(scene: Scene) -> FloatArray:
-    """Natural frequencies [rad/s] of the structure without contacts, but those that stand for flexibility."""
+    """Natural frequencies [rad/s] of the structure without contacts, without those for flexibility."""
     modal, ring = scene.modal, scene.ring
     return (
         modal.frequency[: modal.frequency.size - modal.added] if ring is None else ring.frequency[~ring.added]
@@ -174,7 +174,7 @@ def _modes_alone(scene: Scene) -> FloatArray:
 
 
 def _modes_open_and_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """Natural frequencies (mode,) [rad/s] of elastic modes, without contacts and with all of them stuck."""
+    """Natural frequencies (mode,) [rad/s] without contacts and with all stuck; the latter are positive."""
     if scene.ring is not None:
         every = nodal_diameters(scene)
         opened, stuck = (np.concatenate([getattr(one, of) for one in every]) for of in ("opened", "stuck"))
@@ -191,27 +191,27 @@ def _resonance_within(opened: FloatArray, stuck: FloatArray, *ranges: tuple[floa
 
 
 def _nearest(frequency: FloatArray, ends: tuple[float, float]) -> float:
-    """The one that takes the least factor to an end of the range."""
+    """The frequency that is nearest to an end of the range, by ratio."""
     with np.errstate(divide="ignore"):
         away = np.abs(np.log(frequency[:, None] / np.array(ends)))
     return float(frequency[np.argmin(away.min(axis=1))])
 
 
 def _stuck(scene: Scene) -> FloatArray:
-    """Frequencies (mode,) [rad/s], ascending, of the structure whose contacts all stick, in its modes."""
+    """Natural frequencies (mode,) [rad/s], ascending, with all contacts stuck."""
     squares: FloatArray = np.asarray(np.linalg.eigvalsh(stuck_stiffness(scene)), dtype=np.float64)
     return np.sqrt(np.maximum(squares, 0.0))
 
 
 def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [rad/s] and damping ratios (mode,) of the first elastic modes while all contacts stick.
+    """Frequencies [rad/s] and damping ratios (mode,) of the first elastic modes with all contacts stuck.
 
-    The ratio is phi^T C phi / (2 omega), C the damping of the modes without contacts.
+    The ratio is phi^T C phi / (2 omega), with the damping matrix C of the modes without contacts.
     """
     import scipy.linalg  # which most runs do without
 
     modal, stiffness = scene.modal, stuck_stiffness(scene)
-    floating = int((modal.frequency == 0.0).sum())  # contacts leave so many rigid-body modes at most
+    floating = int((modal.frequency == 0.0).sum())  # with contacts there are no more rigid-body modes
     last = min(floating + MESSAGES.stuck_modes, len(stiffness)) - 1
     squares, turn = scipy.linalg.eigh(stiffness, subset_by_index=[0, last])
     damping = (2.0 * modal.damping * modal.frequency) @ turn**2
@@ -221,7 +221,7 @@ def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
 
 
 def notes_of_modes(scene: Scene) -> list[str]:
-    """First resonances with all contacts open and with all stuck, with their damping: are units as meant?"""
+    """Notes on the first resonances with contacts open and stuck and their damping, to check units."""
     unit, most = scene.frequency_unit, MESSAGES.stuck_modes
     opened = np.sort(_modes_alone(scene))
     rigid, opened = int((opened == 0.0).sum()), opened[opened > 0.0]
@@ -231,7 +231,7 @@ def notes_of_modes(scene: Scene) -> list[str]:
         of_open = f"0 ({counted(rigid, 'rigid-body mode')})" + (f", {of_open}" if opened.size else "")
     damped = f". Their damping ratios while stuck: {_listed(ratio[:most], 3)}" if omega.size else ""
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
-    if rigid and omega.size:  # by number they do not belong together
+    if rigid and omega.size:  # open and stuck modes do not correspond by number
         alike = np.array([scene.modal.frequency[one.open_mode] for one in stuck_modes(scene)[:most]])
         of_stuck += f", by shape those at {_listed(alike / UNIT[unit])} {unit} open"
     numbers = "" if scene.fit is None else " of the numbers before the fit"
@@ -253,7 +253,7 @@ def notes_of_modes(scene: Scene) -> list[str]:
 
 
 def notes_of_diameters(scene: Scene) -> list[str]:
-    """First resonances of a ring, all contacts open and all stuck, of each diameter that forces meet."""
+    """Notes on the first resonances of a ring, contacts open and stuck, by diameter that forces excite."""
     ring, unit, most = scene.ring, scene.frequency_unit, MESSAGES.stuck_modes
     assert ring is not None
     met = {ring.meets(one.harmonic): one.harmonic for one in reversed(scene.forces)}
@@ -268,9 +268,9 @@ def notes_of_diameters(scene: Scene) -> list[str]:
 
 
 def _first_far_below(scene: Scene) -> str:
-    """Sentence that the first resonance is far below the range, which a slip of units could explain; or ''.
+    """Sentence that the first resonance is far below the range, as a unit mistake would explain; or ''.
 
-    Higher modes are in the range then, so that it is not said that none is.
+    `resonance_doubt` finds nothing then, since higher modes are in the range.
     """
     if not scene.has_range:
         return ""
@@ -294,7 +294,7 @@ def _listed(values: FloatArray, digits: int = 5) -> str:
 
 
 def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
-    """The modes of every nodal diameter; shares are among those of one, displacements magnitudes."""
+    """The listing of a ring; participations are shares within one diameter, displacements magnitudes."""
     directions, met = _directions(scene), {ring.meets(one.harmonic) for one in scene.forces}
     motion = {name: np.abs(ring.shapes @ direction) for name, direction in directions.items()}
     order = np.lexsort((ring.frequency, ring.added, ring.diameter))
@@ -336,9 +336,9 @@ def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
 
 
 def _read(scene: Scene, frequency: FloatArray) -> list[str]:
-    """Sentences on what was read as the structure: matrices, rigid bodies, frequencies in both units.
+    """Sentences on the structure as read: matrices, rigid-body modes, frequencies in both units.
 
-    They say whether units may have been mixed.
+    They include a warning on a likely unit mistake.
     """
     elastic = np.sort(frequency[frequency > 0.0])
     rigid = int((frequency == 0.0).sum())
@@ -348,7 +348,7 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     low, high = elastic[0], elastic[-1]
     in_hertz = f"{low / (2.0 * np.pi):.6g} to {high / (2.0 * np.pi):.6g} Hz"
     said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
-    if scene.ring is None and scene.contacts and not scene.of_matrices:  # of matrices it is a note
+    if scene.ring is None and scene.contacts and not scene.of_matrices:  # for matrices notes has it
         said += [one.removeprefix("structure: ") for one in notes_of_modes(scene)]
     if doubt := resonance_doubt(scene):
         said.append(doubt)
@@ -358,13 +358,13 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
 def _slip_of_units(
     opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str, imperial: bool = False
 ) -> str:
-    """The usual slip of units by which the range [rad/s] would contain the lowest resonance; else ''."""
+    """The common unit mistake without which the range [rad/s] would contain the lowest resonance; or ''."""
     hertz = 2.0 * np.pi
     slips = {
         1.0 / hertz: _IN_HERTZ,
         hertz: 'the range would hold modes if its numbers were in rad/s: frequency_unit = "rad/s"',
     } | (IMPERIAL_SLIPS if imperial else METRIC_SLIPS)
-    del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # it is in that unit already
+    del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # the scene already uses this unit
     return next(
         (text for factor, text in slips.items() if _resonance_within(opened * factor, stuck * factor, ends)),
         "",
@@ -387,14 +387,14 @@ def _directions(scene: Scene) -> dict[str, FloatArray]:
 
 
 def _name(scene: Scene, force: Force) -> str:
-    """The degree of freedom of a force on one, if no other force is on it."""
+    """The degree of freedom of a force on a single one, if no other force acts there; else ''."""
     at = np.flatnonzero(force.direction)
     alone = sum(np.array_equal(force.direction, one.direction) for one in scene.forces) == 1
     return scene.modal.dofs[at[0]].strip("\0") if at.size == 1 and alone else ""
 
 
 def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:
-    """Share of each mode in the static flexibility of a direction."""
+    """Share of each mode in the static flexibility along a direction; None if it is infinite."""
     if (frequency == 0.0)[np.abs(along) > TOLERANCES.displacement * np.abs(along).max(initial=0.0)].any():
         return None
     flexibility = np.divide(along, frequency, out=np.zeros_like(along), where=frequency > 0.0) ** 2
@@ -404,7 +404,7 @@ def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:
 
 def _normalisation(scene: Scene) -> str:
     mass = scene.modal.mass
-    largest = np.abs(scene.modal.shapes).max(axis=1, initial=0.0)  # none is kept where none is needed
+    largest = np.abs(scene.modal.shapes).max(axis=1, initial=0.0)  # there may be no degrees of freedom
     of_one = largest.size > 1 and np.allclose(largest, 1.0, rtol=1e-6, atol=0.0)
     if (mass == 1.0).all():
         doubt = "taken as mass-normalised, but the largest value of each is 1"
@@ -425,7 +425,7 @@ def _warnings(scene: Scene, directions: dict[str, FloatArray], motion: dict[str,
 
 
 def _of_range(scene: Scene) -> list[str]:
-    """Warnings that concern the range of frequencies."""
+    """Warnings on the frequency range."""
     said, modal, unit = [], scene.modal, scene.frequency_unit
     ranges = _ranges_of_forces(scene)
     inside = np.any([(modal.frequency > low) & (modal.frequency < high) for low, high in ranges], axis=0)

@@ -73,7 +73,7 @@ NOT_IN_PLANE = (
 
 
 def bundled_scenes() -> tuple[str, ...]:
-    """Names of the scenes that come with fcm; after them those of collections, as "extreme/stiff-normal".
+    """Names of the scenes that come with fcm, then those of collections such as "extreme/stiff-normal".
 
     >>> "yang1998" in bundled_scenes(), "extreme/stiff-normal" in bundled_scenes()
     (True, True)
@@ -89,7 +89,7 @@ def _bundled() -> Path:
 
 
 def path_of(path_or_name: str | Path) -> Path:
-    """The file of a scene, or of a bundled name; SceneError where there is none."""
+    """The file of a scene, given by its path or bundled name; SceneError if there is none."""
     bundled = str(path_or_name) in bundled_scenes()
     return _bundled() / f"{path_or_name}.toml" if bundled else _there(path_or_name)
 
@@ -102,12 +102,11 @@ def load_scene(
     solved: bool = True,
     notices: SizeNotices | None = None,
 ) -> Scene:
-    """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
+    """The scene of a TOML file or a bundled name; SceneError lists every mistake.
 
-    A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked. Of matrices the
-    scene has the rows that something is attached to or that are reported, or `every_row`. Where it is not to
-    be solved, it may be without [response] and [[force]]. Of draws and curves that take long or much room is
-    announced before they are made.
+    largest_file: greatest unpacked size [byte] of a file of modes or matrices. every_row: keep all rows of
+    matrices; otherwise only those that are reported or carry contacts, forces or loads. solved: whether
+    [response] and [[force]] are required. notices: announces draws and curves that take much time or memory.
 
     >>> scene = load_scene("yang1998")
     >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
@@ -138,9 +137,9 @@ def scene_from_dict(
     solved: bool = True,
     notices: SizeNotices | None = None,
 ) -> Scene:
-    """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
+    """The scene of a dict with the keys of a file; files of modes are relative to the folder.
 
-    Arguments are those of `load_scene`.
+    The other arguments are those of `load_scene`.
 
     >>> modal = {"dofs": ["u"], "frequency": [1.0], "damping": 0.01, "shapes": [[1.0]]}
     >>> force = [{"dof": "u", "amplitude": 1.0}]
@@ -173,14 +172,14 @@ def scene_from_dict(
 
 
 class _Reading(NamedTuple):
-    """How a scene is read, see `load_scene`."""
+    """Arguments of `load_scene` on how a scene is read."""
 
     every_row: bool
     solved: bool
 
 
 def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
-    """The fields of a scene that are read from its keys, the draft of the others among them."""
+    """The fields of a scene that are read from its keys, and the draft from which the others are built."""
     unit = _unit(top)
     response = response_table(top, reading.solved)
     ends, step = read_response(top, response, unit)
@@ -195,7 +194,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     units = read_units(top)
     fit, notes_of_fit = None, list[str]()
     if "fit" in top.data:
-        from fcm.scene.fit import notes_of_data, read_fit  # and with it readers of measured data
+        from fcm.scene.fit import notes_of_data, read_fit  # imports the readers of measured data
 
         fit = read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit)
         notes_of_fit = notes_of_data(fit, ends, unit)
@@ -230,7 +229,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
 
 
 def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None, solved: bool) -> Scene:
-    """The scene of what was read without a mistake, with its curves and all that is to be said of it."""
+    """The scene built from fields without mistakes, with its curves and notes."""
     draft: Draft = fields["draft"]
     modal, ring = modes_of(draft.parts, fields["frequency_unit"])
     scene = Scene(
@@ -267,11 +266,11 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None, solved
     )
 
 
-RIGID = 6  # rigid-body modes of a body that nothing holds
+RIGID = 6  # number of rigid-body modes of a free body
 
 
 def _floats(parts: Parts) -> bool:
-    """Whether a structure moves as a rigid body in all six ways."""
+    """Whether a structure has at least six rigid-body modes."""
     frequency = parts["modal"].get("frequency")
     return frequency is not None and int((np.asarray(frequency, dtype=np.float64) == 0.0).sum()) >= RIGID
 
@@ -291,7 +290,7 @@ def _notes_of_modes(scene: Scene) -> list[str]:
 
 
 def _tuned(name: str, fields: dict[str, Any], solved: bool) -> Scene | None:
-    """The tuned ring beside a mistuned one, as a scene of one sector."""
+    """The tuned ring of a mistuned one, as a scene of one sector; None if there is no mistuning."""
     draft: Draft = fields["draft"]
     if not draft.parts.get("whole"):
         return None
@@ -310,8 +309,7 @@ def _parts(
     ends: tuple[float, float],
     reading: _Reading,
 ) -> tuple[Parts, tuple[str, ...], tuple[str, ...], list[str]]:
-    """The drafts of modes, contacts and forces; the degrees of freedom in results, and those asked for; and
-    what is to be said."""
+    """The drafts of modes, contacts and forces; the reported and the requested dofs; and notes."""
     cyclic = read_cyclic(top)
     modal, matrices = read_linear(top, files, unit, cyclic)
     read_blade(top, files, cyclic, modal["dofs"], matrices)
@@ -354,9 +352,9 @@ def _parts(
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
-    """Checks what only a whole curve shows: that its forces and contacts move something.
+    """Checks each curve as a whole: its harmonics, modal masses, and that forces and contacts move something.
 
-    What is wrong with every curve of a sweep is said once, as the sweep does not make it.
+    A mistake in all curves of a sweep is reported once, without the swept values.
     """
     curves, found = scene.each_curve(), list[tuple[str, str]]()
     for curve in curves:
@@ -387,7 +385,7 @@ def _faults_of_curve(curve: Scene) -> Iterator[str]:
 
 
 def _unmoved(curve: Scene) -> str:
-    """Why the forces of a curve move nothing."""
+    """Sentence on why the forces of a curve move nothing."""
     if any(force.amplitude for force in curve.forces) or curve.draft is None:
         return "the forces move no mode"
     parts = curve.draft.parts
@@ -399,12 +397,12 @@ def _unmoved(curve: Scene) -> str:
 
 
 def _moved(curve: Scene) -> bool:
-    """Whether the forces together have a component on any mode, beyond the rounding of their sum."""
+    """Whether the forces together excite any mode, beyond the rounding of their sum."""
     return any(_moved_by(curve, harmonic) for harmonic in {force.harmonic for force in curve.forces})
 
 
 def _moved_by(curve: Scene, harmonic: int) -> bool:
-    """Whether the forces of one harmonic have a component on any mode, beyond rounding."""
+    """Whether the forces of one harmonic together excite any mode, beyond rounding."""
     shapes = curve.modal.shapes if curve.ring is None else curve.ring.modes(harmonic)[2]
     forces = [force for force in curve.forces if force.harmonic == harmonic]
     pushes = [shapes @ (force.amplitude * force.direction) for force in forces]
@@ -428,7 +426,7 @@ def _there(path_or_name: str | Path) -> Path:
     path, what = Path(path_or_name), no_file(Path(path_or_name))
     if what == NOT_THERE:
         raise SceneError(str(path), [_not_there(str(path))])
-    if what.startswith(("cannot", "is a loop")):  # of folders and pipes the reader says more
+    if what.startswith(("cannot", "is a loop")):  # for folders and pipes the reader reports more
         raise SceneError(str(path), [what])
     return path
 

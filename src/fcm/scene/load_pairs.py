@@ -1,4 +1,4 @@
-"""The pairs of nodes of a scene's contacts alone, without the modes of its structure, which take longer."""
+"""Reads only the node pairs of a scene's contacts, without computing the modes of its structure."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Whether a MATLAB 5 file is what its tags say, which scipy's reader takes for granted.
+"""Checks that the contents of a MATLAB 5 file agree with its tags, on which scipy's reader relies.
 
-Every element begins with its type and its number of bytes, or with both in one word and four bytes of data.
-A matrix is made of elements: class and flags, size, name, and then what its class asks for.
+Each element begins with its type and its number of bytes, or with both in one word and four bytes of data.
+A matrix consists of elements: class and flags, size, name, and then what its class requires.
 Source: MATLAB, MAT-File Format, version 5 (The MathWorks), tables 1-1 and 1-3.
 """
 
@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from fcm.scene.files import UnreadableError
 
-NUMBERS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8}  # bytes of each by its type
+NUMBERS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8}  # bytes of a number by its type
 CHARACTERS = {1: 1, 2: 1, 3: 2, 4: 2, 16: 1, 17: 2, 18: 4}
 INT8, INT32, UINT32, MATRIX, COMPRESSED = 1, 5, 6, 14, 15  # types
 CELL, STRUCT, CHAR, SPARSE, FULL = 1, 2, 4, 5, range(6, 16)  # classes
@@ -31,10 +31,10 @@ class Element(NamedTuple):
 
 
 def check_tags(content: bytes, wanted: Collection[str], largest: int) -> None:
-    """Raise ValueError where an array of those wanted, or any element on the way to it, does not fit."""
+    """Raise ValueError if a wanted array, or any element before it, contradicts its tag."""
     order = {b"\x00\x01IM": "<", b"\x01\x00MI": ">"}.get(content[HEAD - 4 : HEAD])
     if order is None:
-        return  # of another version, or no MATLAB file at all: the reader says so
+        return  # another version, or no MATLAB file: the reader reports it
     for one in _elements(memoryview(content)[HEAD:], order):
         if one.kind == COMPRESSED:
             for inner in _elements(_unpacked(one.content, largest), order):
@@ -44,7 +44,7 @@ def check_tags(content: bytes, wanted: Collection[str], largest: int) -> None:
 
 
 def _elements(content: memoryview, order: str) -> Iterator[Element]:
-    """The elements that follow one another."""
+    """Yields the consecutive elements."""
     place = 0
     while len(content) - place >= TAG:
         kind, size = struct.unpack_from(f"{order}II", content, place)
@@ -59,7 +59,7 @@ def _elements(content: memoryview, order: str) -> Iterator[Element]:
 
 
 def _check_matrix(one: Element, order: str, wanted: Collection[str] | None) -> None:
-    """Check a matrix; those whose names are not wanted are never read."""
+    """Check a matrix unless its name is not wanted: such matrices are never read."""
     if one.kind != MATRIX:
         raise UnreadableError("it is damaged: there is an element of no type that there is")
     if not len(one.content):
@@ -82,13 +82,13 @@ def _check_matrix(one: Element, order: str, wanted: Collection[str] | None) -> N
 
 
 def of_struct(name: str) -> str:
-    """Sentence that a variable is a struct, of which nothing is read."""
+    """Sentence that a variable is a struct, which is not read."""
     shown = f'"{name}"' if name else "a part of an array"
     return f"{shown} is a struct: save its fields as variables of their own, in MATLAB by save -struct"
 
 
 def _fits(kind: int, is_complex: bool, count: int, parts: list[Element]) -> bool:
-    """Whether a matrix of a class has the parts that it must have."""
+    """Whether a matrix has the parts that its class requires."""
     kinds = [part.kind for part in parts]
     if kind == CELL:
         return kinds == [MATRIX] * count
@@ -101,7 +101,7 @@ def _fits(kind: int, is_complex: bool, count: int, parts: list[Element]) -> bool
 
 
 def _holds(part: Element, sizes: dict[int, int], count: int) -> bool:
-    # characters of UTF-8 and UTF-16 may take more
+    # a character may take several units of UTF-8 or UTF-16
     exact = len(part.content) == count * sizes[part.kind]
     return exact or (part.kind in (16, 17) and len(part.content) >= count * sizes[part.kind] >= 0)
 

@@ -1,8 +1,8 @@
-"""A matrix from a file, and the names of its rows where the file has them.
+"""Reads a matrix from a file, and the names of its rows if the file has them.
 
-.npz (of scipy or numpy), .mat (MATLAB, 7.3 too), .h5 (HDF5), .mtx (MatrixMarket or Abaqus), .sti and .mas
-(CalculiX), .pch (Nastran DMIG), .op4 (Nastran, by pyyeti), .hb (Harwell-Boeing; of Ansys .matrix); and those
-that readers of one's own know, see `fcm.scene.readers`.
+Formats: .npz (of scipy or numpy), .mat (MATLAB, also 7.3), .h5 (HDF5), .mtx (MatrixMarket or Abaqus), .sti
+and .mas (CalculiX), .pch (Nastran DMIG), .op4 (Nastran, by pyyeti), .hb (Harwell-Boeing; .matrix of Ansys),
+and those of the user's own readers, see `fcm.scene.readers`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ENDINGS = (
 )
 
 
-REWRITTEN = {  # endings of what numpy makes one of these of
+REWRITTEN = {  # endings of files that numpy can convert to one of these formats
     ".npy": "; numpy.savez('{0}.npz', numpy.load('{1}')) writes one",
     ".csv": "; numpy.savez('{0}.npz', numpy.loadtxt('{1}', delimiter=',')) writes one",
     **dict.fromkeys((".txt", ".dat"), "; numpy.savez('{0}.npz', numpy.loadtxt('{1}')) writes one"),
@@ -43,14 +43,14 @@ REWRITTEN = {  # endings of what numpy makes one of these of
 
 
 def read_matrix(name: str, files: Files) -> Labelled:
-    """The matrix of a file as a scipy sparse array; "model.mat:K" is the one of that name in the file."""
+    """The matrix of a file as a scipy sparse array; "model.mat:K" selects the matrix K of the file."""
     path, chosen = split_name(name)
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS and own_reader(ending) is None:
         endings = ", ".join((*ENDINGS, *own_endings()))
         hint = REWRITTEN.get(ending, "").format(Path(path).stem, path)
         raise DataFileError(f"{quoted(path)} cannot be read: such a file is {endings}{hint}")
-    if ending == ".op4":  # pyyeti gives the names in lower case
+    if ending == ".op4":  # pyyeti returns names in lower case
         chosen = chosen.lower()
     if ending == ".pch":  # Nastran's names are upper case
         chosen = chosen.upper()
@@ -61,7 +61,7 @@ def read_matrix(name: str, files: Files) -> Labelled:
 
 
 def read_vector(name: str, files: Files) -> FloatArray:
-    """The numbers of a file that holds one row or column of them."""
+    """The numbers of a file with a single row or column."""
     matrix = read_matrix(name, files).matrix
     if min(matrix.shape) != 1:
         raise DataFileError(f"{quoted(name)} holds a matrix; one row or column is needed")
@@ -79,7 +79,7 @@ def is_matrix_file(name: str) -> bool:
 
 
 def split_name(name: str) -> tuple[str, str]:
-    """The file and the name of the matrix in it, empty if it is not named.
+    """The file, and the name of the matrix in it; empty if none is given.
 
     >>> split_name("model.mat:K"), split_name("model.h5:blade/K"), split_name("K.mtx")
     (('model.mat', 'K'), ('model.h5', 'blade/K'), ('K.mtx', ''))
@@ -97,7 +97,7 @@ def _from_npz(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
 
 
 def _from_parts(arrays: Arrays) -> Any:
-    """A sparse matrix of the arrays that it is made of."""
+    """A sparse matrix from its component arrays."""
     shape = tuple(int(size) for size in arrays["shape"].ravel())
     form = arrays["format"].item()
     form = form.decode() if isinstance(form, bytes) else str(form)
@@ -114,14 +114,14 @@ def _from_parts(arrays: Arrays) -> Any:
 
 
 def _from_mtx(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
-    """The matrix of a MatrixMarket file, or of one that Abaqus calls so; it has no name."""
+    """The matrix of a MatrixMarket file, or of an Abaqus .mtx file; it has no name."""
     if is_abaqus(path):
         return read_abaqus(path, files.largest)
     return {chosen or "matrix": Labelled(read_matrix_market(path, files))}
 
 
 def _of_program(read: Callable[[Path, int], dict[str, Labelled]]) -> Reader:
-    """The reader of a finite-element program's files, which are read up to a size."""
+    """Wraps the reader of a finite-element program's files, with a limit on their size."""
     return lambda path, _chosen, files: read(path, files.largest)
 
 
@@ -146,7 +146,7 @@ def _from_own(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
 
 
 def _chosen(found: dict[str, Any], chosen: str, path: str) -> str:
-    """The name of the matrix asked for; without one, of the only matrix that there is."""
+    """The name of the requested matrix; without a request, of the only matrix."""
     arrays = {name: one if scipy.sparse.issparse(one) else np.atleast_2d(one) for name, one in found.items()}
     matrices = {name: one for name, one in arrays.items() if one.ndim == 2}
     if chosen in matrices:
@@ -193,7 +193,7 @@ _READERS: dict[str, Reader] = {
 
 
 def _matrix_and_rows(name: str, found: Any) -> tuple[Any, tuple[str, ...]]:
-    """A matrix that a reader has returned, and the names of its rows if it gave some."""
+    """A matrix returned by a reader, and the names of its rows if the reader gave any."""
     matrix, rows = found if isinstance(found, tuple) and len(found) == 2 else (found, ())
     rows = tuple(map(str, rows))
     matrix = matrix if scipy.sparse.issparse(matrix) else np.asarray(matrix)

@@ -1,9 +1,9 @@
-"""A matrix of a MatrixMarket file (.mtx): each word of it is what the format says, or the file is refused.
+"""Reads a matrix from a MatrixMarket file (.mtx), and refuses files that break the format in any word.
 
 The first line names the layout (coordinate, array), the field (real, integer, complex, pattern) and the
-symmetry; then come comments, the sizes, and an entry on each line. Of a matrix with a symmetry the lower
-triangle alone is given. The format lists each nonzero entry with its value and says nothing of an entry that
-is there twice, so that a file with one is refused.
+symmetry. Comments, the sizes, and one entry on each line follow. A symmetric, skew-symmetric or hermitian
+matrix is given by its lower triangle alone. The format does not define repeated entries, so a file with one
+is refused.
 Source: R. F. Boisvert, R. Pozo, K. A. Remington, The Matrix Market Exchange Formats: Initial Design,
 NISTIR 5935 (1996).
 """
@@ -30,14 +30,14 @@ LAYOUTS = ("coordinate", "array")
 FIELDS = {"real": 1, "double": 1, "integer": 1, "unsigned-integer": 1, "complex": 2}  # numbers of an entry
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
 _WHOLE = re.compile(r"[-+]?\d+", re.ASCII)
-_INDEX = re.compile(r"[-+]?\d{1,18}", re.ASCII)  # as many digits as 64 bits hold
+_INDEX = re.compile(r"[-+]?\d{1,18}", re.ASCII)  # at most as many digits as fit into 64 bits
 
-Entries = npt.NDArray[Any]  # structured: row and column from 1, if it has them, and the parts of the value
-Line = tuple[int, str]  # its number in the file, from 1
+Entries = npt.NDArray[Any]  # structured: row and column from 1, for layout coordinate, and parts of the value
+Line = tuple[int, str]  # number in the file, from 1, and text
 
 
 class _Head(NamedTuple):
-    """Header of a file: its format, sizes, and the line of the sizes."""
+    """Header of a file: its format, its sizes, and the number of the line with the sizes."""
 
     layout: str
     field: str
@@ -49,7 +49,7 @@ class _Head(NamedTuple):
 
     @property
     def indices(self) -> int:
-        """Number of indices on the line of an entry: row and column, or none if its place tells them."""
+        """Number of indices on the line of an entry: row and column, or none for layout array."""
         return 2 if self.layout == "coordinate" else 0
 
     @property
@@ -70,15 +70,15 @@ class _Head(NamedTuple):
 def read_matrix_market(path: Path, files: Files) -> Any:
     """The matrix of a file as a scipy sparse array, both triangles of a symmetric one.
 
-    Exponents may be written with a D, and a byte-order mark may stand before the first line.
+    Exponents may be written with a D, and the file may begin with a byte-order mark.
 
     Raises
     ------
     DataFileError
-        With the line, what is wrong there and what would be right, for a file that does not keep to the
-        format: a word that is not a number of the field, a line of too few or too many words, an index out of
-        range, an entry above the diagonal of a symmetric matrix or one that is there twice, another number of
-        entries than the sizes say.
+        If the file breaks the format; the message says in which line, what is wrong, and what would be
+        right. Mistakes: a word that is not a number of the field, too few or too many words in a line, an
+        index out of range, an entry above the diagonal of a symmetric matrix, a repeated entry, or another
+        number of entries than the sizes say.
     """
     with path.open("rb") as file:
         if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
@@ -108,13 +108,13 @@ def _refused(path: Path, faults: list[str], count: int = 0) -> DataFileError:
 
 
 def _lines(path: Path) -> Iterator[Line]:
-    """The lines of a file with their numbers."""
+    """Yields the lines of a file with their numbers."""
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         yield from enumerate(file, 1)
 
 
 def _head(path: Path) -> _Head:
-    """The first line and that of the sizes."""
+    """The header, from the first line and the line with the sizes."""
     lines = _lines(path)
     _, first = next(lines, (1, ""))
     wanted = '"%%MatrixMarket matrix coordinate real symmetric"'
@@ -155,7 +155,7 @@ def _sizes(path: Path, number: int, line: str, layout: str, symmetry: str) -> tu
 
 
 def _body(path: Path, head: _Head) -> Iterator[Line]:
-    """The lines of entries: all behind the sizes that are not blank."""
+    """The lines of entries: all lines after the sizes that are not blank."""
     return ((n, line) for n, line in islice(_lines(path), head.line, None) if line.strip())
 
 
@@ -167,16 +167,16 @@ def _lines_of(path: Path, head: _Head, entries: list[int]) -> list[int]:
 
 
 def _numbers(path: Path, head: _Head) -> Entries:
-    """The entries, as many as the sizes say, each word of them a number of its kind."""
+    """The entries; their number and each word are checked."""
     text = (line.replace("D", "E").replace("d", "e") for _, line in _body(path, head))
     kind = head.kind(np.int64 if head.of_integers else np.float64)
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of an index with a point, and of no entries
+        warnings.simplefilter("error")  # numpy warns of an index with a point, and of no entries
         try:
             found = np.loadtxt(text, dtype=kind, comments=None, ndmin=1)
             at_once = all(np.isfinite(found[name]).all() for name in found.dtype.names or ())
         except (ValueError, Warning):
-            at_once = False  # which words are at fault is found one by one
+            at_once = False  # `_one_by_one` finds the wrong words
     if not at_once:
         found = _one_by_one(path, head)
     if found.size != head.entries:
@@ -226,7 +226,7 @@ def _entry(words: list[str], head: _Head) -> tuple[float, ...] | str:
 
 
 def _outside(found: Entries, head: _Head) -> list[tuple[int, str]]:
-    """Entries whose row or column is not there."""
+    """Entries whose row or column is out of range, each with the fault."""
     if not head.indices:
         return []
     row, column = found["row"], found["column"]
@@ -236,7 +236,7 @@ def _outside(found: Entries, head: _Head) -> list[tuple[int, str]]:
 
 
 def _across(found: Entries, head: _Head) -> list[tuple[int, str]]:
-    """Entries that a symmetry gives already, or would if they were on the other side of the diagonal."""
+    """Entries of a matrix with a symmetry that are not in the lower triangle, each with fault and remedy."""
     if not head.indices or head.symmetry == "general":
         return []
     row, column = found["row"], found["column"]
@@ -260,7 +260,7 @@ def _across(found: Entries, head: _Head) -> list[tuple[int, str]]:
 
 
 def _repeated(path: Path, head: _Head, row: Any, column: Any) -> tuple[list[str], int]:
-    """The entries that are there twice, with both lines; and how many they are."""
+    """Sentences on repeated entries, with both lines; and the number of repeated entries."""
     order = np.lexsort((column, row))
     same = np.flatnonzero((np.diff(row[order]) == 0) & (np.diff(column[order]) == 0))
     shown = same[: MESSAGES.faults]
@@ -275,7 +275,7 @@ def _repeated(path: Path, head: _Head, row: Any, column: Any) -> tuple[list[str]
 
 
 def _places(head: _Head) -> tuple[Any, Any]:
-    """The rows and columns of an array, whose entries follow one another by columns."""
+    """The rows and columns of the entries of layout array, which are listed column by column."""
     below = {"general": lambda i, j: i >= 0, "skew-symmetric": lambda i, j: i > j}
     kept: Callable[[Any, Any], Any] = below.get(head.symmetry, lambda i, j: i >= j)
     column, row = np.indices((head.columns, head.rows)).reshape(2, -1)
@@ -284,7 +284,7 @@ def _places(head: _Head) -> tuple[Any, Any]:
 
 
 def _completed(matrix: Any, symmetry: str) -> Any:
-    """The matrix with the triangle that its symmetry gives."""
+    """The matrix with both triangles, the upper one by symmetry."""
     if symmetry == "general":
         return matrix
     below = scipy.sparse.tril(matrix, -1, format="csc")

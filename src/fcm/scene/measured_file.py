@@ -1,8 +1,8 @@
-"""Files of measured points: columns of a CSV file, arrays of .mat or .npz, functions of a universal file.
+"""Reads measured points: columns of a CSV file, arrays of .mat or .npz, functions of a universal file.
 
-The columns of a response are frequency, amplitude, and any of phase (rad), weight, and one of levels; those
-of a backbone amplitude, frequency, damping (ratios), weight. A CSV file that ``fcm respond --csv`` wrote has
-other names for some. A head may have a unit behind it, as in ``frequency [Hz]``.
+A response has the columns frequency, amplitude, and optionally phase (rad), weight and levels. A backbone has
+amplitude, frequency, damping (ratios) and weight. Some columns have other names in files written by
+``fcm respond --csv``. A heading may end with a unit, as in ``frequency [Hz]``.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.uff_functions import Function, read_function
 from fcm.units import UNIT
 
-_HEAD = re.compile(r"(\w+)[\s_]*(?:[(\[/,]([^()\[\]]*)[)\]]?)?")  # a name, and a unit behind it
+_HEAD = re.compile(r"(\w+)[\s_]*(?:[(\[/,]([^()\[\]]*)[)\]]?)?")  # a name, then a unit
 _UNITS = {"phase": {"rad": 1.0, "deg": np.pi / 180.0}, "damping": {"1": 1.0, "%": 0.01}}
 
 
 class MeasuredFile(NamedTuple):
-    """Columns of measured points by their names; of a universal file also the function that they are of.
+    """Columns of measured points by name; for a universal file also the function that they come from.
 
-    units are those that heads of columns say and the scene knows how to convert; not of frequencies, phases
-    and damping, which are converted.
+    units: units from the headings of columns, by name. Frequencies, phases and damping are already converted,
+    and have none.
     """
 
     columns: dict[str, FloatArray]
@@ -52,16 +52,16 @@ def read_measured(
     others: Mapping[str, str] | None = None,
     places: tuple[str, str] = ("", ""),
 ) -> MeasuredFile:
-    """The columns of a file, (point,) each: all that are wanted, and those of the optional that it has.
+    """The columns of a file, (point,) each: all wanted ones, and those optional ones that it has.
 
-    others: the names that wanted columns have in files of ``fcm respond``. A file that says the unit of its
-    frequencies, as a universal file does, has angular_frequency [rad/s] in place of frequency. places: what
-    was measured, and where the force is, by which one function of several is chosen.
+    others: the names of wanted columns in files of ``fcm respond``. places: the measured degree of freedom
+    and that of the force, to choose one of several functions. If a file states the unit of its frequencies,
+    as a universal file does, the result has angular_frequency [rad/s] in place of frequency.
 
     Raises
     ------
     DataFileError
-        If it cannot be read, or a column is missing or holds something that is no number.
+        If the file cannot be read, or a column is missing or holds something that is not a number.
     """
     others = others or {}
     ending = Path(name).suffix.lower()
@@ -98,7 +98,7 @@ def read_measured(
 def _chosen(
     heads: Collection[str], wanted: Collection[str], optional: Collection[str], others: Mapping[str, str]
 ) -> dict[str, str]:
-    """Name in the file of each column to read; a column's own name goes before another."""
+    """By column to read, its name in the file; a column's own name takes precedence over its other name."""
     names = {key: [key, *([others[key]] if key in others else [])] for key in (*wanted, *optional)}
     found = {key: next((one for one in every if one in heads), None) for key, every in names.items()}
     return {key: one for key, one in found.items() if one is not None}
@@ -127,11 +127,9 @@ def _arrays(path: Path, wanted: Sequence[str], files: Files) -> tuple[dict[str, 
 def _csv(
     path: Path, wanted: Sequence[str], optional: Collection[str], others: Mapping[str, str]
 ) -> tuple[dict[str, FloatArray], list[str], dict[str, str]]:
-    """Columns of a text file, whose first line names them, the line, and the units of columns that it says.
+    """Columns of a text file, the headings in its first line, and the units in these headings.
 
-    Lines that begin with # are passed over.
-
-    What is no number is a fault in those that are read.
+    Lines that begin with # are skipped. A word that is not a number is a fault only in columns that are read.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -181,7 +179,7 @@ def _csv(
 
 
 def _right_head(column: str, heads: Sequence[str]) -> str:
-    """What to write in place of a head that nearly is a column's.
+    """Hint on a heading that resembles that of a column; else ''.
 
     >>> _right_head("frequency", ["f", "Frequency (Hz)"]), _right_head("frequency", ["f"])
     ('; write "Frequency (Hz)" as "frequency [Hz]"', '')
@@ -210,7 +208,7 @@ def _curves(
     chosen: Mapping[str, int],
     others: Mapping[str, str],
 ) -> list[str]:
-    """Fault of a ``fcm respond`` file with several curves, which are not one response; or ''."""
+    """Fault of a file of ``fcm respond`` that contains several curves instead of one response; or ''."""
     own = any(heads[i][0] == others.get(key) for key, i in chosen.items())
     places = [i for i, (name, _) in enumerate(heads) if name == "curve"]
     found = len({row[places[0]] for row in rows}) if own and places else 1
@@ -218,9 +216,9 @@ def _curves(
 
 
 def _in_units(found: dict[str, FloatArray], units: Mapping[str, str], file: str) -> dict[str, FloatArray]:
-    """Frequencies in rad/s where the file says their unit, phases in rad, damping as ratios.
+    """Converts frequencies to rad/s if the file states their unit, phases to rad, damping to ratios.
 
-    DataFileError of another unit.
+    An unknown unit raises DataFileError.
     """
     if unit := units.get("frequency", ""):
         size = UNIT.get(unit) or 2.0 * np.pi * (hertz_of(unit) or 0.0)

@@ -1,8 +1,8 @@
-"""A measured function of a file beside the scene: where it is, what it is of, in which units.
+"""Compares a measured function with the scene: its place, quantity and units.
 
-Place, quantity and units that a universal file says are compared with the measurement of [[fit.data]] and the
-force of the scene. What contradicts it is a mistake, another place is asked about, another unit is converted.
-The head of a column of a table may say a unit, too.
+Place, quantity and units stated in a universal file are compared with the measurement of [[fit.data]] and
+the force of the scene. A contradicting quantity is a mistake, another place is questioned, another unit is
+converted. The heading of a column of a table may state a unit, too.
 """
 
 from __future__ import annotations
@@ -29,33 +29,33 @@ FORCES = ("force", "reaction force")
 
 
 class Excitation(Frozen):
-    """What a scene is driven by, if it is one harmonic force or the motion of a base."""
+    """The excitation of a scene with a single harmonic force or a base motion."""
 
-    amplitude: complex  # along the axis, of A in Im(A exp(i omega t))
-    dof: str = ""  # of a force on one
-    power: int = 0  # of omega that it is in proportion to
+    amplitude: complex  # along the axis: A in Im(A exp(i omega t))
+    dof: str = ""  # degree of freedom of a force on a single one
+    power: int = 0  # the force is proportional to this power of omega
     base: bool = False
 
 
 class Surroundings(NamedTuple):
-    """What of a scene measured functions are compared with."""
+    """The parts of a scene that measured functions are compared with."""
 
     dofs: Sequence[str]
-    units: tuple[str, str]  # of length and of force, empty where the scene does not say them
-    noted: list[str]  # takes what is to be said
+    units: tuple[str, str]  # of length and force, empty if the scene does not state them
+    noted: list[str]  # receives notes
 
 
 class Scale(NamedTuple):
-    """What the values of a file are, and by what they are multiplied to be those of the scene."""
+    """The quantity of the values of a file, and the factor that converts them to the units of the scene."""
 
     quantity: str
     factor: float
 
 
 def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit: str) -> Function:
-    """The function over frequencies [rad/s] that columns of amplitudes, in a unit, and phases are.
+    """The function over frequencies [rad/s] from columns of amplitudes, in a unit, and phases.
 
-    DataFileError of a unit that is none of a motion.
+    A unit that is not one of motion raises DataFileError.
     """
     upper, lower = ratio_of(unit)
     if motion_unit(upper) is None:
@@ -79,12 +79,12 @@ def function_of_table(omega: FloatArray, columns: Mapping[str, FloatArray], unit
 
 
 class ComparedFile(NamedTuple):
-    """A file of measured data beside the scene it is compared with; takes mistakes and notes on it."""
+    """A file of measured data and the scene it is compared with; collects mistakes and notes on it."""
 
     name: str
     scene: Surroundings
     excitation: Excitation | None
-    wrong: Callable[[str, str], None]  # takes a key and what is wrong there
+    wrong: Callable[[str, str], None]  # notes a mistake; takes a key and what is wrong there
 
     def mistake(self, what: str, key: str = "file") -> None:
         self.wrong(key, f"{quoted(self.name)} {what}")
@@ -96,15 +96,15 @@ class ComparedFile(NamedTuple):
         self.scene.noted.append(Question(f"fit: {self.name} {what}"))
 
     def note_once(self, what: str) -> None:
-        """Notes what is true of all files."""
+        """Notes once what applies to all files."""
         if (said := f"fit: {what}") not in self.scene.noted:
             self.scene.noted.append(said)
 
 
 def compare(file: ComparedFile, function: Function, dof: str, quantity: str) -> Scale:
-    """The quantity and the factor of a function's values; mistakes and notes on what does not agree.
+    """The quantity and the conversion factor of a function's values; disagreements are noted.
 
-    dof and quantity are of the measurement; the quantity is empty where the scene does not say it.
+    dof and quantity are those of the measurement; quantity is empty if the scene does not state it.
     """
     _compare_places(file, function, dof)
     upper, lower = ratio_of(function.ordinate.unit)
@@ -123,7 +123,7 @@ def compare(file: ComparedFile, function: Function, dof: str, quantity: str) -> 
 
 
 def _of_qualifiers(file: ComparedFile, function: Function) -> float:
-    """By what amplitudes are multiplied to be half of peak to peak, as dataset 1858 says."""
+    """The factor that converts amplitudes to half the peak-to-peak value, by dataset 1858."""
     known, spectrum = function.qualifiers or Qualifiers(), not function.per_reference
     if fault := known.fault(spectrum):
         file.mistake(fault)
@@ -146,7 +146,7 @@ def _of_qualifiers(file: ComparedFile, function: Function) -> float:
 
 
 def force_factor(file: ComparedFile, unit: str) -> float:
-    """By what a column of forces, or of accelerations of the base, is multiplied to be those of the scene."""
+    """The factor that converts a column of forces, or of base accelerations, to the units of the scene."""
     units = file.scene.units
     if file.excitation is not None and file.excitation.base:
         return _factor(file, Axis("", unit), "", "acceleration", None)
@@ -159,7 +159,7 @@ def force_factor(file: ComparedFile, unit: str) -> float:
 
 
 def _compare_places(file: ComparedFile, function: Function, dof: str) -> None:
-    """Ask where node and direction, or the name, are those of another degree of freedom."""
+    """Asks if the file belongs to another degree of freedom, by node and direction or by name."""
     excitation = file.excitation
     pairs = [("the response at", "the measurement is at", function.response, dof)]
     if function.per_reference and excitation is not None and excitation.dof:
@@ -170,14 +170,14 @@ def _compare_places(file: ComparedFile, function: Function, dof: str) -> None:
 
 
 def _elsewhere(place: Location, dof: str, dofs: Sequence[str]) -> str:
-    """Where a place is, if it is another degree of freedom by node and direction, or by name; else empty."""
+    """The name of a place if it is another degree of freedom, by node and direction or by name; else ''."""
     if motion_of(dof):
         return place.dof if place.dof != motion_of(dof) else ""
     return place.entity if place.entity != dof and place.entity in dofs else ""
 
 
 def _quantity(file: ComparedFile, ordinate: Axis, dof: str, given: str) -> str:
-    """Measured quantity, as the file declares it by type or unit; what contradicts the scene is a mistake."""
+    """The measured quantity by type or unit in the file; a contradiction to the scene is a mistake."""
     unit = motion_unit(ordinate.unit)
     if ordinate.what and ordinate.what not in QUANTITIES:
         file.mistake(
@@ -202,7 +202,7 @@ def _quantity(file: ComparedFile, ordinate: Axis, dof: str, given: str) -> str:
 def _factor(
     file: ComparedFile, ordinate: Axis, dof: str, quantity: str, system: tuple[float, float] | None
 ) -> float:
-    """By what values of the file are multiplied to be in the unit of the scene."""
+    """The factor that converts values of the file to the unit of the scene."""
     units = file.scene.units
     turning, end = is_rotation(dof), PER_TIME[quantity]
     own = f"rad{end}" if turning else f"{units[0]}{end}" if units[0] else ""
@@ -218,7 +218,7 @@ def _factor(
 
 
 def _reference_factor(file: ComparedFile, function: Function, lower: str) -> float:
-    """By what the reference is multiplied to be in the unit of the scene; a mistake if it is another one."""
+    """The factor that converts the reference to the unit of the scene; another excitation is a mistake."""
     denominator, excitation, units = function.denominator, file.excitation, file.scene.units
     if excitation is None:
         file.mistake("has responses per unit of force, which needs a scene with one [[force]] or a [base]")
@@ -245,9 +245,9 @@ def _reference_factor(file: ComparedFile, function: Function, lower: str) -> flo
 def _converted(
     file: ComparedFile, size: float | None, label: str, own: float | None, unit: str, plain: str
 ) -> float:
-    """A unit of the file over one of the scene, told where they differ; 1 where one is not known.
+    """The ratio of a unit of the file to that of the scene, noted if not 1; 1 if either is unknown.
 
-    size, label : of the unit of the file; own, unit : of that of the scene; plain : that of SI
+    size, label : of the unit of the file; own, unit : of that of the scene; plain : name of the SI unit.
     """
     if size is None:
         return 1.0
@@ -263,12 +263,12 @@ def _converted(
 
 
 def displacements(function: Function, length: str) -> FloatArray:
-    """Amplitudes of displacements, in a unit of length where it and that of the file are known.
+    """Displacement amplitudes of a function, converted to a unit of length if both units are known.
 
     Raises
     ------
     DataFileError
-        Of values per unit of a force, and of other quantities.
+        If the values are per unit of force, or not of a motion, or their qualifiers do not fit.
     """
     upper, _ = ratio_of(function.ordinate.unit)
     unit, own = motion_unit(upper), length_unit(length)

@@ -1,4 +1,4 @@
-"""Units of measured quantities by the labels that test software writes, as multiples of SI units."""
+"""Sizes in SI units of the units of measured quantities, by the labels that test software writes."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _HERTZ = {
     "hz": 1.0, "khz": 1e3, "rpm": 1.0 / 60.0, "1/min": 1.0 / 60.0, "rev/min": 1.0 / 60.0, "cpm": 1.0 / 60.0,
     "rad/s": 0.5 / pi,
 }  # fmt: skip
-FREQUENCIES = ("rad/s", "Hz", "kHz", "rpm")  # the usual ones, as messages name them
-_PER_TIME = {"/s^2": 2, "/s": 1, "": 0}  # behind a length, and the power of the frequency
+FREQUENCIES = ("rad/s", "Hz", "kHz", "rpm")  # the usual ones, for messages
+_PER_TIME = {"/s^2": 2, "/s": 1, "": 0}  # suffix of a unit of length, and the power of the frequency
 _BRACKETS = "()[] "
 _SAME = {
     "²": "^2", "**": "^", " ": "", "*": "", "sec": "s", "/s/s": "/s^2", "/s2": "/s^2",
@@ -40,7 +40,7 @@ class MotionUnit(NamedTuple):
 
 
 def units_in(data: Mapping[str, Any]) -> tuple[str, str]:
-    """The units of length and force in the table of a scene, empty where they are not given.
+    """The units of length and force in [units] of a scene; empty if not given.
 
     >>> units_in({"units": {"length": "mm"}})
     ('mm', '')
@@ -53,7 +53,7 @@ def units_in(data: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def hertz_of(label: str) -> float | None:
-    """A unit of frequencies in Hz; None of one that is not known.
+    """The size of a frequency unit in Hz; None if it is unknown.
 
     >>> hertz_of("Hz"), hertz_of("kHz"), hertz_of("order")
     (1.0, 1000.0, None)
@@ -62,7 +62,7 @@ def hertz_of(label: str) -> float | None:
 
 
 def motion_unit(label: str) -> MotionUnit | None:
-    """A unit of motion by its label; None of one that is not known.
+    """The unit of motion with a label; None if it is unknown.
 
     >>> motion_unit("(mm/s²)"), motion_unit("mV")
     (MotionUnit(size=0.001, quantity='acceleration', angular=False), None)
@@ -79,12 +79,12 @@ def motion_unit(label: str) -> MotionUnit | None:
 
 
 def length_unit(label: str) -> float | None:
-    """A unit of length in m; None of one that is not known."""
+    """The size of a unit of length in m; None if it is unknown."""
     return LENGTHS.get(_plain(label).lower())
 
 
 def force_unit(label: str) -> float | None:
-    """A unit of force in N; None of one that is not known.
+    """The size of a unit of force in N; None if it is unknown.
 
     >>> force_unit("mN"), force_unit("MN"), force_unit("n"), force_unit("V")
     (0.001, 1000000.0, 1.0, None)
@@ -94,7 +94,7 @@ def force_unit(label: str) -> float | None:
 
 
 def ratio_of(label: str) -> tuple[str, str]:
-    """Numerator and denominator of a label such as "(m/s^2)/N"; the second is empty where it is none.
+    """Numerator and denominator of a label such as "(m/s^2)/N"; the denominator may be empty.
 
     >>> ratio_of("(m/s^2)/N"), ratio_of("g/lbf"), ratio_of("m/s")
     (('m/s^2', 'N'), ('g', 'lbf'), ('m/s', ''))

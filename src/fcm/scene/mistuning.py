@@ -1,4 +1,4 @@
-"""The [cyclic.mistuning] table: blades that differ, and the whole ring that a sector then becomes."""
+"""Reads [cyclic.mistuning], factors of the blades' stiffness, and expands the sector to the whole ring."""
 
 from __future__ import annotations
 
@@ -27,18 +27,19 @@ if TYPE_CHECKING:
 
 KEY = "cyclic.mistuning"
 DRAW = f"{KEY}.draw"
-OF = {"stiffness": 1, "frequency": 2}  # the power of a factor that the stiffness is multiplied by
-HIDDEN = "\0"  # how names of displacements begin that are none of a sector, but of the whole ring
+OF = {"stiffness": 1, "frequency": 2}  # the stiffness is multiplied by this power of a factor
+HIDDEN = "\0"  # prefix of the names of displacements conjugate to loads on the whole ring
 
 
 class MistuningError(ValueError):
-    """Factors that leave a ring without stiffness."""
+    """Raised for factors that are not positive or leave a ring without stiffness."""
 
 
 def read_mistuning(section: Section, sectors: float) -> Part | None:
     """Reads [cyclic.mistuning], apart from what needs the structure; None if it is not there.
 
-    "table" is (draw, sector) the factors of the stiffness, "drawn" how they are drawn, if they are.
+    "section" is the table, "factors" the factors (draw, sector) or None after a mistake, "power" their
+    exponent in the stiffness, "drawn" their `Draws` or None, "numbers" the scale and the index of the draw.
     """
     if "mistuning" not in section.data:
         return None
@@ -65,7 +66,7 @@ def _worded(value: object) -> str:
 
 
 def _factors(table: Section, sectors: float) -> tuple[FloatArray | None, Any]:
-    """Factors (draw, sector), None after a mistake; and how they are drawn, None if they are given."""
+    """Factors (draw, sector), None after a mistake; and their `Draws`, None if the factors are given."""
     if table.missing("factors", "a list with one for each sector, or { normal = [1.0, 0.02], count = 100 }"):
         return None, None
     value = table.data["factors"]
@@ -87,7 +88,7 @@ def _factors(table: Section, sectors: float) -> tuple[FloatArray | None, Any]:
 
 
 def drawn_rings(parts: Parts) -> list[SweptKey]:
-    """The sweep over drawn rings: of one key, or of none."""
+    """The swept key over random draws of the ring, as a list; empty without draws."""
     if not parts.get("whole") or parts["whole"][0]["drawn"] is None:
         return []
     draws = parts["whole"][0]["drawn"]
@@ -98,7 +99,7 @@ def drawn_rings(parts: Parts) -> list[SweptKey]:
 def read_blade(
     top: Section, files: Files, cyclic: list[Part], dofs: Names | None, matrices: StructureMatrices | None
 ) -> None:
-    """Note in the draft of a mistuned ring what of a sector is its blade: "rows", or "stiffness"."""
+    """Sets the blade in the draft of a mistuned ring: its "rows" in a sector, or its "stiffness"."""
     found = cyclic[0].get("mistuning") if cyclic else None
     if found is None:
         return
@@ -141,7 +142,7 @@ def _rows(table: Section, dofs: Names | None) -> list[int] | None:
 
 
 def _check_apart(table: Section, matrices: StructureMatrices, rows: list[int]) -> None:
-    """Note a blade that is coupled to the next sector, whose stiffness is then not its own."""
+    """Notes blade rows coupled to the next sector: their stiffness is not that of the blade alone."""
     if matrices.coupling is None:
         return
     block = abs(matrices.coupling.K).tocsc()
@@ -170,10 +171,11 @@ def _stiffness(table: Section, files: Files, dofs: Names | None) -> Any:
 
 
 def energy_of_matrices(found: Part, K: Any, shapes: Any) -> Any:
-    """K_b between parts of shapes (mode, row), as `fcm.structure.mistuned.energy_of`; None after a mistake.
+    """Blade stiffness K_b between shapes (mode, row), as `fcm.structure.mistuned.energy_of`.
 
-    Of a blade by its rows b, of a sector whose stiffness is K, that with its root held, under what it deforms
-    beyond what the root's displacement alone does to it: (K x)_b^T K_bb^-1 (K x)_b.
+    For a blade given by its rows b in a sector with stiffness K, the energy is (K x)_b^T K_bb^-1 (K x)_b.
+    This is the energy with its root held, of the deformation beyond that from the root's displacement.
+    None after a mistake.
     """
     from scipy.sparse.linalg import splu
 
@@ -197,10 +199,10 @@ def energy_of_matrices(found: Part, K: Any, shapes: Any) -> Any:
 def whole_ring(
     top: Section, parts: Parts, reported: Sequence[str], output: Sequence[str]
 ) -> tuple[Parts, tuple[str, ...], list[str]]:
-    """The parts of the whole ring, from those of a sector with the modes of all nodal diameters.
+    """The parts of the whole ring, the reported degrees of freedom and notes.
 
-    "whole" are the numbers by which its modes and forces are made of them (see `mistuned_modes`), and the
-    parts of the sector, whose ring is tuned. Third is what is to be said.
+    parts are those of a sector with the modes of all nodal diameters. The part "whole" holds the numbers from
+    which modes and forces of the mistuned ring are built (see `mistuned_modes`), and the sector's parts.
     """
     from fcm.structure.mistuned import basis_of
 
@@ -255,7 +257,7 @@ def whole_ring(
 
 
 def _energy_of_modes(top: Section, found: Part, modal: Part, shapes: Any) -> tuple[Any, list[str]]:
-    """Blade energy of given modes, as `energy_of_matrices` of matrices; with notes."""
+    """Blade energy from given modes, like `energy_of_matrices`, and notes; None after a mistake."""
     from fcm.structure.mistuned import OPTIONS, energy_of, strains
 
     if found["stiffness"] is not None:
@@ -284,7 +286,7 @@ def _energy_of_modes(top: Section, found: Part, modal: Part, shapes: Any) -> tup
 
 
 class _Around:
-    """Directions of a sector's parts, for all sectors."""
+    """Expands the contacts, forces and loads of a sector to all sectors."""
 
     def __init__(self, sectors: int, dofs: tuple[str, ...], own: tuple[str, ...], hidden: int) -> None:
         place = {name: number for number, name in enumerate(own)}
@@ -305,7 +307,7 @@ class _Around:
         return found
 
     def drafts(self, parts: Parts) -> dict[str, list[Part]]:
-        """Contacts of each sector; forces with a column for each, (dof, sector); loads on all alike."""
+        """Contacts of each sector; forces (dof, sector), a column for each; loads equal on all sectors."""
         contacts = [
             draft
             | {"name": of_sector(draft["name"], k), "of": draft["name"]}
@@ -324,12 +326,12 @@ class _Around:
     def _all(self, weights: FloatArray) -> FloatArray:
         found: FloatArray = self._each(weights).sum(axis=1)
         hidden = self.sectors * self.own
-        found[hidden:] /= self.sectors  # of what is of the whole ring there is one
+        found[hidden:] /= self.sectors  # these displacements exist once, for the whole ring
         return found
 
 
 def factors_of(whole: Part) -> FloatArray:
-    """The factors (sector,) by which the blades' stiffness is multiplied; MistuningError if one is none."""
+    """The factors (sector,) on the blades' stiffness; MistuningError if one is not positive."""
     factor: FloatArray = 1.0 + whole["scale"] * (whole["factors"][int(whole["draw"])] - 1.0)
     if not (factor > 0.0).all():
         raise MistuningError(f"with scale = {whole['scale']:g} a factor is {factor.min():.3g}")
@@ -338,9 +340,9 @@ def factors_of(whole: Part) -> FloatArray:
 
 
 def mistuned_modes(modal: Part, whole: Part, unit: float) -> Part:
-    """The modes of a mistuned ring, from those of the tuned one; unit is rad/s in one of the frequency.
+    """The modes of a mistuned ring from those of the tuned ring; unit is rad/s per frequency unit.
 
-    Damping ratios are those of the tuned modes in the mean, weighted by their share of the kinetic energy.
+    Damping ratios are means of those of the tuned modes, weighted by their share of the kinetic energy.
 
     Raises MistuningError if the factors leave no stiffness.
     """
@@ -362,7 +364,7 @@ def mistuned_modes(modal: Part, whole: Part, unit: float) -> Part:
 
 
 def standing_drafts(draft: Part, whole: Part) -> list[Part]:
-    """A force on all sectors, which travels around, as two drafts that stand: that of the sines, and cosines.
+    """A travelling wave force on all sectors as two standing ones, with cosine and sine around the ring.
 
     sin(h w t + p + h k phi) = cos(h k phi) sin(h w t + p) + sin(h k phi) sin(h w t + p + pi / 2)
     """
@@ -376,7 +378,7 @@ def standing_drafts(draft: Part, whole: Part) -> list[Part]:
 
 
 def tuned_sweep(parts: Parts, swept: Sequence[SweptKey]) -> tuple[SweptKey, ...]:
-    """The swept keys that the tuned ring has, too."""
+    """The swept keys that also exist for the tuned ring, with their addresses there."""
     known, found = Addresses(parts), list[SweptKey]()
     for one in swept:
         addresses = () if one.key.startswith(KEY) else known.find(one.key, "", Mistakes(""))

@@ -1,4 +1,4 @@
-"""The modal structure of a scene: inline, or from a file beside the scene, and their lengths compared."""
+"""Reads the [modal] table of a scene, inline or from a file, and checks that lengths agree."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from fcm.scene.section import Section
 from fcm.units import UNIT
 
 KEYS = ("dofs", "mass", "frequency", "damping", "shapes", "participation", "diameter")
-NEEDED = ("dofs", "frequency", "damping", "shapes")  # of these: in the scene or in its file
+NEEDED = ("dofs", "frequency", "damping", "shapes")  # required keys, in the scene or in its file
 
 
 def read_modal(
     top: Section, files: Files, unit: str, cyclic: Sequence[Mapping[str, float]]
 ) -> dict[str, Any]:
-    """Dofs and arrays of the modal table, frequencies in the scene's unit; None for what is mistaken."""
+    """Dofs and arrays of the modal table, frequencies in the scene's unit; None for values with a mistake."""
     section = top.table("modal", "a [modal] table with dofs, frequency, damping and shapes")
     section, notes = _with_file(section, files, unit, top, bool(cyclic)) if section else (None, [])
     if section is None:
@@ -56,7 +56,7 @@ def read_modal(
 
 
 def modal_of(draft: dict[str, Any], unit: str) -> Modal:
-    """The modal structure, in rad/s, of what was read; its arrays cannot be changed."""
+    """The `Modal` made from a draft that was read, in rad/s; its arrays are read-only."""
     arrays = {key: draft[key] for key in ("mass", "damping", "shapes")}
     arrays["frequency"] = draft["frequency"] * UNIT[unit]
     for array in arrays.values():
@@ -68,7 +68,7 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
 def _with_file(
     section: Section, files: Files, unit: str, top: Section, waves: bool
 ) -> tuple[Section | None, list[str]]:
-    """The section with what its file holds; a key given inline takes precedence."""
+    """The section completed from its file, and notes; a key given inline takes precedence."""
     if "file" not in section.data:
         return section, []
     name = section.text("file")
@@ -108,7 +108,7 @@ def _with_file(
 
 
 def _unused(section: Section, found: Mapping[str, Any], unused: Sequence[str], name: str) -> list[str]:
-    """A note on arrays that no key takes; a mistake where one lacks that may be among them."""
+    """A note on arrays of the file that are not used; a mistake if a required key is missing."""
     if not unused:
         return []
     said = f"{choices(unused)} of {name} {'is' if len(unused) == 1 else 'are'} not used"
@@ -118,7 +118,7 @@ def _unused(section: Section, found: Mapping[str, Any], unused: Sequence[str], n
 
 
 def _check_inline(section: Section) -> None:
-    """Note the mistakes of what stands beside a file that cannot be read."""
+    """Checks the inline keys of a section whose file cannot be read, to note their mistakes."""
     section.only(*names("modal"))
     for key in ("mass", "damping", "participation"):
         if key in section.data:
@@ -168,7 +168,7 @@ def _participation(section: Section, modes: int | None, needed: bool) -> FloatAr
 
 
 def _shapes(section: Section, dofs: tuple[str, ...] | None, modes: int | None, read_row: Any) -> Any:
-    """The mode shapes, (mode, dof), their rows read by section, value and path."""
+    """The mode shapes (mode, dof); read_row reads a row from section, value, path and rule."""
     if section.missing("shapes", "one list for each mode, one number in it for each of the dofs"):
         return None
     value = section.data["shapes"]
@@ -184,7 +184,7 @@ def _shapes(section: Section, dofs: tuple[str, ...] | None, modes: int | None, r
 
 
 def _is_rows(value: Any) -> bool:
-    """Whether the shapes are rows at all: a list whose first item is a list."""
+    """Whether a value is a list of rows: a list whose first item is a list."""
     lists = (list, tuple, np.ndarray)
     some = isinstance(value, lists) and getattr(value, "shape", None) != () and len(value) > 0
     return some and isinstance(value[0], lists)
@@ -210,7 +210,7 @@ def _right_size(
 
 
 def _same_count(section: Section, key: str, values: FloatArray, modes: int) -> None:
-    """Note a length that is not the number of modes."""
+    """Notes a length that is not the number of modes."""
     if len(values) != modes:
         section.wrong(key, f"has {_numbers(len(values))}, but modal.frequency has {modes}")
 

@@ -1,4 +1,4 @@
-"""Turns the damping of a [structure] table into modal ratios, with notes on what these leave out."""
+"""Converts the damping of a [structure] table to modal damping ratios, with notes on what these omit."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _AT_ONE = "{ stiffness = LOSS_FACTOR / OMEGA } has it right at one frequency OME
 
 
 class Damping(Frozen):
-    """Ratios of modes (mode,), and what is to be said of what they leave out.
+    """Damping ratios (mode,), and notes on the damping that they omit.
 
-    lost bounds the error of a receptance by the damping of rigid-body modes: of what it is at rest, of
-    rigid-body modes at its own frequency.
+    lost bounds the relative error of a receptance from omitting the damping of rigid-body modes. The error is
+    relative to the receptance at rest, or to that of the rigid-body modes at the same frequency.
     """
 
     ratio: FloatArray
@@ -70,7 +70,7 @@ def damping_of(
         seen = np.hstack((pushes, left[:, outputs]))
         modes = DampedModes(stiffness, modal, rigid)
         effects = [coupling_effect(modes, pushes, seen, k, ends) for k in (0.0 * springs, springs)]
-        if max(effects) <= MESSAGES.damping_left_out:  # as of a body that nothing pushes
+        if max(effects) <= MESSAGES.damping_left_out:  # as for a body without excitation
             dragged = 0.0
         said = _left_out(dragged, effects)
     lowest = ends[0] if np.isfinite(ends[0]) else 0.0
@@ -78,10 +78,10 @@ def damping_of(
 
 
 def _while_stuck(half: float, stiffness: FloatArray, pushes: FloatArray, springs: FloatArray) -> str:
-    """A sentence on the ratio of the first stuck resonance beside that of hysteresis, if they differ.
+    """Sentence comparing the damping ratio of the first stuck resonance with hysteretic damping; or ''.
 
-    Of a stuck mode x (mode,) with frequency omega the ratio is half sum_i omega_i |x_i|^2 / omega, and that
-    of hysteresis half sum_i omega_i^2 |x_i|^2 / omega^2.
+    A stuck mode x (mode,) of frequency omega has the ratio half sum_i omega_i |x_i|^2 / omega. With
+    hysteretic damping it would have half sum_i omega_i^2 |x_i|^2 / omega^2.
     """
     squares, shapes = np.linalg.eigh(np.diag(stiffness) + (pushes * springs) @ pushes.conj().T)
     first = int((squares > stiffness.max(initial=0.0) * np.finfo(np.float64).eps * squares.size).argmax())
@@ -96,7 +96,7 @@ def _while_stuck(half: float, stiffness: FloatArray, pushes: FloatArray, springs
 
 
 def _of_floating(ratio: float, rigid: int) -> list[str]:
-    """Note on what a ratio of modes without contacts means where contacts hold rigid bodies."""
+    """Note on the meaning of a common damping ratio if contacts hold rigid-body modes."""
     if not ratio or not rigid:
         return []
     return [
@@ -107,7 +107,7 @@ def _of_floating(ratio: float, rigid: int) -> list[str]:
 
 
 def _left_out(dragged: float, effects: list[float]) -> list[str]:
-    """Notes on damping that is left out, with its effects on the linear response if known."""
+    """Notes on omitted damping, with its effects on the linear response if known."""
     if not dragged and max(effects, default=0.0) <= MESSAGES.damping_left_out:
         return []
     what = "damping between modes is left out"
@@ -124,7 +124,7 @@ def _left_out(dragged: float, effects: list[float]) -> list[str]:
 
 
 def _share(change: float) -> str:
-    """A relative change in words: beside a resonance that is left without damping it is no number.
+    """A relative change in words; above 1, as at a resonance left without damping, it gets no number.
 
     >>> _share(0.00123), _share(0.996), _share(2.0)
     ('up to about 0.12 %', 'up to about 100 %', 'more than itself')

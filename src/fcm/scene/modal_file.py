@@ -1,4 +1,4 @@
-"""Modes from a file: NumPy's .npz, MATLAB's .mat, universal files."""
+"""Reads modes from a file: NumPy's .npz, MATLAB's .mat, universal files, or the user's own formats."""
 
 from __future__ import annotations
 
@@ -34,11 +34,10 @@ WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
 def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, Any]:
     """Reads the dofs, mass, frequency, damping and shapes of a file of modes, with "notes" on it.
 
-    "unused" are the names of its other arrays; "units" (`FileUnits`) those that it says, if it does.
+    "unused" are the names of its other arrays; "units" (`FileUnits`) its units, if it states them. A
+    universal file is always in Hz: it gives angular_frequency [rad/s] in place of frequency.
 
-    waves : whether shapes may be complex, as those of travelling waves are.
-
-    A universal file is always in Hz: it has angular_frequency [rad/s] in place of frequency.
+    waves : whether shapes may be complex, as for travelling waves.
     """
     ending = (files.folder / name).suffix.lower()
     if ending not in ENDINGS and own_reader(ending) is None:
@@ -71,11 +70,11 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
 
 
 def without_masses(name: str, one: float) -> str:
-    """What is missing where a universal file gives no modal masses, and what would be right.
+    """Message that a universal file gives no modal masses, and what to write.
+
+    Datasets 55 and 2414 have a field for modal masses; zero in every mode means that they are unknown.
 
     one : the modal mass of mass-normalised shapes of the file, in the scene's units.
-
-    Datasets 55 and 2414 have a place for them; zero in every mode says that they are not known.
     """
     return (
         f"missing; {quoted(name)} has 0 for the modal mass of each mode. Its shapes may have any scale, and "
@@ -85,7 +84,7 @@ def without_masses(name: str, one: float) -> str:
 
 
 def question_of_scale(name: str, shapes: Any) -> list[str]:
-    """A question on shapes without modal masses that all are scaled to a largest value of 1.
+    """A question on shapes without modal masses that are all scaled to a largest value of 1.
 
     >>> question_of_scale("m.npz", np.array([[1.0, 0.5], [0.5, -1.0]]))[0][:60]
     'modal: m.npz gives no modal masses, and each of its shapes i'
@@ -105,7 +104,7 @@ def question_of_scale(name: str, shapes: Any) -> list[str]:
 def _by_keys(
     found: dict[str, Any], others: Iterable[str], name: str, notes: list[str], faults: list[str]
 ) -> dict[str, Any]:
-    """The arrays by the keys of a scene, those under another name too, which is said."""
+    """The arrays by the keys of a scene; notes arrays that have another name in the file."""
     arrays = {}
     for key, aliases in KEYS.items():
         names = [one for one in (key, *aliases) if one in found]
@@ -129,7 +128,7 @@ def _may_be_mass(name: str) -> bool:
 
 
 def _without_matrix(key: str, array: Any) -> Any:
-    """MATLAB has matrices only: a vector or a number from one."""
+    """Converts a matrix of MATLAB, which has no other arrays, to a vector or a number."""
     if key in ("shapes", "dofs"):
         return array
     flat = array.ravel()
@@ -137,7 +136,7 @@ def _without_matrix(key: str, array: Any) -> Any:
 
 
 def _lengths(found: dict[str, Any]) -> list[str]:
-    """Arrays that do not go with the frequencies, of a file that has other faults."""
+    """Faults of arrays whose number of modes differs from that of the frequencies."""
     frequency = next((found[key] for key in ("frequency", "angular_frequency") if key in found), None)
     if frequency is None:
         return []
@@ -153,7 +152,7 @@ _HELD = {"c": "complex ones", "b": "true and false", "U": "words", "S": "words",
 
 
 def _plain(key: str, value: Any, kinds: str, faults: list[str]) -> Any:
-    """An array of numbers as it is; a single number as a float; names as a list of strings."""
+    """The value as an array of numbers, a float if it is a single number, or for dofs a list of strings."""
     if key == "dofs":
         names = np.ravel(np.asarray(value))
         return [str(name) for name in (np.char.decode(names, "utf-8") if names.dtype.kind == "S" else names)]

@@ -1,7 +1,7 @@
-"""Modes of a file in other units than the scene: what is converted, and what is asked.
+"""Converts modes of a file to the units of the scene, or questions units that are unknown.
 
-A unit of a modal mass is one of force per length, times s^2. So masses in kg go with m and N, and with mm and
-mN; those in t with mm and N. Of a shape displacements have no unit, but per one of length a rotation has.
+The unit of a modal mass is force / length * s^2: kg with m and N, or with mm and mN; t with mm and N. The
+displacements in a shape have no unit, but its rotations have that of 1 / length.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fcm.scene.measured_units import force_unit, length_unit
 
 
 class FileUnits(NamedTuple):
-    """The units that a file says it has: by name, and their sizes in m and N where it says these."""
+    """The units that a file states: their name, and their sizes in m and N if it states these."""
 
     name: str
     system: tuple[float, float] | None
@@ -30,7 +30,7 @@ class FileUnits(NamedTuple):
 
 
 class Converted(NamedTuple):
-    """Factors on modal masses and on rotations of shapes, and what is to be said."""
+    """Factors on modal masses and on rotations of shapes, and notes."""
 
     mass: float
     rotation: float
@@ -38,7 +38,7 @@ class Converted(NamedTuple):
 
 
 def converted(found: dict[str, Any], name: str, own: FileUnits, units: tuple[str, str]) -> Converted:
-    """Convert masses and shapes of a file to the units of length and force of a scene, where all are known.
+    """Converts masses and shapes of a file, in place, to the scene's length and force units if all are known.
 
     >>> modes = {"mass": np.array([2.0]), "dofs": ["1x", "1rz"], "shapes": np.array([[1.0, 0.001]])}
     >>> print(converted(modes, "m.uff", FileUnits("mm and N", (1e-3, 1.0)), ("m", "N")).notes[0])
@@ -65,7 +65,7 @@ def converted(found: dict[str, Any], name: str, own: FileUnits, units: tuple[str
 
 
 def _unknown(name: str, own: FileUnits, sizes: tuple[float | None, float | None]) -> str:
-    """Note on units that are not all known; a question where one is known to differ."""
+    """Note on units that are not all known; a question if one is known to differ."""
     pairs = zip(own.system or (), sizes, strict=False)
     if any(size is not None and not isclose(one, size) for one, size in pairs):
         return Question(
@@ -76,7 +76,7 @@ def _unknown(name: str, own: FileUnits, sizes: tuple[float | None, float | None]
 
 
 def question_of_masses(name: str, own: FileUnits, mass: float) -> list[str]:
-    """A question on masses that stand in the scene, of shapes of a file in other units."""
+    """A question on masses given in the scene for shapes of a file in other units."""
     if isclose(mass, 1.0):
         return []
     said = f"modal.mass: {name} is in {own.label()}, in which a mass of 1 is {mass:g} here"

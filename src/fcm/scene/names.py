@@ -1,4 +1,4 @@
-"""Names of contacts and degrees of freedom: what they may be, and which are the same."""
+"""Names of contacts and degrees of freedom: which are allowed, and which are the same."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from fcm.scene.errors import kind, quoted
 from fcm.scene.options import LIMITS
 from fcm.scene.section import Section
 
-DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # Nastran's 1 to 6
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # components 1 to 6 of Nastran
 _AT_NODE = re.compile(r"(\d+)[:. ]?(r?[xyz]|[1-6])", re.IGNORECASE)
 
 
 class Names(tuple[str, ...]):
-    """The degrees of freedom of a structure."""
+    """The names of the degrees of freedom of a structure."""
 
-    key = "modal.dofs"  # where they are given
+    key = "modal.dofs"  # key of the scene that gives them
 
     @cached_property
     def _at_nodes(self) -> dict[str, str]:
@@ -30,7 +30,7 @@ class Names(tuple[str, ...]):
         return {name: number for number, name in enumerate(self)}
 
     def find(self, name: str) -> str:
-        """The degree of freedom of a name, be it written as 40x, 40:x or 40:1; empty if there is none.
+        """The degree of freedom with a name, which may be written as 40x, 40:x or 40:1; empty if none.
 
         >>> Names(("40x", "tip")).find("40:1"), Names(("40x", "tip")).find("tip")
         ('40x', 'tip')
@@ -40,7 +40,7 @@ class Names(tuple[str, ...]):
         return name if name in self.place else self._at_nodes.get(motion_of(name), "")
 
     def of_node(self, number: str) -> str:
-        """Hint for a number that is no name but a node; empty if it is none.
+        """Hint on a number that is not a name but a node; else ''.
 
         >>> Names(("36x", "36z", "tip")).of_node("36"), Names(("36x", "tip")).of_node("3")
         ('; a number alone is no name: write "36x" or "36z"', '')
@@ -51,7 +51,7 @@ class Names(tuple[str, ...]):
         return f"; a number alone is no name: write {' or '.join(map(quoted, own[:6]))}" if own else ""
 
     def held(self, name: str) -> str:
-        """Hint on why a name may have no row; empty where nothing is known of it."""
+        """Hint on why a name may have no row; '' if there is no known reason."""
         return ""
 
 
@@ -61,7 +61,7 @@ class RowNames(Names):
     key = "structure.dofs"
 
     def held(self, name: str) -> str:
-        """A node and a direction may be one of a support.
+        """Hint that a name made of node and direction may be held by a support; else ''.
 
         >>> RowNames(("40x", "tip")).held("1x"), RowNames(("40x", "tip")).held("q")
         ('; one that is held has no row', '')
@@ -70,12 +70,12 @@ class RowNames(Names):
 
 
 def motion_of(name: str) -> str:
-    """Node and direction of a name as `at_node`; empty for a number alone, which is a row."""
+    """Node and direction of a name as `at_node`; empty for a number alone, which means a row."""
     return "" if name.isdecimal() else at_node(name)
 
 
 def at_node(name: str) -> str:
-    """A node and a direction in the one way that they are compared; empty if it is none.
+    """The normalised form of a node and a direction, such as 40x; empty if the name has another form.
 
     >>> at_node("40:1"), at_node("40X"), at_node("40.1"), at_node("7ry"), at_node("tip")
     ('40x', '40x', '40x', '7ry', '')
@@ -88,7 +88,7 @@ def at_node(name: str) -> str:
 
 
 def checked_names(section: Section, names: object) -> tuple[str, ...] | None:
-    """The names of degrees of freedom: strings, printable, each once; None after a mistake."""
+    """The names of degrees of freedom, checked to be printable strings, each once; None after a mistake."""
     if not isinstance(names, list | tuple) or not names:
         section.wrong("dofs", f"must be a list of at least one name, is {kind(names)}")
         return None
@@ -123,7 +123,7 @@ def unfit_name(name: str) -> str:
 
 
 def starred(name: str) -> str:
-    """Fault of a name that keys could not tell from several names; empty if there is none.
+    """Fault of a name with a *, which in keys stands for several names; else ''.
 
     >>> starred("tip*"), starred("tip")
     ('"tip*" has a *, which stands for any letters in keys such as contact.*.n_0; write it without', '')
@@ -135,7 +135,7 @@ def starred(name: str) -> str:
 
 
 def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:
-    """Names that are equal once their characters are composed: in a file they would be one.
+    """Names that occur more than once, when compared with composed Unicode characters, as in files.
 
     >>> same_names(["u", "v", "u"])
     [('u', ['u', 'u'])]
@@ -147,7 +147,7 @@ def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:
 
 
 def same_motions(names: Iterable[str]) -> list[tuple[str, str]]:
-    """Different names of one motion of a node, of which a contact would get either.
+    """Pairs of different names for one motion of a node, which contacts could not distinguish.
 
     >>> same_motions(["40x", "40:2", "40:1", "tip"])
     [('40x', '40:1')]
@@ -158,5 +158,5 @@ def same_motions(names: Iterable[str]) -> list[tuple[str, str]]:
 
 
 def otherwise_written(group: list[str]) -> str:
-    """A remark for names that look the same and are not, since their characters are composed otherwise."""
+    """A remark on names that look the same but have differently composed Unicode characters; else ''."""
     return "" if len(set(group)) == 1 else " (in other Unicode characters)"

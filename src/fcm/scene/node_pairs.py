@@ -1,4 +1,4 @@
-"""A contact over a list of node pairs: one contact for each pair, all of the same numbers."""
+"""Reads a [[contact]] over node pairs, which makes one contact for each pair."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from fcm.scene.plane import is_stop
 from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import SYNONYMS, Section, described
 
-Pair = tuple[str, ...]  # two nodes, or one that touches the ground
-EQUAL = "equal"  # in the place of areas that are all the same
-SHARED = ("k_u", "k_v", "n_0")  # by areas, in proportion to them
+Pair = tuple[str, ...]  # two nodes, or one in contact with the ground
+EQUAL = "equal"  # value of areas that are all the same
+SHARED = ("k_u", "k_v", "n_0")  # numbers that pairs share in proportion to their areas
 
 
 def read_pairs(section: Section, files: Files) -> PairTable:
-    """The pairs of nodes and the numbers that a file has of them; empty after a mistake."""
+    """The node pairs of a contact, with the numbers that a file gives for them; empty after a mistake."""
     value = section.data["nodes"]
     if isinstance(value, Mapping):
         if "pairs" not in value:
@@ -53,7 +53,7 @@ def read_pairs(section: Section, files: Files) -> PairTable:
 
 
 def _of_file(section: Section, value: str, files: Files) -> PairTable:
-    """The pairs of a file; what is wrong with them is noted."""
+    """The pairs of a file; mistakes are noted."""
     try:
         with files.opened(value) as path:
             table = read_pair_table(path)
@@ -73,8 +73,7 @@ def _of_file(section: Section, value: str, files: Files) -> PairTable:
 
 
 def _without_unused(section: Section, value: str, table: PairTable) -> PairTable:
-    """The pairs of a file that has columns of no meaning: one that may be misspelt is wrong, others are asked
-    about."""
+    """The pairs of a file with unknown columns: likely misspellings are mistakes, others are questioned."""
     known = (*NODES, *NUMBERS, *COORDINATES)
     lacking = [name for name in (*NUMBERS, *COORDINATES) if name not in table.numbers]
     for name in table.unused:
@@ -137,7 +136,7 @@ def read_direction(section: Section, key: str) -> dict[str, float]:
 
 
 def direction_in(section: Section, value: Any, key: str) -> dict[str, float]:
-    """The direction at a key, such as "x" or { x = 0.6, y = 0.8 }, as weights; empty after a mistake."""
+    """A value such as "x" or { x = 0.6, y = 0.8 } at a key, as weights; empty after a mistake."""
     terms = {value: 1.0} if isinstance(value, str) else value
     if not isinstance(terms, Mapping) or not terms or not set(map(str, terms)) <= set(DIRECTIONS):
         section.wrong(key, f"must be one of {', '.join(DIRECTIONS)}, or a table of weights of them")
@@ -150,7 +149,7 @@ def direction_in(section: Section, value: Any, key: str) -> dict[str, float]:
 def check_nodes(
     section: Section, directions: Iterable[Mapping[str, float]], pairs: Iterable[Pair], dofs: Names | None
 ) -> None:
-    """Note each node that cannot move along some of the directions, once."""
+    """Notes, once for each node, the directions along which it has no degree of freedom."""
     if dofs is None:
         return
     needed = dict.fromkeys(one for weights in directions for one in weights)
@@ -162,7 +161,7 @@ def check_nodes(
 
 
 def relative_displacement(weights: Mapping[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
-    """The relative displacement of a pair along a direction; None where it has none."""
+    """The relative displacement (dof,) of a pair along a direction; None if a node lacks the dof."""
     if dofs is None or not weights:
         return None
     found = np.zeros(len(dofs))
@@ -181,9 +180,9 @@ def _at(dofs: Names, node: str, direction: str) -> str:
 
 
 def read_numbers(section: Section, table: PairTable, files: Files) -> dict[str, list[float]]:
-    """mu, k_u, k_v, and n_0 or gap of each pair, of one number for all, a list, or a file; and their areas.
+    """mu, k_u, k_v, and n_0 or gap of each pair, from one number for all, a list, or a file.
 
-    A total that the areas share is given as the total: see `shares`.
+    A total that pairs share by area is returned as the total for each pair: see `shares`.
     """
     count = len(table.pairs)
     load = load_key(section, table)
@@ -224,7 +223,7 @@ def _of_each(section: Section, key: str, table: PairTable, files: Files) -> list
 
 
 def _as_number(text: str, files: Files) -> list[str]:
-    """Fault of a text that was meant as a number; empty if it is the name of a file."""
+    """Fault of a text that is meant as a number; empty if it is the name of a file."""
     is_file = not text[:1].isdigit() or (files.folder / text).exists()
     return [] if is_file else [f"{fault_of_number(text)}, without quotes and in the units of the scene"]
 
@@ -234,7 +233,7 @@ def _is_list(value: Any) -> bool:
 
 
 def load_key(section: Section, table: PairTable) -> str:
-    """The key, n_0 or gap, that gives the contact's load in the scene or in a table of pairs."""
+    """The key, n_0 or gap, that the scene or a table of pairs gives; a mistake if both or neither."""
     given = [key for key in ("n_0", "gap") if key in section.data or key in table.numbers]
     if len(given) == 2:
         section.wrong("", "has both n_0 and gap; give one: gap means n_0 = -k_v * gap")
@@ -244,9 +243,9 @@ def load_key(section: Section, table: PairTable) -> str:
 
 
 def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
-    """Share of each pair in the numbers that are totals for all pairs, by areas; empty without areas.
+    """Share by area of each pair in the numbers that are totals for all pairs; empty without areas.
 
-    k_u, k_v and n_0 are totals; mu and a gap are the same for all.
+    k_u, k_v and n_0 are totals unless given for each pair; mu and a gap are the same for all pairs.
     """
     count = len(table.pairs)
     areas = table.numbers.get("area")
@@ -278,9 +277,9 @@ def _shared(section: Section, table: PairTable, areas: list[float]) -> list[dict
 
 
 def totals_of(section: Section, table: PairTable, numbers: Mapping[str, list[float]]) -> dict[str, float]:
-    """Sums of those of k_u, k_v and n_0 that are given for each pair, where areas are given.
+    """Sums of those of k_u, k_v and n_0 that are given for each pair; empty without areas.
 
-    Another total scales them.
+    If a total is changed, as by a sweep, the numbers of the pairs scale with it.
     """
     if "areas" not in section.data and "area" not in table.numbers:
         return {}
@@ -297,7 +296,7 @@ def _is_one(value: Any) -> bool:
 
 
 def pairs_by_contact(drafts: Iterable[Mapping[str, Any]]) -> dict[str, list[Mapping[str, Any]]]:
-    """The drafts of the pairs of each contact over pairs of nodes, by its name."""
+    """The drafts of the pairs of each [[contact]] with node pairs, by its name."""
     found: dict[str, list[Mapping[str, Any]]] = {}
     for draft in drafts:
         if "group" in draft:
@@ -306,8 +305,8 @@ def pairs_by_contact(drafts: Iterable[Mapping[str, Any]]) -> dict[str, list[Mapp
 
 
 def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Notes on pairs with one number for all: totals shared by areas, or the same for each pair."""
-    said: dict[str, list[str]] = {}  # the names of the contacts of which a sentence is said
+    """Notes on pairs with one number for all: a total shared by areas, or the same number for each pair."""
+    said: dict[str, list[str]] = {}  # by sentence, the names of the contacts it applies to
     for name, pairs in pairs_by_contact(drafts).items():
         if share := pairs[0]["share"]:
             totals = _are([key for key in share if key in pairs[0]], "totals", "a total")
@@ -328,7 +327,7 @@ def _same(pairs: Sequence[Mapping[str, Any]], key: str) -> bool:
 
 
 def _are(keys: list[str], several: str, one: str) -> str:
-    """Clause on what some keys are, in singular or plural."""
+    """Clause "a, b and c are ..." or "a is ..." on some keys."""
     if len(keys) < 2:
         return "".join(f"{key} is {one}" for key in keys)
     return f"{', '.join(keys[:-1])} and {keys[-1]} are {several}"

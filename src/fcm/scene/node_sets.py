@@ -1,4 +1,4 @@
-"""Pairs of nodes whose places a mesh has: { sets = , mesh = , tolerance = }, or { pairs = , mesh = }."""
+"""Node pairs with places from a mesh: { sets = , mesh = , tolerance = }, or { pairs = , mesh = }."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from fcm.scene.pair_file import PairTable
 from fcm.scene.rules import POSITIVE, as_float
 from fcm.scene.section import Section, described
 
-FITTED = "fitted"  # the word for a direction that a plane gives
+FITTED = "fitted"  # value of a direction that is taken from a fitted plane
 AXES = ("x", "y", "z")
 _WORDS = re.compile(r"[\s,;]+")
 
 
 def pairs_of_sets(section: Section, files: Files) -> PairTable:
-    """The pairs of the nodes of two sets, or the nodes of one at the ground; none after a mistake."""
+    """The pairs of nodes of two sets, or the nodes of one set at the ground; none after a mistake."""
     found = section.table("nodes", "")
     if found is None:
         return PairTable([])
@@ -87,9 +87,9 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
 
 
 def _places(apart: FloatArray, first: FloatArray) -> str:
-    """Clause on the least and greatest distance of partners (pair,), and how far the first (pair, 3) reach.
+    """Clause on the distances of partners (pair,) and on the extent of the first nodes (pair, 3).
 
-    In the coordinates' unit, so that it is seen where that is another than the matrices'.
+    It is in the unit of the coordinates, to reveal one that differs from that of the matrices.
 
     >>> corners = np.array([[150.0, 0.0, 2.0], [240.0, 20.0, 2.0]])
     >>> _places(np.zeros(2), corners)
@@ -105,7 +105,7 @@ def _places(apart: FloatArray, first: FloatArray) -> str:
 
 
 def with_places(section: Section, found: Section, table: PairTable, files: Files) -> PairTable:
-    """Pairs of a file with the places of their nodes in a mesh, and what is said of them."""
+    """Pairs of a file with the places of their nodes in a mesh, and notes on them."""
     found.only(*names("contact.nodes"))
     if "sets" in found.data:
         found.wrong("", "has both sets and pairs; give one of them")
@@ -151,7 +151,7 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
 
 
 def _said_of_places(name: str, table: PairTable, first: FloatArray, second: FloatArray) -> Iterator[Question]:
-    """Whether coordinates of the file are those of a mesh: of a node of the pair, or between both."""
+    """Question on coordinates of the file that are not on the line between a pair's nodes in the mesh."""
     if table.places is None:
         return
     along = second - first
@@ -172,15 +172,15 @@ def _said_of_places(name: str, table: PairTable, first: FloatArray, second: Floa
 
 
 def with_fitted(section: Section, table: PairTable) -> Section:
-    """The table of a contact with directions in the place of the words "fitted".
+    """The table of a contact with the value "fitted" replaced by directions.
 
-    The normal is that of the plane of the pairs; the tangential directions are at right angles to the normal,
-    be it fitted or given.
+    A fitted normal is that of the plane of the pairs. Fitted tangential directions are at right angles to the
+    normal, which may be fitted or given.
     """
     normal, tangential = (section.data.get(key) for key in ("normal", "tangential"))
     data = dict(section.data)
     if normal == FITTED:
-        data["normal"] = AXES[2]  # a stand-in where there is none
+        data["normal"] = AXES[2]  # placeholder if there is no plane
         plane = None if table.interface is None else table.interface.plane
         if plane is not None:
             data["normal"] = _weights(plane.normal)
@@ -203,7 +203,7 @@ def with_fitted(section: Section, table: PairTable) -> Section:
 
 
 def _check_right_angle(section: Section, tangential: Any, plane: Plane) -> None:
-    """Note a direction along which a contact slides that is not in its fitted plane."""
+    """Notes a given tangential direction that is not in the fitted plane."""
     for one in tangential if isinstance(tangential, list | tuple) else [tangential]:
         along = _vector(one)
         if along is None:
@@ -220,7 +220,7 @@ def _check_right_angle(section: Section, tangential: Any, plane: Plane) -> None:
 
 
 def _vector(value: Any) -> np.ndarray[Any, Any] | None:
-    """A direction such as "x" or weights of x, y, z, as (3,); None for what is none, or nothing."""
+    """A direction such as "x" or weights of x, y, z, as (3,); None if it is invalid or zero."""
     terms = {value: 1.0} if isinstance(value, str) else value
     if not isinstance(terms, Mapping) or not terms or not set(terms) <= set(AXES):
         return None
@@ -230,8 +230,10 @@ def _vector(value: Any) -> np.ndarray[Any, Any] | None:
 
 
 def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]] | tuple[int, ...]) -> Plane | None:
-    """The plane between pairs, from the first side to the second, or that of nodes that touch the ground, out
-    of their structure; None where none is asked for."""
+    """The fitted plane of pairs or of nodes at the ground; None if no fitted normal is requested.
+
+    Its normal points from the first side to the second, or out of the structure of nodes at the ground.
+    """
     if section.data.get("normal") != FITTED:
         return None
     nodes = [one for one in pairs if isinstance(one, int)]
@@ -247,7 +249,7 @@ def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]] | tupl
 
 
 def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) -> list[str]:
-    """Note on the fitted normal, and on how flat the pairs lie; a question on a given one that leans."""
+    """Note on the fitted normal and the flatness of the pairs; or a question on a given normal that leans."""
     if plane is None or section.data.get("normal") != FITTED:
         return _said_of_lean(section, interface)
     near = int(np.abs(plane.normal).argmax())
@@ -260,7 +262,7 @@ def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) 
 
 
 def _said_of_lean(section: Section, interface: Interface) -> list[str]:
-    """Question on a given normal that leans from that of the flat face of the pairs."""
+    """Question on a given normal that leans relative to that of the flat face of the pairs."""
     along = _vector(section.data.get("normal"))
     try:
         plane = fitted_plane(0.5 * (interface.first + interface.second))
@@ -285,8 +287,11 @@ def _said_of_side(
     pairs: Sequence[tuple[int, int]] | tuple[int, ...],
     sides: tuple[str, str] = ("its first nodes", "the others"),
 ) -> list[str]:
-    """Question on a given normal that points from the second side of pairs to the first, or into the body of
-    nodes that touch the ground; nothing where neither places nor elements show the sides."""
+    """Question on a given normal with the wrong sense.
+
+    It should point from the first side of pairs to the second, or out of the body of nodes at the ground.
+    There is no question if neither places nor elements show the sides.
+    """
     along = _vector(section.data.get("normal"))
     if along is None or not pairs:
         return []
@@ -328,7 +333,7 @@ def _mesh(found: Section, files: Files) -> Mesh | None:
 
 
 def _sets(found: Section, files: Files, mesh: Mesh | None) -> list[tuple[str, tuple[int, ...]]]:
-    """The names and nodes of one set or two."""
+    """The names and nodes of one or two sets; none after a mistake."""
     value = found.data.get("sets")
     if isinstance(value, str):
         value = [value]
@@ -345,7 +350,7 @@ def _sets(found: Section, files: Files, mesh: Mesh | None) -> list[tuple[str, tu
 
 
 def _set(found: Section, name: str, files: Files, mesh: Mesh | None) -> tuple[int, ...]:
-    """The nodes of a set of the mesh, or of a file of numbers of nodes."""
+    """The nodes of a set of the mesh, or of a file of node numbers; none after a mistake."""
     if mesh is None:
         return ()
     nodes = mesh.sets.get(name.upper())
@@ -365,7 +370,7 @@ def _set(found: Section, name: str, files: Files, mesh: Mesh | None) -> tuple[in
 
 
 def _of_file(found: Section, name: str, files: Files) -> tuple[int, ...]:
-    """Numbers of nodes, however they are parted; lines of keywords and remarks are passed over."""
+    """The node numbers in a file, with any separators; lines of keywords and comments are skipped."""
     nodes: list[int] = []
     try:
         with files.opened(name) as path:

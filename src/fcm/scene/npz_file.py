@@ -1,4 +1,4 @@
-"""Arrays of a NumPy archive (.npz): only those asked for, and none larger than it says it is."""
+"""Reads requested arrays of a NumPy archive (.npz), and refuses ones larger than their stated size."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Arrays = dict[str, npt.NDArray[Any]]
 
 
 def read_npz(path: Path, wanted: Collection[str] | None, files: Files) -> Arrays:
-    """The arrays of an archive by their names; all of them when none is asked for by name."""
+    """The wanted arrays of an archive by name; all if none are named."""
     with path.open("rb") as file:
         if file.read(6) == b"\x93NUMPY":
             raise DataFileError(f"{quoted(path.name)} holds a single array; write it with numpy.savez")
@@ -43,7 +43,7 @@ def names_in_npz(path: Path) -> list[str]:
 
 
 def _array(stream: IO[bytes], size: int) -> npt.NDArray[Any]:
-    """An array whose header agrees with the number of bytes that there are."""
+    """An array, whose header must agree with the number of bytes."""
     version = np.lib.format.read_magic(stream)
     header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
     shape, by_column, kind = header(stream)

@@ -1,4 +1,4 @@
-"""Numbers as text files have them: read as a whole or not at all, and what is wrong with the others."""
+"""Reads numbers from words of text files, and explains what is wrong with other words."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fcm.scene.errors import quoted
 
 _DIGITS = r"(?:\d+\.?\d*|\.\d+)"
 _EXPONENT = r"[EeDdQq][-+]?\d+"
-_LETTERLESS = r"(?:\d+\.\d*|\.\d+)[-+]\d{3}(?![\d.])"  # Fortran leaves the letter out for three digits
+_LETTERLESS = r"(?:\d+\.\d*|\.\d+)[-+]\d{3}(?![\d.])"  # Fortran omits the E of an exponent of three digits
 NUMBER = rf"[-+]?(?:{_LETTERLESS}|{_DIGITS}(?:{_EXPONENT})?)"
 _WHOLE = re.compile(NUMBER, re.ASCII)
 _HEXADECIMAL = re.compile(r"[-+]?0[xX]")
@@ -19,10 +19,10 @@ _BEHIND = re.compile(rf"({NUMBER})\s*(\S.*)", re.ASCII)
 
 
 def number_in(text: str) -> float | None:
-    """The number that a text is as a whole, in decimal or with an exponent; None if it is none, or too large.
+    """The number that a whole text represents, with or without an exponent; None if it is not finite.
 
-    Fortran's exponents are read: those of double precision with a D, and those of three digits without a
-    letter. What is no finite number is None: nan, inf, and what exceeds 1.8e308.
+    Exponents of Fortran are accepted: with a D, and with three digits without a letter. nan, inf and numbers
+    beyond 1.8e308 give None.
 
     >>> number_in("1.5"), number_in("-1.005D+02"), number_in("1.50162-101"), number_in("100,5")
     (1.5, -100.5, 1.50162e-101, None)
@@ -35,7 +35,7 @@ def number_in(text: str) -> float | None:
 
 
 def fault_of_number(text: str) -> str:
-    """Fault of a text that is not read as a number, and what to write if that is plain.
+    """Fault of a text that is not a number, and what to write if that is obvious.
 
     >>> fault_of_number("100,5"), fault_of_number("100.5kN")
     ('"100,5" has a decimal comma: write 100.5', '"100.5kN" has "kN" behind the number: write 100.5')

@@ -1,4 +1,4 @@
-"""The [optimum] table of a scene: numbers that are to be chosen, their bounds, and what is to be least."""
+"""Reads the [optimum] table of a scene: numbers to optimise, their bounds, and aims to minimise."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WHAT = ("peak", "greatest")
 
 
 def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum | None:
-    """Reads which numbers are optimised for what; None without the table, or after a mistake."""
+    """Reads the [optimum] table; None without it, or after a mistake."""
     section = top.table("optimum", "") if "optimum" in top.data else None
     if section is None:
         return None
@@ -42,7 +42,7 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
 def varied_numbers(
     section: Section, draft: Draft, example: str, most: int, refused: Mapping[str, str] | None = None
 ) -> list[Number | None]:
-    """The numbers to vary; None in the place of one that there is not, or that is refused with a reason."""
+    """The numbers to vary; None in place of an unknown one, or of one refused with a reason."""
     keys = words_of(section, "vary", f'a list of numbers of the scene, as ["{example}"]')
     if len(keys) > most:
         section.wrong("vary", f"has {len(keys)} numbers; there can be {most}")
@@ -62,7 +62,7 @@ def varied_numbers(
 
 
 def words_of(section: Section, key: str, right: str) -> list[str]:
-    """A string, or a list of some."""
+    """A string, or a list of strings, as a list."""
     if section.missing(key, right):
         return []
     value = section.data[key]
@@ -129,9 +129,9 @@ def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> lis
 def _check_0(
     section: Section, numbers: list[Number | None], bounds: list[tuple[float, float]], draft: Draft
 ) -> None:
-    """Note the bounds with 0 of the amplitude of the only force."""
+    """Notes bounds that include 0 for the amplitude of the only force."""
     known = [number for number in numbers if number]
-    for number, (low, high) in zip(known, bounds, strict=False):  # none after a mistake
+    for number, (low, high) in zip(known, bounds, strict=False):  # bounds are empty after a mistake
         if low <= 0.0 <= high and only_force(draft.parts, number):
             section.wrong("bounds", f"bounds of {number.key}: {AT_REST}; leave 0 out")
 
@@ -157,12 +157,12 @@ def pair_of_bounds(section: Section, number: Number, pair: object) -> tuple[floa
 
 
 def without_bounds(number: Number) -> str:
-    """What is said of a number without bounds that is 0: no others follow from it."""
+    """Message on a number that is 0 and has no bounds: no default bounds follow from it."""
     return f"give [from, to] for {number.key}, which is 0 in the scene"
 
 
 def _of_sweep_or_from_0(section: Section, number: Number, draft: Draft) -> tuple[float, float]:
-    """Default bounds of a number: those of its sweep, if there is one; else from 0 to ten times its value."""
+    """Default bounds of a number: those of its sweep, or else from 0 to `optimum_range` times its value."""
     for one in draft.swept:
         if set(one.addresses) <= set(number.addresses) and min(one.values) < max(one.values):
             return (min(one.values), max(one.values))

@@ -1,4 +1,4 @@
-"""Files for contacts over pairs of nodes: the pairs with their numbers, and one number for each pair."""
+"""Reads files for contacts over node pairs: pairs with their numbers, or one number for each pair."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from fcm.scene.files import DataFileError
 from fcm.scene.number_text import fault_of_number, number_in
 
 _COMMA = re.compile(r"\d+,\d+", re.ASCII)
-# of nodes beside empty cells pandas writes these, and numpy of all
+# node numbers as written by numpy, and by pandas in a column with empty cells
 _FLOAT = re.compile(r"\d+\.\d*(e[+]?\d{1,2})?", re.ASCII | re.IGNORECASE)
-NODES = ("node", "other")  # columns of the two nodes; other is empty where a node touches the ground
+NODES = ("node", "other")  # columns of the two nodes; other is empty for a contact with the ground
 NUMBERS = ("area", "mu", "k_u", "k_v", "n_0", "gap")
 COORDINATES = ("x", "y", "z")
 
 
 class PairTable(Frozen):
-    """Pairs of nodes, and what a file says of each.
+    """Node pairs, and the data that a file gives for each.
 
-    numbers: by column, (pair,); unused: names of columns that nothing is read from; places: coordinates
-    (pair, 3) that the file has; interface: where both nodes are; said: what is to be said of them; unread:
-    whether its file could not be read, so that it may have any numbers.
+    numbers: (pair,) by column; unused: names of columns that are not read; places: coordinates (pair, 3) in
+    the file; interface: places of both nodes; said: notes; unread: whether the file could not be read, so
+    that its numbers are unknown.
     """
 
     pairs: list[tuple[str, ...]]
@@ -49,7 +49,7 @@ def read_pair_table(path: Path) -> PairTable:
     Raises
     ------
     DataFileError
-        With each line that is wrong, what is wrong there, and what would be right.
+        If lines are wrong; the message lists them, each with its fault and what would be right.
     """
     lines = list(_lines(path))
     if not lines:
@@ -69,7 +69,7 @@ def read_pair_table(path: Path) -> PairTable:
     where = list(COORDINATES) if set(COORDINATES) <= set(header) else []
     places: list[list[float]] = []
     table = PairTable([], {name: [] for name in header if name in NUMBERS}, _unused(header))
-    first: dict[frozenset[str], int] = {}  # line of each pair, whichever of its nodes is named first
+    first: dict[frozenset[str], int] = {}  # line of each pair, regardless of the order of its nodes
     for number, words in lines[1:]:
         if len(words) != len(header):
             has = f"line {number} has {len(words)} {'entry' if len(words) == 1 else 'entries'}"
@@ -109,9 +109,9 @@ def _unused(header: Sequence[str]) -> tuple[str, ...]:
 
 
 def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[float]:
-    """A number for each pair: one on each line in their order, or a node and its number on each line.
+    """A number for each pair, from lines with one number each in order, or with a node and its number.
 
-    With nodes each pair has the number of its first node, or else of its other one.
+    With nodes, each pair gets the number of its first node, or else that of its other node.
     """
     rows: list[list[str]] = []
     faults: list[str] = []
@@ -156,7 +156,7 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
 
 
 def _node(word: str) -> str:
-    """The name of a node; a whole number that was written as a float has its digits alone.
+    """The name of a node; a whole number written as a float is reduced to its digits.
 
     >>> _node("111.0"), _node("1.11e+02"), _node("111"), _node("1.5"), _node("tip")
     ('111', '111', '111', '1.5', 'tip')
@@ -166,7 +166,7 @@ def _node(word: str) -> str:
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """The words of each line with its number; blank lines and comments behind # are passed over."""
+    """Yields the number and words of each line, without blank lines and comments after #."""
     try:
         text = path.read_text("utf-8-sig")
     except UnicodeDecodeError:

@@ -1,8 +1,7 @@
-"""Notes on pairs of nodes that are the other way round than the rest of their interface.
+"""Notes on node pairs that are reversed compared with the rest of their interface.
 
-The first node of a pair is on the side that moves along the normal as the contact closes. Where two bodies
-meet, or two sectors of a ring, all first nodes belong to one of them. A pair with its nodes exchanged opens
-where it should close.
+The first node of a pair is on the side that moves along the normal as the contact closes. Between two bodies,
+or two sectors of a ring, all first nodes belong to the same one. A reversed pair opens where it should close.
 """
 
 from __future__ import annotations
@@ -18,9 +17,9 @@ from fcm.structure.rigid_body import bodies
 
 
 def notes_of_sides(drafts: Sequence[Mapping[str, Any]], K: Any) -> list[str]:
-    """Notes on the pairs of groups, whose normals (row,) lead from one body of a stiffness matrix to another.
+    """Notes on reversed pairs, by their normals (row,) between the bodies of the stiffness matrix K.
 
-    Of a ring it is that of a sector, and normals have the rows of the next sector behind.
+    For a ring, K is that of a sector, and the rows of normals are followed by those of the next sector.
 
     >>> import scipy.sparse
     >>> K = scipy.sparse.block_diag([np.ones((2, 2)), np.ones((2, 2))])
@@ -48,7 +47,7 @@ def notes_of_sides(drafts: Sequence[Mapping[str, Any]], K: Any) -> list[str]:
 
 
 def _fewer(pairs: Iterable[Mapping[str, Any]], body: np.ndarray) -> list[str]:
-    """The pairs that lead from one body to another where more lead back; of each two bodies."""
+    """Names of the pairs from one body to another that are fewer than the pairs in the other direction."""
     ways: dict[tuple[int, int], list[str]] = {}
     for pair in pairs:
         ends = {*body[pair["normal"] > 0.0].tolist()}, {*body[pair["normal"] < 0.0].tolist()}

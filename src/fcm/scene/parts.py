@@ -1,4 +1,4 @@
-"""Contacts, forces and range of a scene."""
+"""Reads contacts, forces, units and the frequency range of a scene."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ ONE = "give a range, and a single frequency within it by --at"
 
 
 def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]]:
-    """The contacts as read, in the words of the file."""
+    """The drafts of the contacts, with the keys of the file."""
     sections = top.tables("contact")
     given: list[GivenDirections] = []
     drafts = [draft for section in sections for draft in _contacts(section, dofs, files, given)]
     files.noted.extend(questions_of_lengths(given))
     tables = [section.data.get("name") for section in sections]
     again = same_names(name for name in tables if isinstance(name, str) and name)
-    # the pairs of tables with one name have the same names, which is not said of each
+    # pairs of tables with the same name have the same names too, which is not reported for each
     for name, group in again or same_names(draft["name"] for draft in drafts if draft["name"]):
         written = "" if len(set(group)) == 1 else " (in other Unicode characters)"
         top.wrong(
@@ -59,9 +59,9 @@ def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
 def _contacts(
     section: Section, dofs: Dofs, files: Files, given: list[GivenDirections]
 ) -> list[dict[str, Any]]:
-    """The contacts of one [[contact]]: one, or one for each of its pairs of nodes.
+    """The drafts of one [[contact]]: one contact, or one for each of its node pairs.
 
-    Its directions are added to those given.
+    Its directions are appended to given.
     """
     name = section.text("name")
     if name:
@@ -118,9 +118,9 @@ def _with_tangential(draft: dict[str, Any]) -> dict[str, Any]:
 
 
 def unread_tables(top: Section, parts: Mapping[str, Any]) -> tuple[str, ...]:
-    """Tables of which a mistake hides numbers: those under another key, and those with parts without a name.
+    """Tables that could not be read completely: with a misspelt key, or with parts whose name is missing.
 
-    A number that is not found there is no mistake of its own.
+    A key path to a number in such a table is not a mistake of its own.
     """
     hidden = [table for key in top.data if key not in names("") and (table := nearest(str(key), names("")))]
     for table, key in (("contact", "name"), ("force", "dof"), ("load", "dof")):
@@ -137,12 +137,12 @@ def unread_tables(top: Section, parts: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _is_one_of(given: object, named: Set[str]) -> bool:
-    """Whether what is given, which may be anything, is one of some names."""
+    """Whether a value of any type is one of the names."""
     return isinstance(given, str) and given in named
 
 
 def contact_of(draft: dict[str, Any]) -> Contact:
-    """The contact of what was read: a gap becomes the preload -k_v * gap."""
+    """The `Contact` made from a draft that was read; a gap becomes the preload -k_v * gap."""
     for key in ("tangential", "second", "normal"):
         if key in draft:
             draft[key].flags.writeable = False
@@ -151,11 +151,11 @@ def contact_of(draft: dict[str, Any]) -> Contact:
     numbers = {key: draft[key] * factor.get(key, 1.0) for key in SHARED if key in draft}
     n_0 = numbers.pop("n_0") if "n_0" in numbers else -numbers["k_v"] * draft["gap"]
     numbers |= {key: draft[key] for key in ("name", "tangential", "second", "normal", "mu") if key in draft}
-    return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
+    return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0 turns -0.0 into 0.0
 
 
 def read_forces(top: Section, dofs: Dofs, solved: bool) -> list[dict[str, Any]]:
-    """The forces as read, in the words of the file; `name` is the dof of a force on one."""
+    """The drafts of the forces, with the keys of the file; `name` is the dof of a force on a single one."""
     if "force" not in top.data and ("base" in top.data or not solved):
         return []
     if not top.data.get("force", ()) and isinstance(top.data.get("force", ()), list | tuple):
@@ -177,7 +177,7 @@ def _force(section: Section, dofs: Dofs) -> dict[str, Any]:
 
 
 def _power(section: Section) -> int:
-    """The power of omega that a force is in proportion to."""
+    """The power of omega that a force is proportional to."""
     law = section.data.get("proportional_to")
     if law is not None and law != "omega^2":
         section.wrong("proportional_to", f'must be "omega^2", is {quoted(law)}')
@@ -203,7 +203,7 @@ def force_of(draft: dict[str, Any]) -> Force:
 
 
 def note_of_harmonics(forces: Sequence[Force]) -> list[str]:
-    """Note that there are forces at other harmonics than 1, and what follows from it.
+    """Note on forces at harmonics other than 1, which harmonic balance always includes.
 
     >>> import numpy as np
     >>> note_of_harmonics([Force(np.ones(1), 1.0, 0.0, harmonic=3)])
@@ -218,7 +218,7 @@ def note_of_harmonics(forces: Sequence[Force]) -> list[str]:
 
 
 def read_units(top: Section) -> tuple[str, str]:
-    """The units of length and of force, for labels; empty where they are not given."""
+    """The units of length and force; empty if not given."""
     section = top.table("units", "") if "units" in top.data else None
     if section is None:
         return "", ""
@@ -231,9 +231,9 @@ def read_units(top: Section) -> tuple[str, str]:
 
 
 def response_table(top: Section, solved: bool) -> Section | None:
-    """The [response] table; None where there is none.
+    """The [response] table; None if there is none.
 
-    A scene with a schedule may do without, and one that is not to be solved.
+    It is optional for a scene with a schedule, and for one that is not to be solved.
     """
     if "response" not in top.data and (top.data.get("schedule") or not solved):
         return None
@@ -244,11 +244,11 @@ def response_table(top: Section, solved: bool) -> Section | None:
 
 
 def read_response(top: Section, section: Section | None, unit: str) -> tuple[tuple[float, float], float]:
-    """The range of frequencies [rad/s], nan if there is none but a schedule, and the longest step."""
+    """The frequency range [rad/s], nan if there is none or after a mistake, and the longest step."""
     if section is None:
         return NO_RANGE, LIMITS.longest_step
     step = section.number("max_step", FRACTION, default=LIMITS.longest_step)
-    if step < LIMITS.shortest_step:  # and not nan, which is a mistake already
+    if step < LIMITS.shortest_step:  # False for nan, which is already a mistake
         section.wrong("max_step", step_fault(step))
     if "frequency" not in section.data and top.data.get("schedule"):
         return NO_RANGE, step
@@ -269,7 +269,7 @@ def read_response(top: Section, section: Section | None, unit: str) -> tuple[tup
 
 
 def read_harmonics(section: Section | None) -> tuple[tuple[int, ...] | None, float | None]:
-    """The harmonics of the balance, and the accuracy that is to choose them; None for what is not given."""
+    """The harmonics of the balance, and the accuracy from which to choose them; None if not given."""
     if section is None:
         return None, None
     accuracy = section.number("accuracy", FRACTION) if "accuracy" in section.data else None

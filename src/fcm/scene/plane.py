@@ -22,7 +22,7 @@ Read = TypeVar("Read")
 def read_directions(
     section: Section, read: Callable[[str], Read], part: Callable[[object, str], Read]
 ) -> dict[str, Read]:
-    """`tangential`, `normal`, and in a plane `second`, of the table of a contact.
+    """The directions `tangential`, `normal`, and for a planar contact `second`, of the table of a contact.
 
     read takes what stands at a key, part a value of a list there; a list that is none of two is a mistake. A
     stop has its normal alone.
@@ -51,7 +51,7 @@ def is_stop(section: Section) -> bool:
 
 
 def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) -> None:
-    """Note two directions along the axes of nodes that are not at right angles, or not of the same length."""
+    """Notes two directions, in axes of nodes, that are zero, not at right angles, or of different length."""
     one, other = (directions.get(key) for key in ("tangential", "second"))
     if not one or not other:
         return
@@ -68,7 +68,7 @@ def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) 
 
 
 def check_plane(contact: Contact, dofs: Sequence[str], mistakes: Mistakes, where: str) -> None:
-    """Note two directions of a contact that no displacement tells apart, of different scale or unit."""
+    """Notes two sliding directions of a contact that are parallel, or of different scale or unit."""
     one, other = contact.tangential, contact.second
     if other is None or not one.any() or not other.any():
         return
@@ -92,7 +92,7 @@ def check_plane(contact: Contact, dofs: Sequence[str], mistakes: Mistakes, where
 
 
 def notes_of_planes(scene: Scene) -> list[str]:
-    """Notes on contacts whose two tangential directions share degrees of freedom, not at right angles."""
+    """Notes on contacts whose two sliding directions share dofs without being at right angles."""
     oblique = [one.name for one in scene.contacts if _oblique(one)]
     if not oblique:
         return []
@@ -119,7 +119,7 @@ def _scales(ratio: float) -> str:
 
 
 def axis_key(direction: FloatArray) -> bytes:
-    """A key of a direction, the same of directions that are equal up to sign and scale."""
+    """A key of a direction, which is the same for all directions that differ in sign and scale only."""
     largest: Any = direction[int(np.abs(direction).argmax())]
     return (
         (

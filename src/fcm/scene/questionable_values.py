@@ -1,4 +1,4 @@
-"""Numbers that may be and are hardly meant: a ratio in percent, an angle in degrees. They are asked about."""
+"""Questions about valid but implausible numbers, such as a ratio in percent or an angle in degrees."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from fcm.scene.sweep import SweptKey
 from fcm.units import ANGLES
 
 CRITICAL = "critical damping"
-SWEEP = "sweep."  # how the path of a swept key begins
+SWEEP = "sweep."  # prefix of the path of a swept key
 
 
 def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str]:
-    """A question for each kind of number that is hardly meant as it is; the scene is read as it says.
+    """A question for each kind of implausible number; the scene is still read as it is.
 
-    damping ratios and loss factors of 1 and more, damping ratios of which the least is large, and where units
-    are given loss factors, too; no damping at all, factors of mistuning that are all small, coefficients of
-    friction above two, negative gaps, angles of more than a turn that are given in rad, and a sweep of one
-    frequency for all modes.
+    These are: damping ratios and loss factors of at least 1; damping ratios that are all large, and large
+    loss factors if units are given; no damping at all; mistuning factors that are all small; coefficients of
+    friction above two; negative gaps; angles in rad of more than a turn; a sweep of one frequency for all
+    modes.
     """
     real = isinstance(top.data.get("units"), Mapping)
     found = [_of_ratio(*one, real) for one in _ratios(top, parts, swept)]
@@ -44,10 +44,7 @@ def _once(
     numbers: Iterable[tuple[str, Iterable[float]]],
     extreme: Callable[[Iterable[float]], float],
 ) -> list[str]:
-    """One question of a kind about keys of the scene, of the most extreme number, that names the others.
-
-    Of a sweep each has its own.
-    """
+    """One question on the most extreme number of a kind, naming the other keys; and one per swept key."""
     asked = [(key, list(values)) for key, values in numbers]
     asked = [(key, values) for key, values in asked if question(key, values)]
     own = [question(key, values) for key, values in asked if key.startswith(SWEEP)]
@@ -68,7 +65,7 @@ def _furthest(values: Iterable[float]) -> float:
 def _ratios(
     top: Section, parts: Parts, swept: Sequence[SweptKey]
 ) -> Iterator[tuple[str, Iterable[float], str]]:
-    """Key, values, and what the values are parts of."""
+    """Yields key and values of damping, and the reference that the values are ratios of."""
     structure = top.data.get("structure")
     if isinstance(structure, Mapping):
         damping = structure.get("damping")
@@ -98,7 +95,7 @@ def _angles(top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iter
 
 
 def _of_contacts(key: str, top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iterable[float]]]:
-    """The numbers of a key of each contact."""
+    """Yields path and values of a key of each contact, and of sweeps of that key."""
     contacts = top.data.get("contact")
     for index, one in enumerate(contacts if isinstance(contacts, list | tuple) else ()):
         yield f"contact[{index}].{key}", _numbers(one.get(key) if isinstance(one, Mapping) else None)
@@ -112,13 +109,13 @@ def _of_sweep(one: SweptKey) -> str:
 
 
 def _factors(parts: Parts) -> Iterator[list[float]]:
-    """The factors of the blades of a mistuned ring."""
+    """Yields the factors of the blades of a mistuned ring."""
     for ring in parts.get("whole", ()):
         yield ring["factors"].ravel().tolist()
 
 
 def _numbers(value: Any) -> list[float]:
-    """A number, or those of a list."""
+    """The finite numbers in a value or a list."""
     several = value if isinstance(value, list | tuple | np.ndarray) else [value]
     return [number for one in several if (number := as_float(one)) is not None and np.isfinite(number)]
 

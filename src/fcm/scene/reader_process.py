@@ -1,7 +1,7 @@
-"""Files that the readers of other packages read (.mat, .h5, .op4), by a process of its own.
+"""Reads files by readers of other packages (.mat, .h5, .op4) in a separate process.
 
-Those readers can crash the interpreter on a damaged file, and take the memory that a file says it needs. So
-they run in a child with a limit on its memory: whatever becomes of it, here there are arrays or an error.
+Those readers can crash the interpreter on a damaged file, and allocate any amount of memory that a file
+states. So they run in a child process with a memory limit, whose failure becomes an error.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from fcm.scene.mat_tags import check_tags, of_struct
 from fcm.scene.npz_file import Arrays
 from fcm.scene.options import FILES
 
-REFUSED = 3  # exit code of the child when it says why
-NAMES = ".names"  # under which the names of all variables of a .mat file are given
+REFUSED = 3  # exit code of the child when it gives the reason on standard error
+NAMES = ".names"  # key of the names of all variables in a file
 
-OP4_BESIDE = 6  # characters of a number beside its decimals, as in "1.E+00"
+OP4_BESIDE = 6  # characters of a number besides its decimals, as in "1.E+00"
 _OP4_FORMAT = re.compile(rb"^.{32,40}1P,?\d{1,3}E(\d{1,4})(?:\.(\d{1,4}))?", re.MULTILINE)  # of a text file
 
 _CODE = "import sys; from fcm.scene.reader_process import child; child(sys.argv[1:])"
 
 
 def read_apart(path: Path, wanted: Collection[str], files: Files) -> Arrays:
-    """The arrays of those names that a file has, all its arrays of numbers when none is named.
+    """The wanted arrays that a file has; all its arrays of numbers if none are named.
 
-    Names in cells or rows of characters become strings; a sparse matrix K becomes the arrays K.row, K.col,
+    Names in cells or rows of characters become strings. A sparse matrix K becomes the arrays K.row, K.col,
     K.data and K.shape.
     """
     places = [str(Path(fcm.__file__).parents[1]), *filter(None, sys.path)]
@@ -56,7 +56,7 @@ def read_apart(path: Path, wanted: Collection[str], files: Files) -> Arrays:
 
 
 def child(arguments: list[str]) -> None:
-    """Read a file and write its arrays to standard output, in a process that may die of it."""
+    """Reads a file and writes its arrays to standard output, in a process that may crash."""
     path, largest, *wanted = arguments
     try:
         _limit_memory(FILES.copies * int(largest) + FILES.memory)
@@ -88,7 +88,7 @@ def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
             check_tags(content, wanted, largest)
         found = loadmat(path, variable_names=list(wanted))
         all_of_it = whosmat(path)
-    except NotImplementedError:  # of MATLAB's version 7.3
+    except NotImplementedError:  # a file of MATLAB 7.3
         return _hdf5(path, wanted, largest)
     arrays = {name: found[name] for name in wanted if name in found}
     structs = [name for name, _, kind in all_of_it if kind == "struct"]
@@ -102,10 +102,10 @@ def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     try:
         from pyyeti.nastran import op4
     except ModuleNotFoundError as error:
-        if error.name and error.name.partition(".")[0] != "pyyeti":  # of what pyyeti itself needs
+        if error.name and error.name.partition(".")[0] != "pyyeti":  # a dependency of pyyeti is missing
             raise _unusable(path, error) from None
         raise DataFileError("it needs the package pyyeti: pip install pyyeti, or write it as .mtx") from None
-    except Exception as error:  # of an old release, for one, with a numpy that has not what it uses
+    except Exception as error:  # for example an old pyyeti with a numpy that is too new
         raise _unusable(path, error) from None
     for match in _OP4_FORMAT.finditer(path.read_bytes()):
         if not match[2] or int(match[1]) < int(match[2]) + OP4_BESIDE:
@@ -135,7 +135,7 @@ _READERS = {".mat": _mat, ".op4": _op4, ".h5": _hdf5, ".hdf5": _hdf5}
 
 
 def _parts(value: Any) -> list[tuple[str, Any]]:
-    """A variable as plain arrays: a sparse matrix as the parts of one by coordinates."""
+    """A variable as plain arrays, each with a suffix of its name; a sparse matrix becomes its COO parts."""
     if hasattr(value, "tocoo"):
         if hasattr(value, "check_format"):
             value.check_format(full_check=True)
@@ -156,7 +156,7 @@ def _refuse(why: str) -> None:
 
 
 def _limit_memory(more: int) -> None:
-    """Let this process take so many bytes more than it has; where the system has no such limit, any."""
+    """Limits this process to a number of bytes more than it has, if the system supports such limits."""
     try:
         import resource
     except ImportError:

@@ -1,9 +1,9 @@
-"""Readers of one's own for files of matrices and modes: entry points of the group ``fcm.readers``.
+"""The user's own readers for files of matrices and modes: entry points of the group ``fcm.readers``.
 
-The name of an entry point is the ending of the files, without the dot; what it stands for is a function that
-takes the path of one and returns what is in it, by names. A matrix is an array, a scipy sparse array, or one
-of these with the names of its rows; the arrays of modes have the names of [modal]: dofs, frequency, shapes.
-Of a file that it cannot read it raises ValueError, saying what is wrong there.
+The name of an entry point is the ending of the files, without the dot. It refers to a function that takes the
+path of a file and returns a dict of its contents by name. A matrix is an array, a scipy sparse array, or a
+pair of one of these and the names of its rows. The arrays of modes have the names of [modal]: dofs,
+frequency, shapes. The function raises ValueError with the fault for a file that it cannot read.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def own_reader(ending: str) -> EntryPoint | None:
 
 
 def own_endings() -> tuple[str, ...]:
-    """The endings for which there is one, in order."""
+    """The endings with an installed reader, sorted."""
     return tuple(f".{name}" for name in sorted(installed_readers()))
 
 
@@ -35,12 +35,12 @@ def installed_readers() -> dict[str, EntryPoint]:
 
 
 def read_own(path: Path) -> dict[str, Any]:
-    """What the installed reader for its ending finds in a file.
+    """The contents of a file by the installed reader for its ending.
 
     Raises
     ------
     UnreadableError
-        If the reader cannot be loaded, or cannot read the file, or returns something else.
+        If the reader cannot be loaded, or cannot read the file, or does not return a dict by names.
     """
     entry = own_reader(path.suffix)
     assert entry is not None
@@ -53,7 +53,7 @@ def read_own(path: Path) -> dict[str, Any]:
         found = read(path)
     except ValueError as error:
         raise UnreadableError(str(error)) from None
-    except Exception as error:  # whatever another's program does
+    except Exception as error:  # a user's program can raise anything
         raise UnreadableError(f"{said} failed: {type(error).__name__}: {error}") from None
     if not isinstance(found, dict) or not all(isinstance(name, str) for name in found):
         raise UnreadableError(f"{said} returned {kind(found)}; a dict of arrays by their names is needed")

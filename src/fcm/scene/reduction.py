@@ -1,4 +1,4 @@
-"""Turns the matrices of a [structure] table into a modal table, against which the rest of a scene is read."""
+"""Computes the modal table of a scene from the matrices of its [structure] table."""
 
 from __future__ import annotations
 
@@ -26,11 +26,10 @@ def modal_of_matrices(
     outputs: list[int],
     ends: tuple[float, float],
 ) -> tuple[dict[str, Any] | None, FloatArray, list[str]]:
-    """Modal table (frequencies in rad/s), shapes at all rows (row, mode), and what is to be said.
+    """Modal table (frequencies in rad/s), shapes at all rows (row, mode), and notes; None after a mistake.
 
-    loads (row, load) are the directions of contacts and forces, springs (load,) the stiffness of contacts
-    along theirs, outputs the rows that are only reported; `ends` are the lowest and highest angular frequency
-    of the forces.
+    loads (row, load): directions of contacts and forces. springs (load,): contact stiffness along each.
+    outputs: rows that are only reported. ends: lowest and highest angular frequency of the forces.
     """
     if _same(matrices):
         top.wrong("structure", "stiffness and mass are the same matrix. Name the file of each")
@@ -73,9 +72,9 @@ def modal_of_matrices(
 
 
 def _same(matrices: StructureMatrices) -> bool:
-    """Whether stiffness and mass are one matrix, with entries beside its diagonal.
+    """Whether stiffness and mass are equal and not diagonal.
 
-    Then every mode has 1 rad/s, and no structure but single masses on springs has that.
+    All modes would then have 1 rad/s, which is only plausible for single masses on springs.
     """
     K, M = matrices.K, matrices.M
     beside_diagonal = K.nnz > np.count_nonzero(K.diagonal())
@@ -85,8 +84,8 @@ def _same(matrices: StructureMatrices) -> bool:
 def _exchanged_mesh(matrices: StructureMatrices, ends: tuple[float, float]) -> float:
     """Detects exchanged matrices of a mesh, as `exchanged`, before its modes are computed.
 
-    By Rayleigh's quotient the highest mode is not below that of any row alone. So of matrices that are in
-    their places the diagonals tell enough.
+    By Rayleigh's quotient the highest mode is not below sqrt(K_ii / M_ii) of any row. So the diagonals
+    suffice to recognise matrices that are not exchanged.
     """
     own, low = matrices.M.diagonal(), ends[0] / MESSAGES.range_near
     if len(own) < LIMITS.mesh_rows or not (own > 0.0).all():
@@ -97,10 +96,11 @@ def _exchanged_mesh(matrices: StructureMatrices, ends: tuple[float, float]) -> f
 
 
 def exchanged(matrices: StructureMatrices, kept: FloatArray, ends: tuple[float, float]) -> float:
-    """A frequency [rad/s] that a mode near the range has with stiffness and mass in each other's place.
+    """Detects exchanged stiffness and mass; returns a frequency [rad/s] of a mode with them swapped, else 0.
 
-    Only where the structure as it is given has no mode near the range or above it: the highest is the
-    reciprocal of the lowest elastic one of the exchanged. Else 0. kept (mode,) [rad/s] are those it has.
+    They count as exchanged if the structure as given has no mode near the range or above it, but with the
+    matrices swapped has one near the range. The highest mode as given is the reciprocal of the lowest elastic
+    mode after the swap. kept (mode,) [rad/s]: the computed modes of the structure as given.
     """
     if not (np.isfinite(ends).all() and ends[0] > 0.0):
         return 0.0
@@ -118,7 +118,7 @@ def exchanged(matrices: StructureMatrices, kept: FloatArray, ends: tuple[float, 
 
 
 def in_each_others_place(mode: float) -> str:
-    """Sentence on exchanged matrices, with a mode [rad/s] that they have in the right places."""
+    """Sentence on exchanged matrices, with a mode [rad/s] that they have after the swap."""
     return (
         "all its modes are far below the range of frequencies. Stiffness and mass are in each other's place: "
         f"exchanged, they have a mode at {mode / (2.0 * np.pi):.6g} Hz, which is {mode:.6g} rad/s"
@@ -126,13 +126,13 @@ def in_each_others_place(mode: float) -> str:
 
 
 def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]:
-    """Directions whose flexibility is kept, and outputs that are too many for that."""
+    """Directions whose flexibility is kept, and the outputs without: all of them if they are too many."""
     few = len(outputs) if len(outputs) <= LIMITS.outputs else 0
     return np.concatenate((loads, unit_columns(len(loads), outputs[:few])), axis=1), outputs[few:]
 
 
 def at_many(matrices: StructureMatrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
-    """Note on outputs whose own flexibility is not kept, where some is."""
+    """Note on many outputs, whose own flexibility is not kept, with the error of their receptances."""
     if not (count > LIMITS.outputs and any(aside)):
         return []
     most = lost + aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
@@ -144,7 +144,7 @@ def at_many(matrices: StructureMatrices, count: int, aside: tuple[float, float],
 
 
 def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
-    """Notes on frequencies that rounding moves: at resonance the response changes by more."""
+    """Notes on frequencies that rounding changes noticeably, and on unclear rigid-body modes."""
     off, digits = max(one.rounding for one in parts), next((one.digits for one in parts if one.digits), None)
     said = []
     if unclear := max(one.unclear for one in parts):
@@ -153,7 +153,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
             "of the first elastic frequency cannot be distinguished from rigid-body modes, and are taken for "
             "such. Write it with more digits"
         )
-    width = float(ratios.min(initial=1.0, where=ratios > 0.0))  # what nothing damps has no peak to move
+    width = float(ratios.min(initial=1.0, where=ratios > 0.0))  # undamped modes have no finite peak
     if off > max(MESSAGES.damping_left_out * width, TOLERANCES.undamped):
         why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"
         said.append(
@@ -164,7 +164,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
 
 
 def _kept(matrices: StructureMatrices, found: Reduced, damping: Damping) -> str:
-    """Note on what is kept of the structure, and on its error."""
+    """Note on the modes and flexibility kept of the structure, and on the error."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
     verb = "is" if found.kept == 1 else "are"
     text = (
@@ -185,10 +185,10 @@ def _kept(matrices: StructureMatrices, found: Reduced, damping: Damping) -> str:
 
 
 def how_far_off(matrices: StructureMatrices, bound: float, damping: float, lost: float) -> str:
-    """Clause on the error of receptances and, with one damping ratio for all modes, of resonance heights.
+    """Sentence on the error of receptances and, with a common damping ratio, of resonance damping.
 
-    lost is the part that the damping of rigid-body modes has in it (`modal_damping.Damping`), which is told
-    as what it is.
+    lost: the part of the error from omitting the damping of rigid-body modes (`modal_damping.Damping`). If it
+    is not 0, the sentence names it as the cause.
     """
     ratio = matrices.ratio or matrices.hysteretic / 2.0
     most = _upwards(max(bound + 2.0 * ratio * damping + lost, 1e-15))
@@ -202,7 +202,7 @@ def how_far_off(matrices: StructureMatrices, bound: float, damping: float, lost:
 
 
 def _upwards(bound: float) -> str:
-    """A bound in two digits, none of which is less than it.
+    """A bound with two digits, rounded up.
 
     >>> _upwards(1.31e-5), _upwards(1.3e-5), _upwards(9.96e-5)
     ('1.4e-05', '1.3e-05', '1.0e-04')

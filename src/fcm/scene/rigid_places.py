@@ -1,4 +1,4 @@
-"""Whether nodes of pairs are where their file says: rigid-body modes move them as what they are, one body."""
+"""Checks coordinates of paired nodes by rigid-body modes, which must move them as one rigid body."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from fcm.scene.options import TOLERANCES
 
 AXES = ("x", "y", "z")
 SIDES = ("first nodes", "other nodes")
-MOTIONS = 6  # of a rigid body
+MOTIONS = 6  # number of independent motions of a rigid body
 
 
 def notes_of_places(modal: Mapping[str, Any], interfaces: Iterable[Interface]) -> list[str]:
-    """A question for each side of pairs that no rigid body has at the places of the file.
+    """A question for each side of pairs that rigid-body modes do not move as a rigid body at its places.
 
-    A side of several bodies, or with nodes that are held, is not looked at.
+    A side that belongs to several bodies, or has held nodes, is not checked.
     """
     rigid: FloatArray = np.asarray(modal["shapes"])[np.asarray(modal["frequency"]) == 0.0]
     if not rigid.size or np.iscomplexobj(rigid):
@@ -45,10 +45,10 @@ def _of(interface: Interface, rigid: FloatArray, dofs: Names) -> Iterator[str]:
 
 
 def _off(there: list[tuple[str, FloatArray]], rigid: FloatArray, dofs: Names) -> tuple[str, float] | None:
-    """The node whose motion in rigid-body modes is furthest from t + theta x r, and how far; None if near."""
+    """The node whose motion in rigid-body modes fits t + theta x r worst, and its error; None if all fit."""
     rows, columns, owners = list[FloatArray](), list[int](), list[str]()
     for node, (x, y, z) in there:
-        turns = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])  # theta x r by theta
+        turns = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])  # derivative of theta x r by theta
         for i, axis in enumerate(AXES):
             if name := dofs.find(f"{node}{axis}") or dofs.find(f"{node}_{axis}"):
                 rows.append(np.concatenate((np.eye(3)[i], turns[i])))
@@ -61,7 +61,7 @@ def _off(there: list[tuple[str, FloatArray]], rigid: FloatArray, dofs: Names) ->
     least = min(np.abs(moved[[one == node for one in owners]]).max() for node in dict.fromkeys(owners))
     motions = np.linalg.matrix_rank(moved, tol=TOLERANCES.asymmetry * np.linalg.norm(moved))
     if not least > TOLERANCES.asymmetry * size or motions > min(MOTIONS, len(rows) - 1):
-        return None  # some are held, or they are of several bodies
+        return None  # some nodes are held, or there are several bodies
     off = np.abs(moved - body @ np.linalg.lstsq(body, moved, rcond=None)[0]).max(axis=1) / size
     worst = int(off.argmax())
     return (owners[worst], float(off[worst])) if off[worst] > TOLERANCES.placed else None

@@ -1,4 +1,4 @@
-"""The modes of a ring's sector as [modal] gives them: complex, or cosines and sines of the whole ring."""
+"""Reads the modes of a ring's sector from [modal]: complex, or cosines and sines of the whole ring."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcm.scene.section import Part, Section
 
 
 def complex_row(section: Section, value: Any, path: str, rule: Rule) -> ComplexArray | None:
-    """Numbers, or pairs [real part, imaginary part], as an array; None after a mistake."""
+    """Reads numbers, or pairs [real part, imaginary part], as a complex array; None after a mistake."""
     if isinstance(value, np.ndarray) and value.dtype.kind == "c":
         value = [[one.real, one.imag] for one in value.tolist()]
     if not isinstance(value, list | tuple | np.ndarray):
@@ -54,11 +54,11 @@ def read_diameters(section: Section, modes: int | None, sectors: float) -> Any:
 
 
 def travelling(section: Section, draft: Part, sectors: float) -> Part:
-    """The modes of a draft with shapes of travelling waves; with pairs, those of the ring made so.
+    """The draft with travelling-wave shapes; with `pairs`, these are made from modes of the whole ring.
 
-    Of the whole ring's modes the pair c, s of one frequency makes the shape c + i s, of which sector k has
-    Re, Im (c + i s) exp(2 pi i n k / sectors): the sine follows a quarter of a turn behind the cosine. Its
-    modal mass for each sector is 2 / sectors times theirs, that of a single mode 1 / sectors times its own.
+    Two modes c, s of the whole ring with one frequency make the shape c + i s. In sector k they are the real
+    and imaginary parts of (c + i s) exp(2 pi i n k / sectors): the sine lags the cosine by a quarter turn.
+    The modal mass per sector is 2 / sectors times theirs; that of a single mode is 1 / sectors times its own.
     """
     pairs = section.data.get("pairs", False)
     if not isinstance(pairs, bool):
@@ -90,9 +90,9 @@ def travelling(section: Section, draft: Part, sectors: float) -> Part:
 def _firsts(
     section: Section, diameter: Any, frequency: FloatArray, sectors: int
 ) -> list[tuple[int, bool]] | None:
-    """Index of the first mode of each pair, and whether it is a pair.
+    """Index of each single mode or first mode of a pair, and whether it is a pair; None after a mistake.
 
-    Modes of diameter 0 and half of the sectors are single.
+    Modes of diameter 0 and sectors / 2 are single.
     """
     found, i = [], 0
     while i < diameter.size:
@@ -111,7 +111,7 @@ def _firsts(
 
 
 def _check_no_pairs(section: Section, draft: Part, sectors: int) -> None:
-    """Note where modes may be meant as cosines and sines."""
+    """Notes modes that may be meant as cosine and sine, if `pairs` is missing."""
     if draft["shapes"].imag.any():
         return
     diameter, frequency = draft["diameter"], draft["frequency"]
@@ -128,7 +128,7 @@ def _check_no_pairs(section: Section, draft: Part, sectors: int) -> None:
 
 
 def _check_real(section: Section, draft: Part, sectors: int) -> None:
-    """Turn the shapes of diameter 0 and of half of the sectors real, which they are but for a factor."""
+    """Makes the shapes of diameters 0 and sectors / 2 real; they must be so apart from a complex factor."""
     shapes = draft["shapes"] = draft["shapes"].copy()
     for i, diameter in enumerate(draft["diameter"].tolist()):
         if diameter and 2 * diameter != sectors:

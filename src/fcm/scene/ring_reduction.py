@@ -1,4 +1,4 @@
-"""Turns the matrices of a ring's sector into the modes of every nodal diameter."""
+"""Computes the modes of every nodal diameter from the matrices of a ring's sector."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ class DiameterModes(Frozen):
 
 
 class LoadedRing(Frozen):
-    """The matrices of a ring's sector, and what acts on it."""
+    """The matrices of a ring's sector, and the directions of what acts on it."""
 
     matrices: StructureMatrices
     sectors: int
     pushed: FloatArray  # (rows of two sectors, load) directions of contacts and forces
-    springs: FloatArray  # (load,) stiffness of contacts along theirs
+    springs: FloatArray  # (load,) contact stiffness along each direction, 0 for forces
     distributed: FloatArray  # (row, load) loads on the sector alone
 
 
 def modal_of_ring(
     top: Section, ring: LoadedRing, outputs: list[int], ends: tuple[float, float]
 ) -> tuple[dict[str, Any] | None, list[str]]:
-    """Modal table (frequencies in rad/s, shapes at all rows), and what is to be said.
+    """Modal table (frequencies in rad/s, shapes at all rows), and notes; None after a mistake.
 
-    outputs are the rows that are only reported; `ends` is the range of frequencies.
+    outputs: rows that are only reported. ends: lowest and highest angular frequency of the forces.
     """
     matrices, sectors, pushed, distributed = ring.matrices, ring.sectors, ring.pushed, ring.distributed
     rows = len(pushed) // 2
@@ -74,18 +74,18 @@ def modal_of_ring(
 
 
 def all_alike(matrices: StructureMatrices) -> StructureMatrices:
-    """The matrices of a sector whose neighbours move as it does."""
+    """The matrices of a sector at nodal diameter 0, where all sectors move alike."""
     return _at_diameter(matrices, 1.0)
 
 
 def _error_at_other_rows(diameters: list[DiameterModes]) -> tuple[float, float]:
-    """The greatest of all diameters."""
+    """The greatest errors at other rows of all diameters."""
     own, damped = zip(*(one.found.other_rows for one in diameters), strict=True)
     return max(own), max(damped)
 
 
 def _at_diameter(matrices: StructureMatrices, turn: complex) -> StructureMatrices:
-    """The matrices of a sector whose next one moves as itself, times a factor of magnitude 1."""
+    """The matrices of a sector if the next sector moves as it does times turn, a factor of magnitude 1."""
     if matrices.coupling is None:
         return matrices
     K, M = (block * turn + (block * turn).conj().T for block in (matrices.coupling.K, matrices.coupling.M))
@@ -93,7 +93,7 @@ def _at_diameter(matrices: StructureMatrices, turn: complex) -> StructureMatrice
 
 
 def _plain(matrices: StructureMatrices, loads: ComplexArray, standing: bool) -> tuple[StructureMatrices, Any]:
-    """Real arrays where they are real: of standing waves, and of couplings that turn nothing."""
+    """The arrays as real ones for standing waves, and if nothing is complex; otherwise as complex ones."""
     imaginary = any(np.any(matrix.imag.data) for matrix in (matrices.K, matrices.M)) or loads.imag.any()
     if standing or not imaginary:
         return replace(matrices, K=matrices.K.real, M=matrices.M.real), np.ascontiguousarray(loads.real)
@@ -118,7 +118,7 @@ def _modes(
 def _notes(
     matrices: StructureMatrices, diameters: list[DiameterModes], ends: tuple[float, float]
 ) -> list[str]:
-    """Notes on what is kept of the structure, on its error, and on what is amiss."""
+    """Notes on the modes kept of the structure, on their error, and on problems."""
     all_found = [one.found for one in diameters]
     kept = sorted({one.kept for one in all_found})
     count = counted(kept[0], "mode") if len(kept) == 1 else f"{kept[0]} to {kept[-1]} modes"

@@ -1,4 +1,4 @@
-"""The names of the rows of matrices: in the scene, or in a file with one on each line."""
+"""Reads the names of the rows of matrices, from the scene or from a file with one on each line."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from fcm.scene.formats.labelled import Labelled
 from fcm.scene.names import Names, RowNames, checked_names
 from fcm.scene.section import Section
 
-_DIRECTION = re.compile(r"r?[xyz]|[1-6]", re.IGNORECASE)  # of a node
+_DIRECTION = re.compile(r"r?[xyz]|[1-6]", re.IGNORECASE)  # direction of a node
 
 
 def row_names(section: Section, files: Files, labels: Sequence[str]) -> Names | None:
-    """The names of the rows: a list, a file with one on each line, or else those of the matrices' files."""
+    """The row names, from a list, a file, or else the matrices' files (labels); None after a mistake."""
     value = section.data.get("dofs", section.data.get("file"))
     if "dofs" in section.data and "file" in section.data:
         section.wrong("", "has both dofs and file; give the names of the rows once")
@@ -59,14 +59,14 @@ def row_names(section: Section, files: Files, labels: Sequence[str]) -> Names | 
 
 
 def labels_of(matrices: Iterable[Labelled | None]) -> tuple[str, ...]:
-    """The rows that the files of some matrices name, those of the first one first."""
+    """The row names in the files of some matrices, each once, those of the first matrix first."""
     return tuple(dict.fromkeys(name for one in matrices if one is not None for name in one.rows))
 
 
 def in_order(section: Section, key: str, given: Labelled | None, dofs: Names | None) -> Any:
-    """A matrix with its rows in the order of the structure's; where its file names none it is in that order.
+    """A matrix with its rows reordered to those of the structure; unchanged if its file names no rows.
 
-    A row that the file does not have is zero, as programs leave out what has no mass. None after a mistake.
+    Rows that the file lacks are zero, since programs omit rows without mass. None after a mistake.
     """
     if given is None or not given.rows or dofs is None:
         return None if given is None else given.matrix
@@ -83,7 +83,7 @@ def in_order(section: Section, key: str, given: Labelled | None, dofs: Names | N
 
 
 def names_of_file(path: Path) -> list[str]:
-    """The names of rows in a text file, of CalculiX (.dof) or Ansys (.mapping) too."""
+    """The names of rows in a text file, also one of CalculiX (.dof) or Ansys (.mapping)."""
     text = _text(path)
     lines = text.splitlines()
     if path.suffix.lower() == ".dof":
@@ -99,9 +99,9 @@ def _text(path: Path) -> str:
 
 
 def names_of(text: str) -> list[str]:
-    """Names, one on each line; a node and a direction beside each other are one name.
+    """Names, one on each line; a node and a direction on one line form a name.
 
-    ValueError where a line holds something else.
+    Any other line raises UnreadableError.
 
     >>> names_of("40x  # tip\\n40 y\\n\\n41:3\\n41 1")
     ['40x', '40y', '41:3', '41:1']

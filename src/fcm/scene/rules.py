@@ -1,4 +1,4 @@
-"""Rules for the numbers of a scene, the same for the file and for a sweep."""
+"""Rules for the numbers of a scene, for files and sweeps alike."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ IndexArray = npt.NDArray[np.intp]
 
 
 class Rule(Frozen):
-    """The interval that a number must lie in, and how a message says so.
+    """The interval in which a number must lie, and its wording in messages.
 
     >>> POSITIVE.fault(0.0)
     'must be greater than 0, is 0'
@@ -32,12 +32,10 @@ class Rule(Frozen):
     high: float = inf
     zero: bool = True  # whether zero itself is allowed
     whole: bool = False  # whether it must be a whole number
-    scales: bool = (
-        False  # whether displacements are measured by it, so that they can be too small to be numbers
-    )
+    scales: bool = False  # whether displacements are proportional to it, so that tiny values underflow
 
     def fault(self, value: float) -> str:
-        """Fault of a value as text; empty if there is none."""
+        """What is wrong with a value; empty if nothing is."""
         if not isfinite(value):
             return f"must be finite, is {shown(value)}"
         right = self.low <= value <= self.high and (value or self.zero)
@@ -50,7 +48,7 @@ class Rule(Frozen):
         return ""
 
     def faulty(self, values: FloatArray) -> IndexArray:
-        """Indices of the values that this rule does not allow, (fault, axis)."""
+        """Indices (fault, axis) of the values that this rule does not allow."""
         right = (
             np.isfinite(values)
             & (values >= self.low)
@@ -74,7 +72,7 @@ FRACTION = Rule("greater than 0 and at most 1", low=0.0, high=1.0, zero=False)
 
 
 def step_fault(step: float) -> str:
-    """Fault of the longest step along a curve as text; empty if there is none."""
+    """What is wrong with a longest step along a curve; empty if nothing is."""
     if (fault := FRACTION.fault(step)) or step >= LIMITS.shortest_step:
         return fault
     return (
@@ -84,7 +82,7 @@ def step_fault(step: float) -> str:
 
 
 def harmonics_fault(harmonics: Sequence[int]) -> str:
-    """Fault of the harmonics of a balance as text; empty if there is none."""
+    """What the harmonics of a balance must be, if they are wrong; else empty."""
     whole = all(
         isinstance(h, int) and not isinstance(h, bool) and 1 <= h <= LIMITS.harmonics for h in harmonics
     )
@@ -95,7 +93,7 @@ def harmonics_fault(harmonics: Sequence[int]) -> str:
 
 
 def harmonics_up_to(count: int) -> tuple[int, ...]:
-    """Harmonics up to a number; of one that is too great as many as show that it is.
+    """Harmonics up to a number; for a number above the limit, one harmonic more than the limit.
 
     >>> harmonics_up_to(3), len(harmonics_up_to(10**30))
     ((1, 2, 3), 51)
@@ -104,7 +102,7 @@ def harmonics_up_to(count: int) -> tuple[int, ...]:
 
 
 def least_points(scene: Scene) -> int:
-    """Points that the curves of a scene have at the least, for the longest step that is allowed."""
+    """The least number of points of the curves of a scene, from their longest steps."""
     return sum(ceil(1.0 / curve.max_step) for curve in scene.each_curve())
 
 

@@ -1,6 +1,6 @@
-"""The time simulation of a scene: the phases of its schedule and the state that they start from.
+"""Reads the time simulation of a scene: the phases of its schedule and its initial state.
 
-The friction of that state is of contacts that never slip on curves, too.
+On curves, the friction of that state also applies to contacts that never slip.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
 
 
 def with_schedule(ends: tuple[float, float], schedule: tuple[Phase, ...]) -> tuple[float, float]:
-    """Lowest and highest frequency of the forces, from the range that is traced and the phases.
+    """Lowest and highest frequency of the forces, from the traced range and the phases.
 
     >>> with_schedule((np.nan, np.nan), (Phase(3.0, 10.0), Phase(2.0, 10.0)))
     (2.0, 3.0)
@@ -45,7 +45,7 @@ def with_schedule(ends: tuple[float, float], schedule: tuple[Phase, ...]) -> tup
 
 
 def _whole(cycles: float) -> float:
-    """The cycles, without a rounding error beside a whole number of them.
+    """The number of cycles, rounded to a whole number if it differs from one by rounding only.
 
     >>> _whole(0.1 * 30), _whole(2.5)
     (3.0, 2.5)
@@ -55,9 +55,9 @@ def _whole(cycles: float) -> float:
 
 
 def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
-    """The state that the schedule starts from; None, which is rest, without a [start] table.
+    """The initial state of the schedule; None, which means rest, without a [start] table.
 
-    Its friction also says which motion is meant where a contact never slips, of which there are many.
+    If a contact never slips, many motions are possible; the friction of the state then selects one.
     """
     section = top.table("start", "") if "start" in top.data else None
     if section is None:
@@ -75,7 +75,7 @@ def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
 
 
 def _friction(section: Section, contacts: Sequence[Mapping[str, Any]]) -> FloatArray:
-    """Friction forces (contact, 2): a number for each contact on a line, a pair for each in a plane."""
+    """Friction forces (contact, 2), from a number for each contact on a line, a pair for each planar one."""
     found = np.zeros((len(contacts), 2))
     found.flags.writeable = False
     if "friction" not in section.data:
@@ -98,7 +98,7 @@ def _friction(section: Section, contacts: Sequence[Mapping[str, Any]]) -> FloatA
 
 
 def _of_contact(section: Section, i: int, given: object, contact: Mapping[str, Any]) -> tuple[float, float]:
-    """The friction force of a contact, along its one direction or both; 0 after a mistake."""
+    """The friction force of a contact along its one or two directions; 0 after a mistake."""
     path, several, name = f"friction[{i}]", isinstance(given, list | tuple), quoted(contact["name"])
     if "second" not in contact:
         if not several:
@@ -120,7 +120,7 @@ def _without_schedule(section: Section) -> None:
 
 
 def _vector(section: Section, key: str, count: int | None, each: str) -> FloatArray:
-    """Reads one number for each mode or contact, zeros by default."""
+    """Reads a list with one number for each mode, zeros by default."""
     zeros = np.zeros(count or 0)
     given = section.vector(key, ANY) if key in section.data else zeros
     if given is not None and count is not None and len(given) != count:
@@ -136,7 +136,7 @@ def note_of_start(scene: Scene) -> list[str]:
 
 
 def _beyond(scene: Scene) -> dict[int, list[tuple[Scene, float]]]:
-    """The contacts with their limits in those curves."""
+    """By place of such a contact, the curves in which its friction exceeds its limit, with these limits."""
     found = dict[int, list[tuple[Scene, float]]]()
     for curve in scene.each_curve():
         start = curve.start
@@ -150,7 +150,7 @@ def _beyond(scene: Scene) -> dict[int, list[tuple[Scene, float]]]:
 
 
 def _limit(scene: Scene, contact: Contact, start: Start) -> float:
-    """The greatest friction force of a contact where the scene starts."""
+    """The greatest friction force of a contact in the initial state."""
     if contact.k_u == 0.0:
         return 0.0
     displacement = scene.modal.shapes.T @ start.displacement

@@ -1,4 +1,4 @@
-"""Reading one table of a scene: its keys, their types, and the path of each mistake."""
+"""Reads one table of a scene: checks its keys and their types, and notes mistakes with their paths."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from fcm.scene.rules import ANY, Rule, as_float
 if TYPE_CHECKING:
     from fcm.scene.names import Names
 
-Part = dict[str, Any]  # what a table of the file says, as far as it is read, in the words of the file
-Parts = dict[str, Any]  # those of a scene by their names: modal, contact, force, ...
+Part = dict[str, Any]  # draft of a table: its values as read, with the keys of the file
+Parts = dict[str, Any]  # drafts of a scene by table: modal, contact, force, ...
 
 
-SYNONYMS = {  # as others name what has another key here
+SYNONYMS = {  # common other names of keys
     "k_t": "k_u", "kt": "k_u", "k_tau": "k_u", "k_n": "k_v", "kn": "k_v", "friction": "mu", "preload": "n_0",
     "clearance": "gap", "n0": "n_0", "k": "stiffness", "m": "mass", "modal_mass": "mass",
     "modal_masses": "mass", "generalized_mass": "mass",
@@ -29,7 +29,7 @@ SYNONYMS = {  # as others name what has another key here
 
 
 class Section:
-    """A table with its path. Readers note a mistake and return a stand-in, so that reading goes on."""
+    """A table with its path; its readers note a mistake and return a placeholder, so that reading goes on."""
 
     def __init__(self, data: Mapping[str, Any], path: str, mistakes: Mistakes) -> None:
         self.data = data
@@ -45,7 +45,7 @@ class Section:
         self.mistakes.add(self.at(key) if key else self.path, what, word, among)
 
     def only(self, *known: str) -> None:
-        """Note every key that is not known, with the one that is meant, or, of few, all that there are."""
+        """Notes every unknown key, with the likely one, or with all known keys if they are few."""
         for key in self.data:
             if key in known:
                 continue
@@ -55,7 +55,7 @@ class Section:
             self.wrong(bare(key), f"unknown key{there}", word, known)
 
     def missing(self, key: str, right: str) -> bool:
-        """Whether the key is missing, which is a mistake."""
+        """Whether the key is missing, which is noted as a mistake."""
         if key in self.data:
             return False
         self.wrong(key, f"missing; give {right}")
@@ -201,7 +201,7 @@ class Section:
 
 
 def _combination(dofs: Names | None) -> str:
-    """An example of weights, with the names that the scene has.
+    """An example of weights, with names of the scene.
 
     >>> from fcm.scene.names import Names
     >>> _combination(Names(("u", "2x"))), _combination(None)
@@ -212,7 +212,7 @@ def _combination(dofs: Names | None) -> str:
 
 
 def written_as(value: object) -> str:
-    """Hint on what to write in place of a string that is a number, or nearly one.
+    """Hint on what to write in place of a string that is nearly a number; else ''.
 
     >>> written_as("0.4"), written_as("0,4"), written_as("x")
     ('; write 0.4', '; it has a decimal comma: write 0.4', '')
@@ -226,7 +226,7 @@ def written_as(value: object) -> str:
 
 
 def _floats(values: Sequence[object]) -> list[float]:
-    """The values as numbers, nan for what is not one."""
+    """The values as numbers, nan for values that are not numbers."""
     numbers = (as_float(value) for value in values)
     return [nan if number is None else number for number in numbers]
 

@@ -1,4 +1,4 @@
-"""Notes on the normals of contacts: shared normals, and slopes along which slip presses."""
+"""Notes on the normals of contacts: shared normals, and normals that slip moves along."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
 
 
 def _instead(scene: Scene, group: list[Contact]) -> str:
-    """How contacts on lines are written that are meant as one in a plane; empty where some are in a plane."""
+    """Hint on how to write two contacts on lines as one planar contact; empty if one is planar already."""
     if any(one.second is not None for one in group):
         return ""
     one, other = _two_directions(scene, group)
@@ -50,8 +50,7 @@ def _instead(scene: Scene, group: list[Contact]) -> str:
 
 
 def _two_directions(scene: Scene, group: list[Contact]) -> list[str]:
-    """The first two directions of friction that differ, as the scene can have them: axes of pairs of nodes,
-    or degrees of freedom."""
+    """The first two different friction directions as written in a scene: axes of node pairs, or dofs."""
     along = {axis_key(one.tangential): one for one in group if one.mu > 0.0 and one.tangential.any()}
     first, second = list(along.values())[:2]
     drafts = () if scene.draft is None else scene.draft.parts["contact"]
@@ -62,7 +61,7 @@ def _two_directions(scene: Scene, group: list[Contact]) -> list[str]:
 
 
 def as_written(direction: FloatArray, dofs: Sequence[str]) -> str:
-    """A direction (dof,) as a scene has it: a degree of freedom, or a table of weights.
+    """A direction (dof,) as written in a scene: a degree of freedom, or a table of weights.
 
     >>> as_written(np.array([1.0, 0.0]), ["1x", "1y"]), as_written(np.array([1.0, -0.5]), ["1x", "y"])
     ('"1x"', '{ "1x" = 1, y = -0.5 }')
@@ -74,10 +73,10 @@ def as_written(direction: FloatArray, dofs: Sequence[str]) -> str:
 
 
 def notes_of_slopes(scene: Scene) -> list[str]:
-    """Notes on contacts whose slip moves them along their normal, as on the slope of a wedge.
+    """Notes on contacts whose slip has a component along their normal, as on the slope of a wedge.
 
-    Often that is a name written twice, or a wrong angle. There is none for a constant normal load (k_v = 0),
-    nor without friction.
+    Often the cause is a name written twice, or a wrong angle. There is no note for a constant normal load
+    (k_v = 0), nor without friction.
     """
     rubbing = (one for one in scene.contacts if one.k_v * one.k_u * one.mu != 0.0)
     translations = np.array([not is_rotation(dof) for dof in scene.modal.dofs])
@@ -123,6 +122,6 @@ def _slope(contact: Contact, translations: npt.NDArray[np.bool_]) -> float:
 
 
 def _counts_twice(group: list[Contact]) -> bool:
-    """Whether several contacts of one normal carry a load, in different directions of friction."""
+    """Whether several contacts with one normal carry normal loads and have different friction directions."""
     carrying = [one for one in group if one.n_0 != 0.0 or one.k_v != 0.0]
     return len({tuple(map(axis_key, one.directions[:-1])) for one in carrying if one.mu > 0.0}) > 1

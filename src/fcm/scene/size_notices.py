@@ -1,4 +1,4 @@
-"""Notices of what takes long or much room, before it is made."""
+"""Announces, while a scene is read, what takes much time or memory."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ def _ignored(*_: object) -> None:
 
 
 class SizeNotices(Frozen):
-    """Callbacks that are told about the size of a scene while it is read.
+    """Callbacks that receive information about the size of a scene while it is read.
 
     Attributes
     ----------
     say : callable
         Takes a sentence.
     curves : callable
-        Takes the scene without its curves, and how many there are; may raise.
+        Takes the scene without its curves, and the number of curves; may raise.
     memory : callable
-        [byte] that can still be taken: a scene that takes more is a mistake.
+        Returns the free memory [byte]; a scene that needs more is a mistake.
     options : MessageOptions
-        From when on something is said.
+        Limits above which there is a notice.
     """
 
     say: Callable[[str], None] = _ignored

@@ -1,4 +1,4 @@
-"""The [structure] table: matrices, the names of their rows, damping, and how many modes are kept."""
+"""Reads the [structure] table: matrices, names of rows, damping, and the number of modes to keep."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ class StructureMatrices(Frozen):
     dofs: Names
     K: Any  # scipy sparse, (row, row), symmetric
     M: Any
-    ratio: float | None  # damping of every mode
-    by_mass: float  # damping in proportion
+    ratio: float | None  # damping ratio of every mode
+    by_mass: float  # factor of proportional damping
     by_stiffness: float
     C: Any | None  # damping matrix
     hysteretic: float  # loss factor
-    modes: int | None  # how many are kept
-    flexibility: bool  # whether that of the others is kept
-    coupling: Coupling | None = None  # to the next sector of a ring
+    modes: int | None  # number of modes to keep; None for the default
+    flexibility: bool  # whether to keep the flexibility of the other modes
+    coupling: Coupling | None = None  # coupling to the next sector of a ring
 
 
 class Coupling(Frozen):
-    """Blocks of a ring's matrices: this sector's rows, the next one's columns."""
+    """Blocks of a ring's matrices with this sector's rows and the next sector's columns."""
 
     K: Any
     M: Any
 
 
 def read_structure(top: Section, files: Files) -> tuple[Names | None, StructureMatrices | None]:
-    """The names of the rows, and all that the table says; None for what is mistaken."""
+    """The names of the rows, and the contents of the table; None for each after a mistake."""
     section = top.table("structure", "")
     if section is None:
         return None, None
@@ -93,7 +93,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, StructureM
 
 
 def said_of(value: Any, key: str, matrix: Any, off: float, given: Labelled | None) -> str:
-    """Sentence on what was read as a matrix; `off` is the greatest difference across its diagonal.
+    """Sentence on a matrix that was read; off is its relative asymmetry.
 
     >>> said_of("K.mtx", "stiffness", scipy.sparse.csc_array([[2.0, -1.0], [-1.0, 2.0]]), 0.0, None)
     'stiffness: K.mtx: 2 rows, 4 entries that are not 0, symmetric'
@@ -109,7 +109,7 @@ def said_of(value: Any, key: str, matrix: Any, off: float, given: Labelled | Non
 
 
 def translated(M: Any, dofs: Names) -> dict[str, float]:
-    """The mass that moves when all degrees of freedom along an axis do, by the names of these.
+    """The mass that a unit translation along each axis moves, by axes in the names of degrees of freedom.
 
     >>> translated(scipy.sparse.diags_array([2.0, 2.0, 1.0, 7.0]), Names(("1x", "1y", "2x", "q")))
     {'x': 3.0, 'y': 2.0}
@@ -119,10 +119,10 @@ def translated(M: Any, dofs: Names) -> dict[str, float]:
 
 
 def is_mesh(K: Any, dofs: Names) -> bool:
-    """Whether rows are those of nodes, each with three translations, that are coupled to neighbours alone.
+    """Whether all rows belong to nodes with three translations, coupled only to their neighbours.
 
-    A reduced structure couples every row to all others. Its mass may differ along the axes, by the shapes of
-    its reduction; that of a mesh does not.
+    A reduced structure couples all rows. Its mass may differ along the axes, due to the shapes of its
+    reduction; that of a mesh does not.
 
     >>> dofs = Names([f"{node}{axis}" for axis in "xyz" for node in range(8)])
     >>> chain = scipy.sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(8, 8))
@@ -141,7 +141,7 @@ def is_mesh(K: Any, dofs: Names) -> bool:
 
 
 def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
-    """Note the rows that nothing holds and that have no mass."""
+    """Notes rows without stiffness and mass."""
     idle = np.flatnonzero((K.diagonal() == 0.0) & (M.diagonal() == 0.0)).tolist()
     if idle:
         fits = dofs is not None and len(dofs) == K.shape[0]
@@ -153,7 +153,7 @@ def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
 
 
 def _check_definite(section: Section, K: Any, M: Any) -> None:
-    """Note that matrices are not those of a structure."""
+    """Notes matrices that are not those of a structure."""
     try:
         factored_structure(symmetric(K), symmetric(M))
     except StructureError as error:
@@ -161,14 +161,14 @@ def _check_definite(section: Section, K: Any, M: Any) -> None:
 
 
 def _matrix(section: Section, key: str, files: Files) -> Labelled | None:
-    """A square matrix: of a file, a list of rows, or the list of a diagonal."""
+    """The square matrix at a key, from a file, a list of rows, or a diagonal; None after a mistake."""
     if section.missing(key, 'a file such as "K.npz", or a list of rows'):
         return None
     return matrix_of(section, key, section.data[key], files)
 
 
 def matrix_of(section: Section, key: str, value: Any, files: Files) -> Labelled | None:
-    """The matrix that a value of a key is; None after a mistake."""
+    """The square matrix that the value of a key describes; None after a mistake."""
     rows: tuple[str, ...] = ()
     if isinstance(value, str):
         if not value:
@@ -195,7 +195,7 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Labelled 
 
 
 def _of_diagonal(matrix: Any) -> Any:
-    """A matrix of a file; a single row or column of it is a diagonal, as a list of numbers is in a scene."""
+    """The matrix of a file; a single row or column is taken as a diagonal, like a list in a scene."""
     several = max(matrix.shape) > min(matrix.shape) == 1
     return scipy.sparse.diags_array(matrix.toarray().ravel(), format="csc") if several else matrix
 
@@ -262,7 +262,7 @@ def _proportional(table: Section) -> dict[str, Any]:
 
 
 def _coupling(section: Section, files: Files, rows: int | None, dofs: Names | None) -> Coupling | None:
-    """The blocks to the next sector; None where there are none, or after a mistake."""
+    """The coupling blocks to the next sector; None if there are none, or after a mistake."""
     if "coupling" not in section.data:
         return None
     table = section.table("coupling", "")
@@ -277,7 +277,7 @@ def _coupling(section: Section, files: Files, rows: int | None, dofs: Names | No
 
 
 def _block(table: Section, key: str, files: Files, rows: int | None, dofs: Names | None) -> Any:
-    """A block to the next sector, zero where it is not given."""
+    """A coupling block to the next sector; zero if it is not given."""
     given = matrix_of(table, key, table.data[key], files) if key in table.data else None
     block = in_order(table, key, given, dofs)
     if block is not None and rows is not None and block.shape[0] != rows:

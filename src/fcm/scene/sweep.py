@@ -1,4 +1,4 @@
-"""Swept keys of a scene: their values, where in the scene they go, and the curves they make.
+"""Reads the swept keys of a scene: their values, their addresses, and the curves that result.
 
 A key is the path of a number in the scene: "contact.shroud.n_0" (or "contact.0.n_0"), "force.u.amplitude"
 (or "force.0.amplitude"), "modal.damping" (every mode) or "modal.damping.0", "modal.shapes.0.u", and the
@@ -7,12 +7,12 @@ evenly spaced or with log = true; or draws { normal = [mean, deviation], count, 
 high], count, seed } or { distribution = "lognorm", s = 0.2, scale = 0.4, count, seed }, any of scipy.stats
 with its parameters.
 
-Curves are the product of the keys, the last one fastest, except that keys drawn with the same count are
-drawn together: 1000 draws of two keys are 1000 curves, independent of one another (see `draws`) unless
+The curves are all combinations of the values, the last key fastest. But random keys with the same count are
+drawn together: 1000 draws of two keys make 1000 curves. The draws are independent (see `draws`) unless
 [sweep.correlation] gives their correlation.
 
-A name with a * stands for all that it matches: "contact.*.n_0" sets the preload of every contact. The keys of
-one [[sweep.paired]] table go in step, and must have as many values each.
+A name with a * stands for all names that it matches: "contact.*.n_0" sets the preload of every contact. The
+keys of one [[sweep.paired]] table change in step, and must have equally many values.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ FORMS = (
 
 
 class SweptKey(Frozen):
-    """One key of a sweep; keys of one group change together."""
+    """A swept key; keys of one group change together."""
 
     key: str
     addresses: tuple[Address, ...]
@@ -55,14 +55,14 @@ class SweptKey(Frozen):
 
     @property
     def drawn(self) -> bool:
-        """Whether its values are random, and each as likely as the others."""
+        """Whether its values are random draws, which are all equally likely."""
         return self.draws is not None
 
 
 def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[SweptKey] = ()) -> list[SweptKey]:
-    """The swept keys with their values; `parts` are the drafts of modal, contact and force.
+    """The swept keys with their values, after others, which come from another table.
 
-    Before them are others, which are not of this table.
+    parts are the drafts of modal, contact and force.
     """
     section = top.table("sweep", "") if "sweep" in top.data else None
     if section is None:
@@ -96,12 +96,12 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[SweptKey
 
 
 def curves_of(swept: Sequence[SweptKey]) -> int:
-    """How many curves swept keys ask for: 1 where nothing is swept."""
+    """The number of curves of swept keys; 1 without a sweep."""
     return prod(len(group[0].values) for group in _groups(swept))
 
 
 def combinations(swept: Sequence[SweptKey]) -> Iterator[dict[str, float]]:
-    """Values of each curve: the product in the order of the file, the last key fastest."""
+    """Yields the values of each curve by key, in the order of the file with the last key fastest."""
     if not swept:
         return
     groups = _groups(swept)
@@ -119,7 +119,7 @@ def _groups(swept: Sequence[SweptKey]) -> list[list[SweptKey]]:
 
 
 def _paired(section: Section, addresses: Addresses) -> list[SweptKey | None]:
-    """The keys of each [[sweep.paired]] table, which go in step."""
+    """The keys of each [[sweep.paired]] table, which change in step."""
     found: list[SweptKey | None] = []
     for number, table in enumerate(section.tables("paired")):
         keys = [_swept(table, key, addresses) for key in table.data]
@@ -134,7 +134,7 @@ def _paired(section: Section, addresses: Addresses) -> list[SweptKey | None]:
 
 
 def _note_repeated(section: Section, key: str, keys: Sequence[SweptKey | None]) -> None:
-    """Note the first value of keys in step that would make a curve again; draws may be equal."""
+    """Notes the first repeated combination of values of keys in step; random draws may repeat."""
     listed = [one.values for one in keys if one is not None and not one.drawn]
     rows = Counter(zip(*listed, strict=True)) if len(listed) == len(keys) else Counter[tuple[float, ...]]()
     again = next((row for row, count in rows.items() if count > 1), None)
@@ -143,7 +143,7 @@ def _note_repeated(section: Section, key: str, keys: Sequence[SweptKey | None]) 
 
 
 def _correlated(section: Section, swept: list[SweptKey], correlation: Correlation) -> list[SweptKey]:
-    """The swept keys, the draws of those that are correlated in their places."""
+    """The swept keys, with correlated draws in place of independent ones."""
     table = Section({}, section.at("correlation"), section.mistakes)
     draws = {one.key: one.draws for one in swept if one.draws is not None}
     before = section.mistakes.count
@@ -191,12 +191,12 @@ def _swept(section: Section, key: str, addresses: Addresses, checked: bool = Tru
 
 
 def field_of(address: Address) -> str:
-    """The name of the number's rule: the last word of its address that names one."""
+    """The name of a number's rule: the last word of its address that has one."""
     return next(str(word) for word in reversed(address) if word in RULES)
 
 
 def _check(section: Section, path: str, values: Any, rule: Rule, listed: bool) -> None:
-    """Note the values that the number may not have: each of a list, the first of a range or of draws."""
+    """Notes values that the rule does not allow: all of a list, the first of a range or of draws."""
     faulty = rule.faulty(values)[:, 0].tolist()
     faults = [(index, rule.fault(float(values[index]))) for index in (faulty if listed else faulty[:1])]
     for index, fault in faults:
@@ -212,7 +212,7 @@ def _note_overlaps(section: Section, swept: list[SweptKey]) -> None:
 
 
 def _values(section: Section, path: str, key: str, value: object) -> Any:
-    """The values of one key as an array, or how they are drawn; None after a mistake."""
+    """The values of one key as an array, or as `Draws`; None after a mistake."""
     if isinstance(value, Mapping):
         return _from_table(Section(value, path, section.mistakes), key)
     if not isinstance(value, list | tuple | np.ndarray):
@@ -229,7 +229,7 @@ _FORM_KEYS = {"from", "to", "count", "log", "seed", *DRAWN}
 
 
 def draws_in(table: Section, key: str) -> Draws | None:
-    """How random numbers of a key are drawn; None after a mistake."""
+    """The `Draws` of random values of a key; None after a mistake."""
     form = [word for word in DRAWN if word in table.data]
     if len(form) != 1:
         table.wrong("", "must be { normal = [mean, deviation], count = }, { uniform = [low, high], count = } "

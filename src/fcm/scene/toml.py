@@ -1,4 +1,4 @@
-"""The tables of a TOML file; whatever is wrong with the file is said plainly."""
+"""Reads the tables of a TOML file, and reports in plain words what is wrong with a faulty one."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ def read_toml(path: Path, source: str, options: TomlOptions = TOML) -> dict[str,
         raise SceneError(source, slips(text)) from None
     except RecursionError:
         raise SceneError(source, ["is nested too deeply"]) from None
-    except ValueError:  # Python's limit on the digits of an integer, or of a date
+    except ValueError:  # Python's limit on the digits of an integer, or an invalid date
         raise SceneError(source, ["has a number or a date that cannot be read"]) from None
 
 
 def _deep_key(parts: int) -> re.Pattern[str]:
-    """A key of more parts, at the beginning of a line, of a header or of an inline table."""
+    """A pattern for a key of more parts, at the beginning of a line, of a header or of an inline table."""
     return re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART}[ \t]*+\.[ \t]*+){{{parts}}}", re.MULTILINE)
 
 
 def _from_pipe(path: Path, source: str, options: TomlOptions) -> bytes:
-    """Bytes written to a pipe; warns while nothing is written, which may last for ever."""
+    """The bytes written to a pipe; reports once that it waits, as this may last for ever."""
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as pipe:
         if not select.select([pipe], [], [], options.patience)[0]:
             warnings.warn(f"{source} is a pipe: waiting until something is written to it", stacklevel=2)

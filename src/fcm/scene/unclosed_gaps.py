@@ -1,13 +1,14 @@
-r"""Gaps that no motion of the structure can close: mostly in millimetres where metres are meant.
+r"""Questions gaps that no motion of the structure can close, mostly because of a wrong unit of length.
 
 Without contact the relative displacement along a contact's normal is at most
 
 .. math:: \sum_m |n^T \phi_m| \, |\phi_m^T f| / \min_\omega |\omega_m^2 - \omega^2 + i r_m \omega|
 
-over the range of frequencies, with modes of mass 1 and their rates of damping r_m. Modes are those with all
-contacts open, and those with all stuck that are closed at rest, which may carry the motion to the gap.
+over the frequency range, with modes of mass 1 and their damping rates r_m. The bound is the greater of two:
+with the modes for all contacts open, and with those for contacts stuck that are closed at rest, since these
+may carry the motion to the gap.
 
-A contact with k_v = 0 has the normal force max(n_0, 0) whatever moves. So no motion closes it, either.
+A contact with k_v = 0 has the normal force max(n_0, 0) whatever the motion. So no motion closes it, either.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from fcm.scene.options import MESSAGES
 
 
 def constant_loads(scene: Scene) -> tuple[str, ...]:
-    """Names of the contacts with a constant normal force, as k_v = 0 on every curve."""
+    """Names of the contacts with a constant normal force: k_v = 0 on every curve."""
     curves, contacts = scene.each_curve(), range(len(scene.contacts))
     constant = [
         all(one.contacts[i].k_v == 0.0 and one.contacts[i].law is None for one in curves) for i in contacts
@@ -34,7 +35,7 @@ def constant_loads(scene: Scene) -> tuple[str, ...]:
 
 
 def question_of_constant_loads(scene: Scene) -> list[str]:
-    """A question about contacts that carry nothing, whatever moves: k_v = 0, and no preload on any curve."""
+    """A question about contacts that never carry load: k_v = 0, and no preload on any curve."""
     if are_sought(scene, ".n_0", ".k_v"):
         return []
     constant, curves = set(constant_loads(scene)), scene.each_curve()
@@ -57,9 +58,10 @@ def question_of_constant_loads(scene: Scene) -> list[str]:
 
 
 def questions_of_gaps(scene: Scene) -> list[str]:
-    """A question about gaps far beyond the motion, where the unit of length is given.
+    """A question about gaps far beyond the motion, if the unit of length is given.
 
-    None about rings, static loads, and preloads or gaps that are swept, chosen or fitted.
+    There is none for rings, with static loads or initial friction, or if preloads, gaps or amplitudes are
+    swept, optimised or fitted.
     """
     (length, _), contacts = scene.units, scene.contacts
     gap = np.array([max(-one.n_0 / one.k_v, 0.0) if one.k_v > 0.0 else 0.0 for one in contacts])
@@ -84,7 +86,7 @@ def questions_of_gaps(scene: Scene) -> list[str]:
 
 
 def _amplitude_bounds(scene: Scene) -> FloatArray:
-    """Bounds (contact,) of the amplitude along the normals, without contact where there is a gap."""
+    """Bounds (contact,) of the amplitude along the normals, if contacts with a gap stay open."""
     modal = scene.modal
     mass_one = modal.shapes / np.sqrt(modal.mass)[:, None]
     damping = 2.0 * modal.damping * modal.frequency
@@ -102,7 +104,7 @@ def _amplitude_bounds(scene: Scene) -> FloatArray:
 
 
 def _sizes(scene: Scene, shapes: FloatArray, omega: FloatArray, rate: FloatArray) -> FloatArray:
-    """Bounds (mode,) of the modal amplitudes in the range of frequencies, of all forces."""
+    """Bounds (mode,) of the modal amplitudes from all forces over the frequency range."""
     size = np.zeros(omega.size)
     for force in scene.forces:
         low, high = (force.harmonic * end for end in scene.frequency_range)
