@@ -1,8 +1,8 @@
-"""Slips of the hand in a TOML file: which line, and what to write there.
+"""Finds syntax mistakes in a TOML file: in which line, and what to write there.
 
-Each remedy is tried: it is named only if the file with it is read further than without, so that what a
-message says to write can be written. The search then goes on behind it, until the file is read or nothing
-helps.
+Remedies are tried one by one. A remedy is reported only if the parser reads further with it, so that the
+suggestion is valid TOML. The search then continues with the remedy applied, until the file is read or no
+remedy helps.
 """
 
 from __future__ import annotations
@@ -22,31 +22,31 @@ from fcm.scene.options import TOML
 _AT = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _ASIDE = re.compile(
     r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'|#.*'
-)  # strings and comments, in which nothing is mended
+)  # strings and comments, which remedies leave alone
 _QUOTES = dict.fromkeys(map(ord, "“”„‟«»″"), '"') | dict.fromkeys(map(ord, "‘’‚‛‹›′"), "'")
 _SIGNS = {0x2212: "-", 0x2013: "-", 0x2014: "-", 0xFF0C: ",", 0xFF1D: "=", 0x066B: "."}
 _BLANKS = dict.fromkeys([0xA0, 0x2007, 0x2009, 0x202F, 0x3000], " ") | dict.fromkeys([0xFEFF, 0x200B], "")
 _WORDS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "yes": "true", "no": "false",
           "on": "true", "off": "false", "Inf": "inf", "Infinity": "inf", "infinity": "inf",
           "NaN": "nan"}  # fmt: skip
-_NOTHING = ("None", "null", "nil")  # a key without a value is left out
+_NOTHING = ("None", "null", "nil")  # not turned into strings: a key without a value should be left out
 _KEY = r'(?:[\w-]+|"[^"]*")(?:\s*\.\s*(?:[\w-]+|"[^"]*"))*'
 _ODD_KEY = r"""^(\s*)([^\s"'=\[{][^"'=\[{]*?)\s*="""
 _VALUE = re.compile(r"([=\[,]\s*)([A-Za-z_0-9][\w:.*/\\ -]*?)(?=\s*(?:[,\]}#]|$))")
 _NEARLY = re.compile(
     r"\d+(?:\.\d+)?[eE][-+]?(?:\d+\.\d+)?"
-)  # a number but for its exponent, which may be any
+)  # a number with an incomplete or fractional exponent, which has no obvious remedy
 _OF_BASE = re.compile(r"(?<![\w.])0([xXoObB])(\w+)")
 _BASES = {"x": (16, "0123456789abcdef"), "o": (8, "01234567"), "b": (2, "01")}
 _THOUSANDS = r"(?<=\d),(?=\d{3}(?:,\d{3})*\.\d)|(?<=\d),(?=\d{3},\d{3}\b)|(?<=\d,\d{3}),(?=\d{3}\b)"
 _PI = re.compile("pi|π")
-_EXPONENT = re.compile(r"[eEdDqQ]\d*")  # no unit
+_EXPONENT = re.compile(r"[eEdDqQ]\d*")  # an exponent, not a unit
 _CALCULATED = re.compile(
     r"([=\[,]\s*)([-+]?\d+(?:\.\d*)?|[-+]?pi|[-+]?π)\s*(/|\*\*?|\^)\s*([-+]?\d+(?:\.\d*)?|pi|π)(?=\s*(?:[,\]}]|$))"
 )
 _NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
-Remedy = Callable[[str], str]  # of a line: the line as it ought to be, or the same
+Remedy = Callable[[str], str]  # takes a line; returns the corrected line, or the same
 
 
 class _Fault(Frozen):
@@ -58,7 +58,7 @@ class _Fault(Frozen):
 
 
 def slips(text: str) -> list[str]:
-    """Sentences on the slips in a text that is no TOML; empty for valid TOML.
+    """Sentences on the mistakes in a text that is not TOML; empty for valid TOML.
 
     >>> slips("mu = .3\\nname = shroud")
     ['line 1, mu = .3: a number begins with a digit: write mu = 0.3', 'line 2, name = shroud: a word needs quotes: write name = "shroud"']
@@ -81,7 +81,7 @@ def slips(text: str) -> list[str]:
 
 
 class _Slip(Frozen):
-    """A line, from 0, as it is and as it ought to be."""
+    """A mistake in a line (counted from 0): its reason, the line as it is, and as it should be."""
 
     line: int
     why: str
@@ -104,13 +104,13 @@ def _fault(lines: list[str]) -> _Fault | None:
         if (match := _AT.search(why)) and match[1]:
             return _Fault(int(match[1]) - 1, int(match[2]), why[: match.start()])
         return _Fault(None, 0, why[: match.start()] if match else why)
-    except (RecursionError, ValueError):  # of a number or a date that comes of a remedy
+    except (RecursionError, ValueError):  # from a number or a date that a remedy produced
         return _Fault(0, 0, "")
     return None
 
 
 def _mended(lines: list[str], fault: _Fault, tries: Iterator[int]) -> tuple[_Slip, list[str]] | None:
-    """Sentence on a slip, and the lines with the slip mended; None if no remedy helps."""
+    """A mistake, and the lines with its remedy; None if no remedy helps."""
     last = min(len(lines) - 1 if fault.line is None else fault.line, len(lines) - 1)
     before = [at for at in range(last, -1, -1) if lines[at].strip()][: TOML.lines_before + 1]
     before = [at for at in before if len(lines[at]) <= TOML.longest_mended]
@@ -126,7 +126,7 @@ def _mended(lines: list[str], fault: _Fault, tries: Iterator[int]) -> tuple[_Sli
 
 
 def _further(lines: list[str], fault: _Fault | None, before: list[str], first: _Fault) -> bool:
-    """Whether the text is read further with a remedy: less of it is left."""
+    """Whether the parser reads further with a remedy: less of the text is left."""
     if fault is None:
         return True
     if fault.line is None or first.line is None:
@@ -139,7 +139,7 @@ def _left(lines: list[str], line: int, column: int) -> tuple[int, int]:
 
 
 def _changed(old: str, new: str) -> tuple[str, str]:
-    """The parts in which two lines differ, with the words that they are within."""
+    """The parts in which two lines differ, extended to whole words."""
     begin = next(
         (i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new))
     )
@@ -152,7 +152,7 @@ def _changed(old: str, new: str) -> tuple[str, str]:
 
 
 def _plain(line: str) -> str:
-    """A line as a message shows it."""
+    """A line as shown in a message: shortened and printable."""
     line = line.strip()
     short = line if len(line) <= TOML.longest_line else f"{line[: TOML.longest_line]}..."
     return short if short.isprintable() else quoted(short, TOML.longest_line + 3)
@@ -168,7 +168,7 @@ def _unmended(lines: list[str], fault: _Fault) -> str:
 
 
 def _twice(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | None:
-    """A table or a key that is there a second time; it is then left out."""
+    """Sentence on a repeated table or key, and the lines without it; None for another fault."""
     if not any(word in fault.why for word in ("twice", "overwrite", "mutate", "Duplicate")):
         return None
     at = min(fault.line if fault.line is not None else len(lines) - 1, len(lines) - 1)
@@ -202,7 +202,10 @@ def _twice(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | None:
 
 
 def _wrong_digit(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | None:
-    """A number to the base 16, 8 or 2 with a digit that is none of these; it is then left out."""
+    """Sentence on a hexadecimal, octal or binary number with an invalid digit, and the lines with 0 instead.
+
+    None for another fault.
+    """
     at = min(fault.line if fault.line is not None else len(lines) - 1, len(lines) - 1)
     line, said = lines[at], list[str]()
 
@@ -224,7 +227,7 @@ def _wrong_digit(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | Non
 
 
 def _outside(mend: Remedy) -> Remedy:
-    """A remedy that leaves strings and comments alone."""
+    """A remedy applied to a line except its strings and comments."""
 
     def remedy(line: str) -> str:
         parts, end = [], 0
@@ -237,7 +240,7 @@ def _outside(mend: Remedy) -> Remedy:
 
 
 def _code(line: str) -> tuple[str, str]:
-    """A line without its comment, and that."""
+    """A line without its comment, and the comment."""
     comment = next((one.start() for one in _ASIDE.finditer(line) if one[0].startswith("#")), len(line))
     code = line[:comment].rstrip()
     return code, line[len(code) :]
@@ -264,7 +267,7 @@ def _translated(table: dict[int, str]) -> Remedy:
 
 
 def _header(line: str) -> str:
-    """[name], or [[name]] of what there may be several of."""
+    """Corrects the header of a table: [name], or [[name]] for a list of tables."""
     code, comment = _code(line)
     match = re.fullmatch(rf"\s*\[*\s*({_KEY})\s*\]*", code)
     if not match or not (code.lstrip().startswith("[") or code.endswith("]")):
@@ -273,7 +276,7 @@ def _header(line: str) -> str:
 
 
 def _decimal_commas(line: str) -> str:
-    """Commas within numbers: alone behind "=", or in a list whose numbers are parted by more than a comma."""
+    """Replaces decimal commas: in a number after "=", or in a list with separators other than bare commas."""
 
     def mend(part: str) -> str:
         return re.sub(r"(?<![\w.,])([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)(?![\w.])", r"\1.\2", part)
@@ -282,12 +285,12 @@ def _decimal_commas(line: str) -> str:
 
 
 def _in_small(part: str) -> str:
-    """True, False and words that stand for them, as TOML writes them."""
+    """Replaces words such as True, yes or Infinity by the words of TOML."""
     return _VALUE.sub(lambda match: match[1] + _WORDS.get(match[2].rstrip(), match[2]), part)
 
 
 def _value_of_word(match: re.Match[str]) -> str:
-    """A word as a value: a string, or what is one in TOML already."""
+    """Replaces a word by a string, unless it is a value of TOML or resembles a number."""
     before, word = match[1], match[2].rstrip()
     if word in ("true", "false", "inf", "nan", *_NOTHING) or all(map(_NUMBER.fullmatch, word.split())):
         return match[0]
@@ -297,7 +300,7 @@ def _value_of_word(match: re.Match[str]) -> str:
 
 
 def _deviation(line: str) -> str:
-    """A standard deviation in units of its mean, of which it is a percentage; the mean may be one of 1."""
+    """Replaces a standard deviation in percent of the mean by its value; the mean may be in percent of 1."""
 
     def mend(match: re.Match[str]) -> str:
         mean, percent = float(match[2]) / (100.0 if match[3] else 1.0), float(match[4])
@@ -311,7 +314,7 @@ def _deviation(line: str) -> str:
 
 
 def _units(line: str) -> str:
-    """Numbers without what stands behind them; an angle in degrees is a string."""
+    """Removes units after numbers; a percentage becomes a ratio, an angle in degrees a string."""
 
     def mend(match: re.Match[str]) -> str:
         if at_node(match[0].strip()) or _EXPONENT.fullmatch(match[2]):
@@ -341,7 +344,7 @@ def _in_small_base(part: str) -> str:
 
 
 def _calculated(part: str) -> str:
-    """A quotient, product or power of two numbers as what it comes to."""
+    """Replaces a quotient, product or power of two numbers by its value."""
 
     def come_to(match: re.Match[str]) -> str:
         one, other = (float(_PI.sub(repr(pi), match[i])) for i in (2, 4))
@@ -355,7 +358,7 @@ def _calculated(part: str) -> str:
 
 
 def _statements(line: str) -> str:
-    """Puts two keys with their values, written on one line, on a line each."""
+    """Puts two keys on one line, with their values, on separate lines."""
     return re.sub(rf"(=\s*\S.*?)[\s,;]+({_KEY}\s*=(?!=))", r"\1" + "\n" + r"\2", line, count=1)
 
 
@@ -449,7 +452,7 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
     ("a comma is missing at its end", _closed(",")),
     ("a key and its value are parted by =", _of_code(rf"^(\s*{_KEY})\s+(?=[\"'\[{{\w.+-])", r"\1 = ")),
 )
-_REASONS = {  # why reading ends, by what the parser says of it
+_REASONS = {  # reasons in plain words, by the parser's messages
     "Unclosed array": "a list has no ] at its end",
     "Unclosed inline table": "a table has no } at its end",
     "Unterminated string": "a string has no quotes at its end",

@@ -1,7 +1,7 @@
-"""Normal modes from a universal file (.uff, .unv): its datasets 55 and 2414, data at nodes.
+"""Reads normal modes from a universal file (.uff, .unv): its datasets 55 and 2414, data at nodes.
 
 Each dataset holds one mode: lines of text, the definition (6I10), integers, reals, then for each node its
-number and values. Where they stand is all that the two differ in.
+number and values. The two kinds of dataset differ only in the positions of these.
 Source: SDRC I-DEAS Test Data Universal File Format, datasets 55 and 2414, as published by the University of
 Cincinnati.
 """
@@ -29,16 +29,16 @@ from fcm.scene.uff_datasets import Dataset, read_datasets, system_of
 
 DIRECTIONS = {1: ("",), 3: ("x", "y", "z"), 6: ("x", "y", "z", "rx", "ry", "rz")}  # by values per node
 NORMAL_MODE, AT_NODES = 2, 1
-MOTIONS = (8, 11, 12)  # displacement, velocity, acceleration: each is a mode's shape
-REAL, COMPLEX, DOUBLE = (2, 4), (5, 6), (4, 6)  # data types: of single and of double precision
+MOTIONS = (8, 11, 12)  # displacement, velocity, acceleration: each gives a mode shape
+REAL, COMPLEX, DOUBLE = (2, 4), (5, 6), (4, 6)  # data types; the first two of single and double precision
 PER_LINE = 6  # reals on a line
-OF_DOUBLE = 3  # values at a node on a line, as some write them in double precision
+OF_DOUBLE = 3  # values at a node on a line, as some programs write double precision
 PER_LINE_OF_INTEGERS = 8
 _NUMBER = re.compile(NUMBER, re.ASCII)
-_BESIDE = re.compile(rf"{NUMBER}(?:(?=[-+]){NUMBER})*", re.ASCII)  # a sign alone may part them
+_BESIDE = re.compile(rf"{NUMBER}(?:(?=[-+]){NUMBER})*", re.ASCII)  # numbers separated only by their signs
 
 
-# Where the frequency, the modal mass, the viscous and the hysteretic damping are among the reals.
+# Positions among the reals of the frequency, the modal mass, the viscous and the hysteretic damping.
 _PLACES = {"55": (0, 1, 2, 3), "2414": (1, 3, 4, 5)}
 _REALS_2414 = 12  # on two lines
 
@@ -51,10 +51,10 @@ class _Mode(Frozen):
 
 
 def read_uff(path: Path) -> dict[str, Any]:
-    """Dofs such as "12x" (node 12, direction x) and the modes' arrays; frequencies are angular.
+    """Dofs such as "12x" (node 12, direction x) and the arrays of the modes; frequencies are angular.
 
-    A modal mass or a damping that is zero in every mode was not given, and is left out. "units" are those of
-    the file, where it says them.
+    Modal masses or damping that are zero in every mode count as not given, and are left out. "units" are
+    those of the file, if it states them.
     """
     datasets = read_datasets(path)
     of_modes = [one for one in datasets if _is_normal_mode(one)]
@@ -84,7 +84,7 @@ def read_uff(path: Path) -> dict[str, Any]:
 
 
 def _is_normal_mode(one: Dataset) -> bool:
-    """Whether a dataset is a normal mode: real, or complex by its numbers only."""
+    """Whether a dataset is a normal mode, with real or complex numbers."""
     if one.kind not in _PLACES or (one.kind == "2414" and not one.at_nodes()):
         return False
     definition = one.integers(one.definition())
@@ -107,7 +107,7 @@ class _DamagedError(ValueError):
 
 
 class _Rows:
-    """The lines of a dataset that are not blank, one after the other."""
+    """Reads the lines of a dataset that are not blank, one after the other."""
 
     def __init__(self, one: Dataset, begin: int) -> None:
         self.one = one
@@ -127,7 +127,7 @@ class _Rows:
         return found
 
     def reals(self, count: int, what: str, fewer: int = PER_LINE) -> list[float]:
-        """Reads `count` numbers from full lines, but for the last; a line has six, or `fewer`."""
+        """Reads `count` numbers; all lines but the last have six numbers, or all have `fewer`."""
         found: list[float] = []
         per_line = PER_LINE
         while len(found) < count and len(found) % per_line == 0:
@@ -168,7 +168,7 @@ def _mode(one: Dataset) -> _Mode:
 
 
 def _values(rows: _Rows, per_node: int, pairs: bool, double: bool) -> dict[str, complex]:
-    """The mode's value at each degree of freedom."""
+    """The value of the mode at each degree of freedom."""
     values: dict[str, complex] = {}
     while rows.left:
         node = rows.integers("nodes")[0]
@@ -185,7 +185,7 @@ def _values(rows: _Rows, per_node: int, pairs: bool, double: bool) -> dict[str, 
 
 
 def _real(mode: _Mode, dofs: list[str], number: int, faults: list[str]) -> list[float]:
-    """The shape as real numbers; a complex one of which all values have one phase is turned to be real."""
+    """The shape as real numbers; a complex shape with a common phase of all values is rotated to be real."""
     shape = np.array([mode.values.get(dof, 0.0) for dof in dofs])
     if shape.imag.any():
         turned = shape * np.exp(-0.5j * np.angle((shape * shape).sum()))
@@ -221,7 +221,7 @@ def _twice(frequency: npt.NDArray[np.float64], shapes: npt.NDArray[np.float64]) 
 
 
 def _reals(line: str, where: str) -> Iterator[float]:
-    """Numbers beside each other, with space between, or a sign alone."""
+    """Yields numbers that are separated by blanks, or only by their signs."""
     for word in line.split():
         numbers = _NUMBER.findall(word) if _BESIDE.fullmatch(word) else [word]
         for text in numbers:
@@ -250,7 +250,7 @@ FUNCTIONS = {
 
 
 def contents(datasets: Iterable[Dataset]) -> str:
-    """Sentence on what the datasets of a file are, with those of a kind counted together.
+    """Sentence on the datasets of a file, with the number of each kind.
 
     >>> contents([Dataset("151", (), 3), Dataset("15", (), 6), Dataset("15", (), 9)])
     'it holds 151 ×1: header; 15 ×2: nodes'
@@ -262,7 +262,7 @@ def contents(datasets: Iterable[Dataset]) -> str:
 
 
 def _name_of_units(datasets: Iterable[Dataset]) -> str:
-    """The name of the units of a file, if it says them."""
+    """The name of the units of a file; empty if it has none."""
     names = (one.lines[0][10:30].strip() for one in datasets if one.kind == "164" and one.lines)
     return next((name for name in names if name and name.isprintable()), "")
 
@@ -282,6 +282,6 @@ def _what(one: Dataset) -> str:
 
 
 def _first(one: Dataset, line: int) -> int:
-    """The whole number that a line begins with; -1 where there is none."""
+    """The whole number at the beginning of a line; -1 if there is none."""
     word = (one.lines[line].split() if len(one.lines) > line else [])[:1]
     return int(word[0]) if word and re.fullmatch(r"\d{1,9}", word[0], re.ASCII) else -1

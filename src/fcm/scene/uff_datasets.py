@@ -1,9 +1,9 @@
-"""The datasets of a universal file (.uff, .unv), each with its lines.
+"""Reads the datasets of a universal file (.uff, .unv), each with its lines.
 
-A dataset stands between two marks, lines of -1 in the columns 1 to 6, and begins with its number. Two rules
-keep what is within a dataset from being taken for its end: of a binary one (58b) the first line says how many
-lines of text and how many bytes follow, and a -1 among the lines of text at the head of a dataset is text
-unless the next dataset, or the end of the file, follows it.
+A dataset stands between two marks, lines with -1 in columns 1 to 6, and begins with its number. Two rules
+prevent taking contents for the end mark. The first line of a binary dataset (58b) says how many lines of text
+and how many bytes follow. A -1 among the lines of text at the head of a dataset is text, unless the next
+dataset or the end of the file follows it.
 Source: SDRC I-DEAS Test Data Universal File Format, as published by the University of Cincinnati.
 """
 
@@ -18,24 +18,24 @@ from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.number_text import number_in
 
-HEADS = {"55": 5, "56": 5, "57": 5, "58": 5, "151": 7, "2414": 8}  # lines of text behind the number
-AT_NODES = 1  # where the data of a dataset 2414 are
-MOST_ASCII_LINES = 50  # of a binary dataset; 58b has 11
-BYTES = {2: 4, 4: 8, 5: 8, 6: 16}  # of an ordinate, by the data type of dataset 58
-BIG_ENDIAN = 2  # the byte order of a binary dataset
-SINGLE = (2, 5)  # of these types the abscissae are of single precision, too
+HEADS = {"55": 5, "56": 5, "57": 5, "58": 5, "151": 7, "2414": 8}  # lines of text after the number
+AT_NODES = 1  # location of the data of a dataset 2414
+MOST_ASCII_LINES = 50  # greatest number of lines of text in a binary dataset; 58b has 11
+BYTES = {2: 4, 4: 8, 5: 8, 6: 16}  # bytes of an ordinate, by the data type of dataset 58
+BIG_ENDIAN = 2  # code of this byte order in a binary dataset
+SINGLE = (2, 5)  # data types with abscissae of single precision
 _MARK = re.compile(rb" {0,4}-1[ \t\r]*")
 _ANY_MARK = re.compile(rb"^ {0,4}-1[ \t\r]*$", re.MULTILINE)
 _BINARY = re.compile(rb"\s*(\d+)[bB]((?:\s+\d+)*)\s*")
-_END = re.compile(rb"[ \t\r\n]*-1[ \t\r]*(?:\n|\Z)")  # behind the bytes of a binary dataset
-_ANY_END = re.compile(rb" {4}-1[ \t\r]*(?:\n\s*-1[ \t\r]*(?:\n|\Z)|\s*\Z)")  # and what follows the mark
-_NOTHING = b" \t\r\n\x00\x1a"  # between datasets, and as some programs fill up a file
+_END = re.compile(rb"[ \t\r\n]*-1[ \t\r]*(?:\n|\Z)")  # end mark after the bytes of a binary dataset
+_ANY_END = re.compile(rb" {4}-1[ \t\r]*(?:\n\s*-1[ \t\r]*(?:\n|\Z)|\s*\Z)")  # an end mark and what follows it
+_NOTHING = b" \t\r\n\x00\x1a"  # characters between datasets, and with which some programs fill up a file
 
 
 class Dataset(NamedTuple):
-    """One dataset: its number as "55" or "58b", its lines, and the number of the first of them.
+    """One dataset: its number such as "55" or "58b", its lines, and the line number of the first.
 
-    Of a binary one the lines are those before its bytes, the payload.
+    For a binary dataset these are the lines before the bytes (payload).
     """
 
     kind: str
@@ -45,7 +45,7 @@ class Dataset(NamedTuple):
     big_endian: bool = False
 
     def integers(self, line: int) -> list[int]:
-        """The whole numbers of a line, in columns of ten or apart; none where there are others on it."""
+        """The whole numbers of a line, in columns of ten or separated; empty if it has other words."""
         text = self.lines[line] if line < len(self.lines) else ""
         words = text.split()
         if any(len(word) > 10 for word in words):
@@ -54,14 +54,14 @@ class Dataset(NamedTuple):
         return [int(word) for word in words] if right else []
 
     def at_nodes(self) -> bool:
-        """Whether the data of a dataset 2414 are at nodes: the second line of one whole number says it."""
+        """Whether the data of a dataset 2414 are at nodes, by its second line with a single whole number."""
         alone = [found[0] for at in range(HEADS["2414"]) if len(found := self.integers(at)) == 1]
         return alone[1:2] == [AT_NODES]
 
     def definition(self) -> int:
-        """The line with six whole numbers that say what the data are; of 55 and of 2414; -1 if there is none.
+        """Index of the line of a dataset 55 or 2414 with six whole numbers that define the data; -1 if none.
 
-        Blank lines before it, among those of text, are more than there ought to be.
+        Blank lines before it count as additional to the lines of text of the format.
         """
         first = HEADS.get(self.kind, 0)
         blank = 0
@@ -79,8 +79,8 @@ class _Text:
 
     def __init__(self, content: bytes) -> None:
         self.content = content
-        self.at = 0  # where the next line begins
-        self.number = 1  # of the next line
+        self.at = 0  # position of the next line
+        self.number = 1  # number of the next line
 
     def __bool__(self) -> bool:
         return self.at < len(self.content)
@@ -91,18 +91,18 @@ class _Text:
         return self.content[self.at : end if end >= 0 else len(self.content)]
 
     def line(self) -> bytes:
-        """The next line, which is then behind."""
+        """The next line, moving on past it."""
         found = self.peeked()
         self.to(self.at + len(found) + 1)
         return found
 
     def to(self, place: int) -> None:
-        """Moves on to a place."""
+        """Moves on to a position."""
         self.number += self.content.count(b"\n", self.at, place)
         self.at = place
 
     def ended(self) -> bool:
-        """Whether a mark or nothing at all comes next, behind blank lines."""
+        """Whether a mark or the end of the file comes next, after blank lines."""
         rest = re.compile(rb"\s*").match(self.content, self.at)
         at = rest.end() if rest else self.at
         begin = self.content.rfind(b"\n", self.at, at) + 1 or self.at
@@ -112,7 +112,7 @@ class _Text:
 
 
 def system_of(every: Iterable[Dataset]) -> tuple[float, float] | None:
-    """The units of length [m] and force [N] of dataset 164, whose factors lead from SI to them."""
+    """The units of length [m] and force [N] of dataset 164, which has factors from SI to these; or None."""
     for one in every:
         words = one.lines[1].split()[:2] if one.kind == "164" and len(one.lines) > 1 else []
         numbers = [number_in(word) for word in words]
@@ -153,14 +153,14 @@ def read_datasets(path: Path) -> list[Dataset]:
 
 
 def _dataset(text: _Text, path: Path) -> Dataset:
-    """The dataset whose number comes next, and past its end."""
+    """Reads the dataset whose number comes next, up to past its end mark."""
     number, head = text.number, text.line()
     binary = _BINARY.fullmatch(head)
     words = [int(word) if len(word) < 12 else 0 for word in (binary[2].split() if binary else ())]
     kind = f"{binary[1].decode()}b" if binary else head.decode("latin-1").strip()
     lines: list[str] = []
     first = text.number
-    if len(words) >= 4:  # byte order, kind of numbers, lines of text, bytes
+    if len(words) >= 4:  # byte order, number format, lines of text, bytes
         order, _, ascii_lines, size = words[:4]
         while text and len(lines) < min(ascii_lines, MOST_ASCII_LINES):
             lines.append(_decoded(text.line()))
@@ -179,10 +179,10 @@ def _dataset(text: _Text, path: Path) -> Dataset:
 
 
 def _past_bytes(text: _Text, *sizes: int) -> int:
-    """Place behind the end mark of a binary dataset; 0 where there is no mark.
+    """Position after the end mark of a binary dataset; 0 if there is no mark.
 
-    The bytes are as many as the file says, or as its points take where that is wrong. A file that has gone
-    through a conversion of its line ends has others: it is then searched for the mark.
+    sizes: possible numbers of bytes, as stated in the file and as its points need. If no mark follows
+    either, as after a conversion of line ends, the file is searched for the mark.
     """
     for size in sizes:
         if end := _END.match(text.content, text.at + size):
@@ -193,7 +193,7 @@ def _past_bytes(text: _Text, *sizes: int) -> int:
 
 
 def _bytes_of(one: Dataset) -> int:
-    """How many bytes the points of a dataset 58b take, by its seventh line: type, points, spacing."""
+    """The number of bytes of the points of a dataset 58b, by its seventh line: type, points, spacing."""
     kind, points, even = [*map(_whole, (one.lines[6] if len(one.lines) > 6 else "").split()[:3]), 0, 0, 0][:3]
     return points * (BYTES.get(kind, 0) + (0 if even else 4 if kind in SINGLE else 8))
 

@@ -1,10 +1,10 @@
-"""Measured functions of a universal file, dataset 58: a response over the frequency, and what it is of.
+"""Reads measured functions over frequency from dataset 58 of a universal file.
 
-Its sixth line names the function (4 is a frequency response function, 12 a spectrum), and node and direction
-of the response and of the reference. The seventh has the type of its values (2 and 4 real, 5 and 6 complex,
-of single and double precision), their number, and whether the frequencies are evenly spaced. The next three
-say what abscissa, ordinate and denominator are (18 a frequency, 8 a displacement, 13 a force), and their
-units. Text is in columns of 13 or 20, as in Fortran's E13.5 and E20.12, as many points as a line of 80 takes.
+The sixth line has the type of function (4 frequency response function, 12 spectrum), and name, node and
+direction of response and reference. The seventh has the type of the values (2 and 4 real, 5 and 6 complex, of
+single and double precision), their number, and whether the frequencies are evenly spaced. The next three have
+the type of abscissa, ordinate and denominator (18 frequency, 8 displacement, 13 force), and their units. Text
+values are in columns of 13 or 20 (Fortran's E13.5 and E20.12), with as many points as fit into 80 columns.
 Source: SDRC I-DEAS Test Data Universal File Format, dataset 58, as published by the University of Cincinnati.
 """
 
@@ -27,8 +27,8 @@ from fcm.scene.uff_datasets import Dataset, read_datasets, system_of
 from fcm.scene.uff_qualifiers import Qualifiers, qualifiers_of
 
 ComplexArray = npt.NDArray[np.complex128]
-HEAD = 11  # lines before the values
-FUNCTION, FORM, ABSCISSA, ORDINATE, DENOMINATOR = 5, 6, 7, 8, 9  # lines that say what it is
+HEAD = 11  # number of lines before the values
+FUNCTION, FORM, ABSCISSA, ORDINATE, DENOMINATOR = 5, 6, 7, 8, 9  # lines with these data, from 0
 RESPONSE, SPECTRUM = 4, 12
 KINDS = {
     RESPONSE: "a frequency response function", SPECTRUM: "a spectrum", 1: "a time response",
@@ -41,14 +41,14 @@ AXES = {
 }  # fmt: skip
 FREQUENCIES = ("", "frequency", "rpm")
 SINGLE, COMPLEX, TYPES = (2, 5), (5, 6), (2, 4, 5, 6)
-WIDTH_SINGLE, WIDTH_DOUBLE = 13, 20  # columns of a value; of an abscissa it is always the first
-LINE = 80  # columns
+WIDTH_SINGLE, WIDTH_DOUBLE = 13, 20  # columns of a value; an abscissa always has the first width
+LINE = 80  # columns of a line
 ENTITIES = ((31, 41, 51, 55), (56, 66, 76, 80))  # columns of name, node and direction on the sixth line
-UNITS_AT = 46  # columns before the unit of an axis: a type, three exponents, the axis' label
+UNITS_AT = 46  # columns before the unit of an axis: type, three exponents, label of the axis
 
 
 class Location(NamedTuple):
-    """Where a response or its reference is: a name, a node, and a direction with its sign."""
+    """The place of a response or its reference: a name, a node, and a direction with its sign."""
 
     entity: str = ""
     node: int = 0
@@ -56,53 +56,53 @@ class Location(NamedTuple):
 
     @property
     def dof(self) -> str:
-        """Node and direction, as a degree of freedom is named; empty where they are not given."""
+        """Node and direction as the name of a degree of freedom; empty if they are not given."""
         known = self.node > 0 and 1 <= abs(self.direction) <= len(DIRECTIONS)
         return f"{self.node}{DIRECTIONS[abs(self.direction) - 1]}" if known else ""
 
     @property
     def sign(self) -> float:
-        """-1 where the direction is against the axis."""
+        """-1 for a direction against the axis, else 1."""
         return -1.0 if self.direction < 0 else 1.0
 
     def may_be(self, name: str) -> bool:
-        """Whether this is a degree of freedom, by node and direction, or by its name."""
+        """Whether this can be the degree of freedom with a name, by node and direction, or by the name."""
         return bool(name) and (self.dof == motion_of(name) if motion_of(name) else self.entity == name)
 
 
 class Axis(NamedTuple):
-    """What the values along an axis are of, and their unit; empty where the file does not say it."""
+    """The quantity of the values along an axis, and their unit; empty if the file does not state them."""
 
     what: str = ""
     unit: str = ""
 
 
 class Function(Frozen):
-    """A response over the frequency, and what its file says of it."""
+    """A response over frequency, and what its file states about it."""
 
     hertz: FloatArray
     value: ComplexArray  # along the positive axes
     phased: bool
-    per_reference: bool  # whether values are those per unit of the reference
+    per_reference: bool  # whether values are per unit of the reference
     response: Location
     reference: Location
     ordinate: Axis
     denominator: Axis
     system: tuple[float, float] | None  # unit of length [m] and of force [N] of the whole file
-    unknown_unit: str = ""  # of the frequencies, then taken for Hz
-    qualifiers: Qualifiers | None = None  # where the file has a dataset 1858
-    of_table: bool = False  # whether it is made of columns, not of a universal file
+    unknown_unit: str = ""  # unknown unit of the frequencies, which are then taken as Hz
+    qualifiers: Qualifiers | None = None  # None if the file has no dataset 1858
+    of_table: bool = False  # whether it comes from columns, not from a universal file
 
 
 def read_function(path: Path, dof: str = "", forced: str = "") -> Function:
-    """The one response over the frequency of a file; of several that of a degree of freedom.
+    """The response over frequency in a file; of several, the one at a degree of freedom.
 
-    dof, forced : what was measured, and where the force is; empty where that is not known.
+    dof, forced : degrees of freedom of the measurement and of the force; empty if unknown.
 
     Raises
     ------
     DataFileError
-        If it has no response over the frequency, or several, or values that are no numbers.
+        If the file has no response over frequency, or several, or values that are not numbers.
     """
     every = read_datasets(path)
     functions = [one for one in every if one.kind in ("58", "58b")]
@@ -158,7 +158,7 @@ def _line(one: Dataset, at: int) -> str:
 
 
 def _places(one: Dataset) -> tuple[Location, Location]:
-    """Response and reference; by words, or by columns where a name has a space or touches its node."""
+    """Places of response and reference, by words; or by columns if a name has a space or touches its node."""
     text = _line(one, FUNCTION)
     words = text.split()
     parts = [words[4:7], words[7:10]] if len(words) == 10 else []
@@ -178,13 +178,13 @@ def _whole(word: str) -> int | None:
 
 
 def _said(text: str) -> str:
-    """A label; empty where it says NONE, or is a mark for nothing."""
+    """A label; empty if it is NONE or another word for nothing."""
     word = text.strip()
     return "" if word.upper() in ("NONE", "-", "UNKNOWN") else word
 
 
 def _axis(one: Dataset, line: int) -> Axis:
-    """Type and unit of an axis; its label has twenty columns and may hold spaces."""
+    """Quantity and unit of an axis; its label has twenty columns and may have spaces."""
     text = _line(one, line)
     words = text.split()
     kind = _whole(words[0]) if words else None
@@ -193,7 +193,7 @@ def _axis(one: Dataset, line: int) -> Axis:
 
 
 def _decoded(text: str) -> str:
-    """A text that was read byte by byte, as UTF-8 if it is that: of units as m/s²."""
+    """A text that was read as Latin-1, decoded as UTF-8 if possible, for units such as m/s²."""
     try:
         return text.encode("latin-1").decode("utf-8")
     except UnicodeError:
@@ -201,7 +201,7 @@ def _decoded(text: str) -> str:
 
 
 def _values(one: Dataset, path: Path) -> tuple[FloatArray, ComplexArray, bool]:
-    """Abscissae, values, and whether these are complex."""
+    """Abscissae, values, and whether the values are complex in the file."""
     words = _line(one, FORM).split()
     where = f"{quoted(path.name)}, line {one.first + FORM}"
     numbers = [number_in(word) for word in words[:5]]
@@ -229,7 +229,7 @@ def _values(one: Dataset, path: Path) -> tuple[FloatArray, ComplexArray, bool]:
 
 
 def _text(one: Dataset, kind: int, even: int, path: Path) -> FloatArray:
-    """The numbers of a text, which may touch one another in their columns."""
+    """The numbers in text, which may touch one another in their columns."""
     width = WIDTH_SINGLE if kind in SINGLE else WIDTH_DOUBLE
     point = [*([] if even else [WIDTH_SINGLE]), *[width] * (2 if kind in COMPLEX else 1)]
     widths = point * (LINE // sum(point))
@@ -252,7 +252,7 @@ def _text(one: Dataset, kind: int, even: int, path: Path) -> FloatArray:
 
 
 def _binary(one: Dataset, kind: int, even: int) -> FloatArray:
-    """The numbers of the bytes: little-endian unless the file says otherwise."""
+    """The numbers in the bytes, which are little-endian unless the file says otherwise."""
     order = ">" if one.big_endian else "<"
     real = np.dtype(f"{order}f{4 if kind in SINGLE else 8}")
     row = np.dtype([*([] if even else [("x", real)]), ("y", real, 2 if kind in COMPLEX else 1)])

@@ -1,9 +1,9 @@
-"""Qualifiers of measured functions, dataset 1858: whether amplitudes are peak values or RMS, and the like.
+"""Reads qualifiers of measured functions, dataset 1858, such as whether amplitudes are peak values or RMS.
 
-Its first line has, after the number of a record, the part of an octave of each band. The second has the
-weighting by frequency, the window, the scale of amplitudes, what is normalised, and the kinds of the axes.
-Which dataset 58 it is of no field says. It is told by the order, where the two alternate, or by all 1858 that
-say the same.
+The first line has, after the number of a record, the fraction of an octave of the bands. The second has the
+frequency weighting, the window, the scale of amplitudes, the normalisation, and the kinds of the axes. No
+field tells to which dataset 58 it belongs. That follows from the order if the two kinds alternate, or does
+not matter if all datasets 1858 are equal.
 Source: SDRC I-DEAS Test Data Universal File Format, dataset 1858, as published by the University of
 Cincinnati and in pyuff.
 """
@@ -20,16 +20,16 @@ from fcm.scene.files import DataFileError
 from fcm.scene.uff_datasets import Dataset
 
 FUNCTIONS, QUALIFIER = ("58", "58b"), "1858"
-BANDS, SCALES = 0, 1  # its lines
+BANDS, SCALES = 0, 1  # lines of the dataset
 UNKNOWN, HALF_PEAK, PEAK, RMS = 0, 1, 2, 3  # scales of amplitudes
-EXPONENTIAL = (4, 6)  # windows: exponential, and with one of an impact
+EXPONENTIAL = (4, 6)  # windows: exponential, also combined with an impact window
 NORMALISED = {1: "units squared", 2: "units squared per Hz", 3: "units squared seconds per Hz"}
 WEIGHTINGS = {1: "A", 2: "B", 3: "C", 4: "D"}
 SQUARED = (2, 3)  # kinds of an axis: translation squared, rotation squared
 
 
 class Qualifiers(NamedTuple):
-    """What a dataset 1858 says of a function; 0 is nothing, or unknown."""
+    """Contents of a dataset 1858 for a function; 0 means none or unknown."""
 
     octave: int = 0
     weighting: int = 0
@@ -40,11 +40,11 @@ class Qualifiers(NamedTuple):
 
     @property
     def damps(self) -> bool:
-        """Whether a window has added damping to what was measured."""
+        """Whether a window has added damping to the measurement."""
         return self.window in EXPONENTIAL
 
     def factor(self) -> float:
-        """By what amplitudes are multiplied to be half of peak to peak of a harmonic motion.
+        """The factor that converts amplitudes of a harmonic motion to half the peak-to-peak value.
 
         >>> Qualifiers(scale=PEAK).factor(), round(Qualifiers(scale=RMS).factor(), 3)
         (1.0, 1.414)
@@ -52,9 +52,9 @@ class Qualifiers(NamedTuple):
         return sqrt(2.0) if self.scale == RMS else 1.0
 
     def fault(self, spectrum: bool) -> str:
-        """What does not go with a response over the frequency, and what would be right; or ''.
+        """What is unsuitable for a response over frequency, and what would be right; or ''.
 
-        The scale is that of a spectrum alone: a frequency response function is a ratio.
+        The scale matters only for a spectrum: a frequency response function is a ratio.
 
         >>> Qualifiers(octave=3).fault(False)
         'is of bands of 1/3 octave (dataset 1858): export narrow bands'
@@ -78,7 +78,7 @@ class Qualifiers(NamedTuple):
 
 
 def qualifiers_of(every: Sequence[Dataset], function: Dataset, path: Path) -> Qualifiers | None:
-    """What the file says of one of its functions; None where it has no dataset 1858.
+    """The qualifiers of one of the functions of a file; None if it has no dataset 1858.
 
     Raises
     ------

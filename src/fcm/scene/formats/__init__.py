@@ -1,1 +1,1 @@
-"""Matrices as finite-element programs write them: one module for each format."""
+"""Readers of matrices written by finite-element programs: one module for each format."""

@@ -1,4 +1,4 @@
-"""Matrices of Abaqus as text, of `*MATRIX OUTPUT` (job_STIF2.mtx): node, direction, node, direction, value.
+"""Reads text matrices of Abaqus, `*MATRIX OUTPUT` (job_STIF2.mtx): node, direction, node, direction, value.
 
 Source: Abaqus Keywords Reference Guide, *MATRIX INPUT: of a symmetric matrix either triangle, or both with
 equal entries.
@@ -12,11 +12,11 @@ from fcm.scene.files import UnreadableError
 from fcm.scene.formats.columns import MARK, read_columns
 from fcm.scene.formats.labelled import Labelled, labelled_from
 
-PLACES = 4  # node and direction of the row and of the column
+PLACES = 4  # number of whole numbers on a line: node and direction of the row and of the column
 
 
 def is_abaqus(path: Path) -> bool:
-    """Whether the first line that is no comment has entries with commas between.
+    """Whether the first line that is not a comment has entries separated by commas.
 
     MatrixMarket files, which have the same ending, begin with %%MatrixMarket.
     """

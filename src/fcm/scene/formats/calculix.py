@@ -1,7 +1,7 @@
-"""Matrices of CalculiX (.sti, .mas), as `*FREQUENCY, SOLVER=MATRIXSTORAGE` writes them.
+"""Reads matrices of CalculiX (.sti, .mas), written by `*FREQUENCY, SOLVER=MATRIXSTORAGE`.
 
-Each line has a row, a column and a value; one triangle of a symmetric matrix is stored. Which node and
-direction a row is stands in the file .dof of the same job, one line such as `40.1` for each row.
+Each line has a row, a column and a value; one triangle of a symmetric matrix is stored. The .dof file of the
+same job gives node and direction of each row, in lines such as `40.1`.
 """
 
 from __future__ import annotations

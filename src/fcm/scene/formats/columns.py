@@ -1,4 +1,4 @@
-"""Columns of numbers in a text, each line with as many as are asked for."""
+"""Reads columns of numbers from a text file, with a given count of numbers on each line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.scene.files import UnreadableError
 from fcm.scene.number_text import fault_of_number, number_in
 
 COMMENT = b"**"
-MARK = b"\xef\xbb\xbf"  # of UTF-8, which some editors write at the beginning
+MARK = b"\xef\xbb\xbf"  # byte-order mark of UTF-8, which some editors write at the beginning
 
 
 class Columns(NamedTuple):
@@ -28,9 +28,9 @@ class Columns(NamedTuple):
 
 
 def read_columns(path: Path, whole: int, between: str | None = None) -> Columns:
-    """Lines of some integers and a real number each; blank lines and comments are passed over.
+    """Reads lines with a count (whole) of integers and a real number; skips blank lines and comments.
 
-    ValueError names the line that is otherwise, and what a line must be.
+    Any other line raises UnreadableError with its number and what it must contain.
     """
     content = path.read_bytes().removeprefix(MARK)
     if not _holds_something(content):
@@ -41,7 +41,7 @@ def read_columns(path: Path, whole: int, between: str | None = None) -> Columns:
     except (ValueError, UnicodeDecodeError):
         found = _line_by_line(content, kind, between)
     count = content.count(b"\n") + (not content.endswith(b"\n"))
-    every = found.size == count  # which is quickly said of millions of lines
+    every = found.size == count  # a quick test for millions of lines
     lines = np.arange(1, count + 1) if every else _numbers_of_lines(content)
     good = np.isfinite(found["real"])
     if not good.all():
@@ -55,7 +55,7 @@ def _holds_something(content: bytes) -> bool:
 
 
 def _loaded(content: bytes, kind: np.dtype[Any], between: str | None) -> npt.NDArray[Any]:
-    """The lines as numpy reads them: a comment of two letters would cost it more than the numbers."""
+    """Reads the lines by numpy; replaces comment marks of two letters, with which numpy is slow."""
     mark: str | None = COMMENT.decode()
     if COMMENT not in content:
         mark = None
@@ -65,7 +65,7 @@ def _loaded(content: bytes, kind: np.dtype[Any], between: str | None) -> npt.NDA
 
 
 def _numbers_of_lines(content: bytes) -> npt.NDArray[np.int64]:
-    """The numbers, from 1, of the lines that hold something."""
+    """The numbers, from 1, of the lines that hold more than a comment."""
     lines = content.split(b"\n")
     return np.array(
         [i for i, one in enumerate(lines, 1) if one.partition(COMMENT)[0].strip()], dtype=np.int64
@@ -73,7 +73,7 @@ def _numbers_of_lines(content: bytes) -> npt.NDArray[np.int64]:
 
 
 def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None) -> npt.NDArray[Any]:
-    """Reads the lines one by one, with numbers as Fortran writes them; raises for the first wrong line."""
+    """Reads the lines one by one, with numbers as written by Fortran; raises for the first wrong line."""
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
@@ -101,7 +101,7 @@ def _row(words: Sequence[str], kind: np.dtype[Any], number: int, between: str | 
 
 
 def real_of(word: str, line: int) -> float:
-    """The number of a word; ValueError with the line and what to write where it is none.
+    """The number in a word; UnreadableError with the line and what to write if it is not a number.
 
     >>> real_of("1.005D+02", 7)
     100.5

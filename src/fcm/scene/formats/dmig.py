@@ -1,4 +1,4 @@
-"""Matrices of Nastran in a punch file (.pch): bulk data entries DMIG, in fields of 8, of 16, or with commas.
+"""Reads matrices of Nastran from a punch file (.pch): DMIG entries, in fields of 8, of 16, or with commas.
 
 The header of a matrix has its form (6 symmetric, 1 square) and type (1, 2 real; 3, 4 complex). Each further
 entry is a column: its point and component, then point, component and value of each row.
@@ -19,8 +19,8 @@ from fcm.scene.formats.columns import real_of
 from fcm.scene.formats.labelled import DIRECTIONS, Labelled, labelled_from
 
 SMALL, LARGE = 8, 16  # characters of a field
-FREE = 10  # columns, in which a comma makes an entry of free format
-NUMERIC = re.compile(r"[-.\d]", re.ASCII)  # how what is no mark of a continuation begins
+FREE = 10  # a comma within so many columns means free format
+NUMERIC = re.compile(r"[-.\d]", re.ASCII)  # first character of a number, not of a continuation mark
 SYMMETRIC, SQUARE = 6, 1  # forms
 REAL = (1, 2)  # types
 
@@ -50,14 +50,14 @@ def read_dmig(path: Path, largest: int) -> dict[str, Labelled]:
 
 
 def _entries(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The fields of each DMIG entry, its continuations joined, and the number of its first line."""
+    """Yields the number of the first line and the fields of each DMIG entry, continuations joined."""
     first, fields = 0, list[str]()
     for number, line in enumerate(text.splitlines(), 1):
         body = line.partition("$")[0].rstrip()
         if not body:
             continue
         if body[0] in "*+" or (body[0] == "," and fields) or (body[0] == " " and fields):
-            if fields:  # else a continuation of an entry that is not read
+            if fields:  # otherwise it continues an entry that is not read
                 fields += _fields(body, number)[1:]
             continue
         if fields:
@@ -71,7 +71,7 @@ def _entries(text: str) -> Iterator[tuple[int, list[str]]]:
 def _fields(line: str, number: int) -> list[str]:
     """Fields of a line without its continuation mark; the first is the entry's name.
 
-    ValueError where there are fields too many.
+    Too many fields raise UnreadableError.
     """
     if "," in line[:FREE]:
         words = [one.strip() for one in line.split(",")]
@@ -87,7 +87,7 @@ def _fields(line: str, number: int) -> list[str]:
 
 
 def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
-    """Takes one entry: a header, or a column."""
+    """Adds one entry, a header or a column, to found."""
     name, body = fields[1], fields[2:]
     if (body[0] == "0") == (name in found):
         what = "two headers" if name in found else "no header before its columns"
@@ -106,7 +106,7 @@ def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
     entries, column = found[name], (_whole(body[0], number), _whole(body[1] or "0", number))
     _blank(body[2], number, f"DMIG {name}: behind the column")
     _components(column, number)
-    rest = body[3:]  # a blank field stands behind the column
+    rest = body[3:]  # a blank field follows the column
     for start in range(0, len(rest), 4):
         group = rest[start : start + 3]
         if not any(group):
@@ -123,20 +123,20 @@ def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
 
 
 def _blank(word: str, number: int, where: str) -> None:
-    """ValueError where a field holds something that would not be read."""
+    """Raises UnreadableError if a field that is not read is not blank."""
     if word:
         raise UnreadableError(f'line {number}: {where} the field must be blank, but holds "{word}"')
 
 
 def _components(place: tuple[int, int], number: int) -> None:
-    """ValueError where a point or its component is none."""
+    """Raises UnreadableError for an invalid point or component."""
     if place[0] < 1 or not 0 <= place[1] <= len(DIRECTIONS):
         what = f"point {place[0]}, component {place[1]}"
         raise UnreadableError(f"line {number}: there is no {what}: points are from 1, components 0 to 6")
 
 
 def nastran_real(word: str, line: int) -> float:
-    """A real of Nastran, which leaves out the letter of the exponent: 1.0+5.
+    """A real number of Nastran, which may omit the letter of the exponent: 1.0+5.
 
     >>> nastran_real("1.5+3", 1), nastran_real("-2.D-1", 1), nastran_real("1.5E3", 1)
     (1500.0, -0.2, 1500.0)

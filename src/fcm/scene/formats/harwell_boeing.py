@@ -1,7 +1,7 @@
-"""Matrices in the Harwell-Boeing format as text (.hb, .rsa, .rua; Ansys writes .matrix by HBMAT).
+"""Reads matrices in the Harwell-Boeing text format (.hb, .rsa, .rua; Ansys writes .matrix by HBMAT).
 
-The header says how many lines the pointers, indices and values take, and the Fortran format of each. Of a
-symmetric matrix (RSA) one triangle is stored. Right-hand sides behind the values are passed over.
+The header has the numbers of lines of pointers, indices and values, and the Fortran format of each. For a
+symmetric matrix (RSA) one triangle is stored. Right-hand sides after the values are skipped.
 Source: Duff, Grimes and Lewis, Users' guide for the Harwell-Boeing sparse matrix collection (1992).
 """
 
@@ -20,18 +20,18 @@ from fcm.scene.formats.columns import real_of
 from fcm.scene.formats.labelled import Labelled, symmetric_from
 
 FORMAT = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d*)\s*([IEDFG])\s*(\d+)(?:\.\d+(?:E\d+)?)?\s*\)", re.IGNORECASE)
-HEAD = 4  # lines before the pointers; one more where there are right-hand sides
+HEAD = 4  # number of lines before the pointers; one more if there are right-hand sides
 
 
 class Fields(NamedTuple):
-    """A Fortran format: how many fields a line has, and how wide each is."""
+    """A Fortran format: the number of fields on a line, and their width."""
 
     number: int
     width: int
 
 
 def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
-    """The matrix of a file; its rows have no names there."""
+    """The matrix of a file, by the name "matrix"; its rows have no names."""
     lines = path.read_bytes().decode("latin-1").splitlines()
     if len(lines) < HEAD:
         raise UnreadableError("it has no header of the Harwell-Boeing format")
@@ -78,7 +78,7 @@ def _count(line: str, field: int, number: int) -> int:
 
 
 def _format(word: str) -> Fields:
-    """The format that a word of the fourth line says."""
+    """The format given by a word of the fourth line."""
     found = FORMAT.fullmatch(word.strip())
     if not found:
         raise UnreadableError(f'line 4: "{word.strip()}" is no Fortran format such as (10I8) or (4E20.13)')
@@ -109,7 +109,7 @@ def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) 
 
 
 def _at_once(lines: list[str], form: Fields, size: int) -> npt.NDArray[np.float64] | None:
-    """Reads the numbers of lines by numpy at once; None where one has to be read on its own."""
+    """Reads the numbers of lines by numpy at once; None if they must be read one by one."""
     full = form.number * form.width
     joined = "".join(line[:full].ljust(full) for line in lines).encode("latin-1")
     words = np.frombuffer(joined, dtype=f"S{form.width}")[:size]

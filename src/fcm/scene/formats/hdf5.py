@@ -1,7 +1,8 @@
-"""Matrices in HDF5 files: of MATLAB 7.3 (.mat), and of any program (.h5, .hdf5), by h5py.
+"""Reads matrices from HDF5 files of MATLAB 7.3 (.mat) and of any program (.h5, .hdf5), by h5py.
 
 A dataset of two dimensions is a matrix; MATLAB stores its transpose. A group with data, indices and indptr
-(or MATLAB's data, ir and jc) is a sparse one. The name of a matrix is its path in the file, as group/K.
+(or MATLAB's data, ir and jc) is a sparse matrix. The name of a matrix is its path in the file, such as
+group/K.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ SCIPY = ("data", "indices", "indptr")
 
 
 def read_hdf5(path: Path, wanted: Collection[str], largest: int) -> tuple[dict[str, Any], list[str]]:
-    """The variables of those names, or all of numbers where none is named; and the names of all.
+    """The wanted variables, or all with numbers if none are named; and the names of all variables.
 
     A variable is an array, a sparse matrix, or an array of strings.
     """
@@ -31,7 +32,7 @@ def read_hdf5(path: Path, wanted: Collection[str], largest: int) -> tuple[dict[s
     except ModuleNotFoundError:
         raise UnreadableError("it needs the package h5py: pip install h5py, or write it as .npz") from None
     with h5py.File(path, "r") as file:
-        matlab = bool(file.userblock_size)  # where MATLAB writes its header
+        matlab = bool(file.userblock_size)  # MATLAB writes its header there
         places: dict[str, Any] = {}
         file.visititems(lambda name, one: places.update({name: one}))
         held = {name: one for name, one in places.items() if _is_variable(name, places)}
@@ -48,8 +49,8 @@ def _is_sparse(one: Any) -> bool:
 
 
 def _is_variable(name: str, places: dict[str, Any]) -> bool:
-    """Whether a name is that of an array, or of a sparse matrix, and not a part of one."""
-    if name.startswith("#"):  # where MATLAB keeps what its cells refer to
+    """Whether a name is that of an array or a sparse matrix, and not of a component of one."""
+    if name.startswith("#"):  # MATLAB stores the contents of cells there
         return False
     one, parent = places[name], places.get(name.rpartition("/")[0])
     if hasattr(one, "keys"):
@@ -69,8 +70,8 @@ def _bytes(one: Any) -> int:
 def _values(one: Any) -> Any:
     """Reads the array of a dataset.
 
-    UnreadableError where its numbers are of no usual form: a library converts any, and what is damaged to
-    such a form would be read as other numbers.
+    Numbers in an unusual format raise UnreadableError. The library would convert them, so that a damaged file
+    could be read as other numbers.
     """
     from h5py import h5t
 
@@ -97,7 +98,7 @@ def _variable(file: Any, one: Any, matlab: bool) -> Any:
 
 
 def _text(file: Any, item: Any) -> str:
-    """A string, or the characters that a reference leads to."""
+    """A string, given directly or by a reference to its characters."""
     if isinstance(item, bytes | str):
         return item.decode("utf-8") if isinstance(item, bytes) else item
     return "".join(map(chr, np.asarray(file[item][()]).T.ravel()))

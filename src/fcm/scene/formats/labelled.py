@@ -1,4 +1,4 @@
-"""A matrix with the names of its rows, and the rules that hold for every program that writes one."""
+"""Matrices with names of rows, and rules that are common to all programs that write them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # numbered from 1 by CalculiX, A
 
 
 class Labelled(Frozen):
-    """A sparse matrix (row, row); rows are the names of its degrees of freedom, empty where none are."""
+    """A sparse matrix (row, row); rows are the names of its degrees of freedom, empty if it has none."""
 
     matrix: Any
     rows: tuple[str, ...] = ()
@@ -43,14 +43,14 @@ def labelled_from(
     Parameters
     ----------
     node, direction : (entry, 2)
-        Of the row and of the column.
+        Those of the row and of the column.
     of : (entry,)
         The line of each entry, for messages.
     value : (entry,)
     mirrored : bool
-        Whether one triangle stands for both, as of `symmetric_from`.
+        Whether one triangle stands for both, as in `symmetric_from`.
 
-    Rows are in the order of their nodes, and of the directions at each.
+    Rows are sorted by node, then by direction.
     """
     pairs = np.stack((node.ravel(), direction.ravel()), axis=1)
     rows, place = np.unique(pairs, axis=0, return_inverse=True)
@@ -66,9 +66,9 @@ def labelled_from(
 def symmetric_from(
     row: Integers, column: Integers, of: Integers, value: Floats, size: int, names: tuple[str, ...] = ()
 ) -> Any:
-    """A symmetric matrix of one triangle of it, or of both if these are equal.
+    """A symmetric matrix from one of its triangles, or from both if they are equal.
 
-    ValueError where an entry is there twice, or differs from its mirror image.
+    A repeated entry, or one that differs from its mirror image, raises UnreadableError.
     """
     low, high = np.minimum(row, column), np.maximum(row, column)
     order = np.lexsort((row, low, high))
