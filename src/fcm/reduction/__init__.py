@@ -1,1 +1,1 @@
-"""Leaves out what a scene does not need, restores it in the results, and checks the effect."""
+"""Omits parts that a scene does not need, restores them in the results, and checks the effect."""

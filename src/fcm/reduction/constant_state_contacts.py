@@ -1,8 +1,7 @@
-"""Contacts that stick, or are open, all over a range: springs, or nothing, in their places.
+"""Replaces contacts that stick or are open over the whole range by springs or nothing.
 
-Which these are is foreseen by the converged balance. Whether they did is seen afterwards from the
-exact motion itself, at every point that was found: a contact that would have slipped, opened or closed in one
-of them is computed after all.
+The converged harmonic balance predicts which contacts keep their state. The exact motion is then checked at
+every point found: a contact that would have slipped, opened or closed there is computed after all.
 """
 
 from __future__ import annotations
@@ -26,16 +25,16 @@ from fcm.shooting.residual_traction import resting
 from fcm.time_domain.state import State
 
 IntArray = npt.NDArray[np.intp]
-WORDS = (  # on a contact that sticks, and on one that is open
+WORDS = (  # phrases for sticking contacts, and for open ones
     ("sticks", "stick", "springs instead", "slip limit"),
     ("is open", "are open", "nothing instead", "gap"),
 )
 
 
 def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> tuple[HeldContact, ...]:
-    """The contacts that keep their state all along every branch of the converged balance.
+    """The contacts that keep their state along every branch of the converged harmonic balance.
 
-    poll is called now and then.
+    poll is called from time to time.
     """
     z, harmonics = _balanced(scene, poll)
     if not z.size:
@@ -57,7 +56,7 @@ def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> t
 
 
 def _balanced(scene: Scene, poll: Callable[[], None] | None) -> tuple[FloatArray, tuple[int, ...]]:
-    """Points z of that balance (point, unknown + 1), and its harmonics; none where it is not complete."""
+    """Points z (point, unknown + 1) of the converged balance, and its harmonics; none if it is incomplete."""
     try:
         found = every_balance(scene, poll or never_interrupt)
     except RestError:
@@ -69,7 +68,7 @@ def _balanced(scene: Scene, poll: Callable[[], None] | None) -> tuple[FloatArray
 
 
 def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> HeldContact | None:
-    """The contact as it is held, if it keeps its state in motions u and v (point, angle)."""
+    """The contact as a held one if it keeps its state in the motions u and v (point, angle); else None."""
     load = contact.n_0 + contact.k_v * v
     if load.max() < REDUCTION.load_margin * min(contact.n_0, 0.0):
         return HeldContact(place, contact, True)
@@ -93,9 +92,9 @@ def _too_stiff(scene: Scene, contact: Contact) -> bool:
 
 
 class NotKeptError(Exception):
-    """Contacts that are held, their `places`, would not have kept their state in a motion.
+    """Raised if held contacts, at `places`, would not have kept their state in a motion.
 
-    reason : why the curve of such motions is not complete.
+    reason : why the curve of these motions is incomplete.
     """
 
     def __init__(self, places: tuple[int, ...], reason: str = "") -> None:
@@ -104,7 +103,7 @@ class NotKeptError(Exception):
 
 
 def check_kept(shot: Shot) -> None:
-    """`NotKeptError` if a contact that is held would not have kept its state over a motion."""
+    """Raises `NotKeptError` if a held contact would not have kept its state over a motion."""
     pairs = zip(shot.system.scene.held, shot.held_distances.tolist(), strict=True)
     lost = tuple(one.place for one, room in pairs if room <= 0.0)
     if lost:
@@ -112,12 +111,12 @@ def check_kept(shot: Shot) -> None:
 
 
 def lost_by(kept: FloatArray) -> IntArray:
-    """The contacts that have not kept their state, of what each keeps: (contact, 2)."""
+    """Indices of the contacts that did not keep their state, from their margins kept (contact, 2)."""
     return np.flatnonzero((kept <= 0.0).any(axis=1))
 
 
 def whole_state(scene: Scene, state: State) -> State:
-    """A state of a scene with contacts held as one of the whole scene."""
+    """The state of the whole scene, from that of a scene with held contacts."""
     friction = np.zeros(len(scene.contacts) + len(scene.held))
     friction[scene.computed()] = state.friction
     displacement = scene.modal.shapes.T @ state.q
@@ -129,16 +128,16 @@ def whole_state(scene: Scene, state: State) -> State:
 
 
 def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
-    """State sequence of each contact of the whole scene, the held ones included."""
+    """State sequence of each contact of the whole scene, including held ones."""
     letters = dict(zip(scene.computed(), states, strict=True))
     letters |= {one.place: "S" if one.open else "E" for one in scene.held}
     return tuple(letters[i] for i in range(len(letters)))
 
 
 def whole_contact_loads(scene: Scene, computed: FloatArray, held: FloatArray) -> FloatArray:
-    """Contact loads of every contact of the whole scene, as of `contact_loads`; held ones do not slip.
+    """Contact loads of all contacts of the whole scene, as from `contact_loads`.
 
-    held : of these the normal and the friction force, (held, 2).
+    held : normal and friction force (held, 2) of held contacts, which do not slip.
     """
     every = np.zeros((len(scene.contacts) + len(scene.held), 4))
     every[scene.computed()] = computed
@@ -149,7 +148,7 @@ def whole_contact_loads(scene: Scene, computed: FloatArray, held: FloatArray) ->
 
 
 def on_contacts(curves: Sequence[Curve], contacts: Sequence[Contact]) -> list[str]:
-    """Sentences on contacts left out of curves since they keep their state, with their margins."""
+    """Sentences on contacts that were held in curves because they keep their state, with their margins."""
     each = [curve.orbits.held for curve in curves if curve.orbits is not None and curve.orbits.held.size]
     if not each:
         return []

@@ -1,4 +1,4 @@
-"""Linear responses of a scene whose contacts are springs, or nothing."""
+"""Linear responses of a scene with springs, or nothing, in place of contacts."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 def contact_stiffnesses(scene: Scene) -> FloatArray:
-    """Stiffnesses of all contacts, (port,), along their directions."""
+    """Stiffnesses (port,) of all contacts along their directions."""
     along = scene.directions_of_contact - 1
     return np.array([(*[c.k_u] * along, c.k_v) for c in scene.contacts]).ravel()
 
 
 def comparison_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
-    """Frequencies spread over the range, and those in it at which a driven harmonic is in resonance."""
+    """Frequencies spread over the range, and those within it at which a driven harmonic is in resonance."""
     low, high = scene.frequency_range
     natural = natural_frequencies(scene, springs) * (1.0 + REDUCTION.resonance_offset)
     at = np.concatenate([natural / harmonic for harmonic in driven_harmonics(scene)])
@@ -29,15 +29,15 @@ def comparison_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
 
 
 def natural_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
-    """Natural frequencies with springs (port,) for contacts."""
+    """Natural frequencies with springs (port,) in place of contacts."""
     return linear_of(scene).stiffened(springs)
 
 
 def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
-    """Greatest relative change of the response with springs (port,) for contacts, all modes in the place of
-    fewer ones: to first order in what these leave out.
+    """Greatest relative change of the linear response between all modes and fewer ones.
 
-    Solved are systems as large as the modes are few; all modes answer to forces that are known then.
+    Springs (port,) replace the contacts. The result is of first order in what the fewer modes omit. Only
+    systems of the size of the fewer modes are solved; all modes then respond to the known forces.
     """
     omega = comparison_frequencies(fewer, springs)
     linear, few = linear_of(full), linear_of(fewer)
@@ -58,9 +58,9 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
 
 
 class ModesWithSprings:
-    """The modes with springs (port,) for contacts at frequencies omega (frequency,).
+    """The modes with springs (port,) in place of contacts, at frequencies omega (frequency,).
 
-    response (frequency, mode): their amplitudes under the forces number k, of harmonic `linear.driven[k]`.
+    response (frequency, mode): amplitudes under the forces of harmonic `linear.driven[k]`.
     """
 
     def __init__(self, linear: Linear, k: int, omega: FloatArray, springs: FloatArray) -> None:
@@ -70,10 +70,10 @@ class ModesWithSprings:
         self.response = self.solved(_force(linear, k, omega))
 
     def solved(self, force: ComplexArray) -> ComplexArray:
-        """Amplitudes (frequency, mode) under forces on the modes."""
+        """Amplitudes (frequency, mode) under modal forces of the same shape."""
         return np.asarray(np.linalg.solve(self.matrix, force[..., None])[..., 0])
 
 
 def _force(linear: Linear, k: int, omega: FloatArray) -> ComplexArray:
-    """The forces number k on each mode (frequency, mode)."""
+    """The modal forces (frequency, mode) of harmonic `linear.driven[k]`."""
     return np.asarray(linear.force[k] + omega[:, None] ** 2 * linear.square[k])

@@ -1,4 +1,4 @@
-"""Effect of the modes left out of exact curves: some points are solved again with all modes."""
+"""Measures the effect of omitted modes on exact curves: solves some points again with all modes."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from fcm.time_domain.errors import SimulationError
 
 
 def effect(response: Response, lighter: ReducedScenes) -> float:
-    """Greatest change of an amplitude, relative to the greatest of the point; inf where it is unknown."""
+    """Greatest change of an amplitude, relative to the greatest amplitude of the point; inf if unknown."""
     numbers = np.unique(np.linspace(0, len(response.curves) - 1, REDUCTION.max_curves).astype(int))
     each = (_of_curve(response.curves[k], lighter.exact[k]) for k in numbers)
     return max(each, default=0.0)
 
 
 def expected_effect(lighter: ReducedScenes) -> float:
-    """Effect of the modes left out, at the starts from the balance, before any curve is followed."""
+    """Effect of omitted modes at initial orbits from harmonic balance, before any curve is followed."""
     numbers = np.unique(np.linspace(0, len(lighter.full) - 1, REDUCTION.max_curves).astype(int))
     return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)
 

@@ -1,8 +1,8 @@
-"""Parts of a scene that need not be computed, with a sentence on each: what, why, and its effect.
+"""Omits parts of a scene that need not be computed, with a sentence on each: what, why, and its effect.
 
-Without any effect are left out: modes that neither a force nor a contact moves, and contacts that carry
-nothing. Modes far above the range are replaced by few (`static_modes`) where that pays; what this changes
-is measured afterwards with all modes, and if it is more than the tolerance they are put back.
+Two omissions have no effect at all: modes that neither a force nor a contact moves, and contacts that carry
+no load. Modes far above the range are replaced by a few (`static_modes`) if that saves time. The change is
+measured afterwards with all modes; if it exceeds the tolerance, they are restored.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from fcm.scene.errors import counted
 
 
 class ReducedScenes(Frozen):
-    """The scenes of a sweep without what they do not need."""
+    """The scenes of a sweep, with and without their negligible parts."""
 
     full: tuple[Scene, ...]
-    exact: tuple[Scene, ...]  # without what has no effect
-    curves: tuple[Scene, ...]  # what is traced
-    contacts: tuple[int, ...]  # which of the contacts are traced, with unknowns of their own
-    sentences: tuple[str, ...]  # what was left out without any effect, and why
-    above: float | None = None  # [rad/s] modes above are replaced by few
-    whole: bool = False  # nothing is to be left out
+    exact: tuple[Scene, ...]  # without parts that have no effect at all
+    curves: tuple[Scene, ...]  # the scenes to trace
+    contacts: tuple[int, ...]  # indices of the contacts that are traced, with unknowns of their own
+    sentences: tuple[str, ...]  # on parts omitted without any effect
+    above: float | None = None  # [rad/s] modes above this frequency are replaced by a few
+    whole: bool = False  # whether nothing may be omitted
 
     @property
     def idle_table(self) -> bool:
@@ -39,16 +39,16 @@ class ReducedScenes(Frozen):
 
 
 def unreduced(curves: tuple[Scene, ...]) -> ReducedScenes:
-    """The scenes with nothing left out."""
+    """The scenes with nothing omitted."""
     return ReducedScenes(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
 def without_negligible_parts(
     curves: tuple[Scene, ...], tolerance: float, highest: int = 1, options: ReductionOptions = REDUCTION
 ) -> ReducedScenes:
-    """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
+    """The scenes without negligible parts; with tolerance 0 only parts without any effect are omitted.
 
-    highest : the greatest harmonic of the response, which modes that are far above are far above, too.
+    highest : the greatest harmonic of the response; replaced modes are far above this harmonic of the range.
     """
     needed = tuple(i for i in range(len(curves[0].contacts)) if any(_carries(s, i) for s in curves))
     lighter = tuple(_with_contacts(s, needed) for s in curves)
@@ -61,14 +61,14 @@ def without_negligible_parts(
 def leave_out_modes(
     curves: tuple[Scene, ...], tolerance: float, highest: int, options: ReductionOptions = REDUCTION
 ) -> ReducedScenes:
-    """Scenes with negligible modes left out, and with all contacts."""
+    """The scenes without negligible modes, but with all contacts; arguments as `without_negligible_parts`."""
     lighter, said = _without_still_modes(curves)
     every = tuple(range(len(curves[0].contacts)))
     return _static(ReducedScenes(curves, lighter, lighter, every, tuple(said)), tolerance, highest, options)
 
 
 def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], list[str]]:
-    """The scenes without modes that stay at rest, and what is said of them."""
+    """The scenes without modes that stay at rest, and a sentence on these."""
     moved = np.logical_or.reduce([_moved(s) for s in _different(curves)])
     if not moved.any() or moved.all():
         return curves, []
@@ -81,7 +81,7 @@ def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], 
 def _static(
     lighter: ReducedScenes, tolerance: float, highest: int, options: ReductionOptions
 ) -> ReducedScenes:
-    """Modes far above the range replaced, where every curve has the same structure."""
+    """Replaces modes far above the range, if all curves have the same structure."""
     curves = lighter.curves
     if len(_different(curves)) > 1:
         return lighter
@@ -93,7 +93,7 @@ def _static(
 
 
 def _stiffest(curves: tuple[Scene, ...]) -> Scene:
-    """The first scene with the greatest stiffness that each contact has in any."""
+    """The first scene with each contact's greatest stiffnesses among all scenes."""
     contacts = []
     for of_one in zip(*(s.contacts for s in curves), strict=True):
         k_u, k_v = max(c.k_u for c in of_one), max(c.k_v for c in of_one)
@@ -102,7 +102,7 @@ def _stiffest(curves: tuple[Scene, ...]) -> Scene:
 
 
 def _different(curves: tuple[Scene, ...]) -> list[Scene]:
-    """One scene for each distinct structure with directions of contacts and forces."""
+    """One scene for each distinct combination of modes and directions of contacts and forces."""
 
     def key(s: Scene) -> tuple[int | bytes, ...]:
         along = [d.tobytes() for d in s.directions_of_contacts()]
@@ -112,7 +112,7 @@ def _different(curves: tuple[Scene, ...]) -> list[Scene]:
 
 
 def _reaches(modal: Modal, direction: FloatArray) -> BoolArray:
-    """Whether each mode moves along a direction (dof,), or some (dof, direction), beyond rounding."""
+    """Whether each mode moves along a direction (dof,), or directions (dof, direction), beyond rounding."""
     size = np.abs(modal.shapes) @ np.abs(direction)
     reaches: BoolArray = np.abs(modal.shapes @ direction) > REDUCTION.rounding * size
     return reaches
@@ -142,7 +142,7 @@ def _moved(scene: Scene) -> BoolArray:
 
 
 def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:
-    """The scene with some contacts; those whose load cannot change have no normal stiffness."""
+    """The scene with the needed contacts; k_v becomes 0 for those whose normal load cannot change."""
     steady = [c.k_v > 0.0 and not _springs_back(scene, c) for c in scene.contacts]
     if len(needed) == len(scene.contacts) and not any(steady):
         return scene

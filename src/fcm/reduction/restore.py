@@ -1,4 +1,4 @@
-"""Restores what was left out of a calculation in its results, and measures its effect."""
+"""Restores omitted contacts in results, and measures the effect of omitted modes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ IntArray = npt.NDArray[np.intp]
 
 
 def restored(response: Response, lighter: ReducedScenes) -> Response:
-    """The response with all contacts in it."""
+    """The response with all contacts, including those that were not traced."""
     full = lighter.full
     if len(lighter.contacts) < len(full[0].contacts):
         response.contacts = tuple(c.name for c in full[0].contacts)
@@ -32,7 +32,7 @@ def restored(response: Response, lighter: ReducedScenes) -> Response:
 
 
 def checked(response: Response, lighter: ReducedScenes) -> float:
-    """Shift of the response, relative, when points of the curves are corrected with all modes."""
+    """Greatest relative shift of sampled points of the curves by a correction with all modes."""
     per_curve = max(min(REDUCTION.max_checked_of_curve, REDUCTION.max_checked // len(response.curves)), 1)
     shifts = []
     for number in _spread(len(response.curves), REDUCTION.max_checked):
@@ -44,7 +44,7 @@ def checked(response: Response, lighter: ReducedScenes) -> float:
 
 
 def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
-    """Give a curve the loops and states of the contacts that were not traced, which carry nothing."""
+    """Adds to a curve the loops and states of the contacts that were not traced, which carry no load."""
     if curve.points == 0:
         traced = []
         curve.loop, curve.regime, curve.cycle = curve.loop[:, :0], curve.regime[:, :0], curve.cycle[:, :0]
@@ -63,7 +63,7 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     curve.across = None if motions is None else motions.at(rows)
     regime[at], cycle[at] = cycles(system, z, loop[at])
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
-    error = np.where(cycle == 0.0, 0.0, np.nan)  # what a contact that carries nothing cannot exert is exact
+    error = np.where(cycle == 0.0, 0.0, np.nan)  # zeros of a contact without load are exact
     of_greatest = np.where(at.size > 0 and (cycle[at] == 0.0).all(axis=0), 0.0, np.nan)
     error[:, traced] = curve.cycle_error
     if curve.greatest is not None and traced:
@@ -95,7 +95,7 @@ def unknowns(curve: Curve, scene: Scene, at: IntArray, harmonics: tuple[int, ...
 
 
 def _sample(curve: Curve, count: int) -> IntArray:
-    """Points of a curve: those of the greatest amplitudes, and others spread evenly."""
+    """Indices of points of a curve: those of the greatest amplitudes, and others spread evenly."""
     there = np.flatnonzero(np.isfinite(curve.frequency))
     if there.size == 0:
         return there
@@ -120,15 +120,15 @@ def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
             return np.inf
         X = reported_at(system, moved[None]).X[0]
         change = np.abs(X - before).max() / np.abs(X).max()
-        # what the correction moved along the frequency counts as well, relative to the range
+        # the shift in frequency counts as well, relative to the range
         worst = max(worst, float(change + abs(moved[-1] - z[-1]) / (high - low)))
     return worst
 
 
 def corrected(newton: Newton, z: FloatArray, along: bool = True) -> FloatArray | None:
-    """The point of the curve in the plane through z normal to it, or else at the frequency of z.
+    """The corrected point near z: in the plane normal to the curve if along, else at the frequency of z.
 
-    None where Newton's method does not converge.
+    None if Newton's method does not converge.
     """
     begin_near(newton, z)
     if along and newton.take_tangent():

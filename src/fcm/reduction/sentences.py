@@ -1,4 +1,4 @@
-"""Sentences on what was left out of a calculation: what, why, and what it changes."""
+"""Sentences on parts omitted from a calculation: what, why, and the effect."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
-    """Contacts by their names, or by their numbers, the first few of them."""
+    """The first few contacts by name, or by number if they have none, and how many more there are."""
     names = [contacts[i].name or str(i) for i in numbers]
     more = f" and {len(names) - REDUCTION.max_names} more" if len(names) > REDUCTION.max_names else ""
     return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[: REDUCTION.max_names])}{more}"
 
 
 def on_modes(lighter: ReducedScenes, shift: float) -> str:
-    """Sentence on the modes that were replaced, with the bound that the check gives."""
+    """Sentence on the modes that were replaced, with a bound from the measured shift."""
     modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
     limit = lighter.above or 0.0
     high, few = (int((one.frequency > limit).sum()) for one in (modal, fewer))
@@ -36,7 +36,7 @@ def on_modes(lighter: ReducedScenes, shift: float) -> str:
 
 
 def on_means(lighter: ReducedScenes) -> list[str]:
-    """Rigid-body modes whose mean no force depends on."""
+    """Sentence on rigid-body modes whose mean does not affect any force; none without such modes."""
     from fcm.structure.rigid import settled
 
     adrift = max(int(np.count_nonzero(settled(scene)[1])) for scene in lighter.exact)

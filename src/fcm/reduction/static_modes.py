@@ -1,19 +1,19 @@
-"""Modes far above the range, replaced by a few that have their flexibility.
+"""Replaces modes far above the range by a few with the same flexibility.
 
-Seen from p directions (of contacts and forces), many modes of high frequency are no more than p springs with
-some mass. Kept is the subspace of their static response to those directions, and of the static response to
-the inertia of that (Ritz, Galerkin). These are 2 p modes whose flexibility has an error of the order
-(omega / omega_high)^4 at every degree of freedom. Their damping is right one by one, but not between
-them. The error is of the order 2 zeta omega / omega_high times the small share by which the flexibility
-varies.
+For p directions (of contacts and forces), many modes of high frequency act like p springs with some mass. The
+replacement keeps the subspace of their static response to these directions, and of the static response to its
+inertia (Ritz, Galerkin). This gives 2 p modes, whose flexibility has an error of the order
+(omega / omega_high)^4 at every degree of freedom. Their damping is right for each mode, but the coupling
+between them by damping is omitted. This error is of the order 2 zeta omega / omega_high times the small share
+by which the flexibility varies.
 
-Many contacts have as many directions, and most of the flexibility between them is small beside that of the
-contacts themselves. With their springs k and the static response S of the high modes to their directions,
+Many contacts have many directions, but most of the structure's flexibility along them is small compared with
+that of the contacts. With the contact springs k and the static response S of the high modes,
 
     k^(1/2) S^T S k^(1/2) = V diag(s) V^T,
 
-and along a combination V_i k^(1/2) of the directions the structure yields s_i of what the contacts do. As
-many of the greatest are kept as the accuracy needs, and the directions of all forces.
+and along the combination V_i k^(1/2) of directions the structure yields s_i times as much as the contacts.
+The greatest s_i are kept, as many as the accuracy needs, and the directions of all forces.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from fcm.reduction.options import REDUCTION, ReductionOptions
 def with_static_modes(
     scene: Scene, tolerance: float, highest: int = 1, options: ReductionOptions = REDUCTION
 ) -> tuple[Modal, float] | None:
-    """Fewer modes for the scene, and the frequency above which they are replaced; None if it does not pay.
+    """Fewer modes for the scene, and the frequency above which they replace modes; None if nothing is saved.
 
-    The error is estimated on the structure with springs for contacts, see `_linear_error`.
+    The error is estimated with springs for contacts, see `_linear_error`.
     """
     modal = scene.modal
     if modal.frequency.size < options.min_modes or tolerance <= 0.0 or not scene.contacts:
@@ -53,7 +53,7 @@ def with_static_modes(
                 break
             if _linear_error(scene, replace(scene, modal=fewer)) < options.estimate_margin * tolerance:
                 return fewer, limit
-        if len(choices) > 1:  # what is missing are combinations, at any limit
+        if len(choices) > 1:  # a higher limit does not help: more combinations would be needed
             return None
     return None
 
@@ -85,15 +85,18 @@ def condensed(
 
 
 def _unit(columns: FloatArray) -> FloatArray:
-    """Columns of length 1; those of length 0 left out."""
+    """The columns normalised to length 1, without those of length 0."""
     size = np.sqrt((columns * columns).sum(axis=0))
     unit: FloatArray = columns[:, size > 0.0] / size[size > 0.0]
     return unit
 
 
 def _choices(scene: Scene, high: BoolArray, options: ReductionOptions) -> Iterator[FloatArray]:
-    """Directions (dof, direction) to which the modes marked high may answer: all where these are few, else
-    those of the forces and more and more of the combinations along which these modes yield most."""
+    """Yields sets of directions (dof, direction) for the static response of the modes marked high.
+
+    If there are few directions, this is the set of all. Otherwise each set has those of the forces, and more
+    and more of the combinations of contact directions along which the modes yield most.
+    """
     contacts, pushes = (np.array(d).T for d in (scene.directions_of_contacts(), scene.pushes()))
     every = contacts.shape[1] + pushes.shape[1]
     if 2 * every <= options.max_remaining * scene.modal.frequency.size - int((~high).sum()):
@@ -110,10 +113,10 @@ def _choices(scene: Scene, high: BoolArray, options: ReductionOptions) -> Iterat
 
 
 def _linear_error(full: Scene, fewer: Scene) -> float:
-    """Greatest relative change of the linear responses: contacts all open, all stuck, and in part.
+    """Greatest relative change of linear responses: with all contacts open, all stuck, and partly stuck.
 
-    Where contacts begin to slip, the friction changes gradually from one to the next. So the springs in part
-    are 0 in the first half of the contacts, grow over a quarter, and are whole in the rest.
+    The partly stuck case models gradual slip from one contact to the next: springs are 0 in the first half of
+    the contacts, grow over a quarter, and have their full stiffness in the rest.
     """
     springs = contact_stiffnesses(full)
     along = np.arange(springs.size) / springs.size

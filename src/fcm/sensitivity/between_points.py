@@ -1,4 +1,4 @@
-"""Peaks between the points of a path, of degrees of freedom that it was not followed by."""
+"""Finds peaks between the points of a path, for degrees of freedom whose peaks the path did not locate."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class InterpolationOptions(Frozen):
     tolerance : float
         Last coefficients of an amplitude's polynomial, relative to it, above which the interval is halved.
     max_halvings : int
-        Greatest number of nested halvings of an interval; beyond it the polynomial is taken as it is.
+        Greatest number of nested halvings of an interval; after that the polynomial is used as it is.
     samples : int
-        Places at which the greatest value of a polynomial is looked for.
+        Number of points at which the greatest value of a polynomial is searched for.
     max_steps : int
-        Steps of Newton's method from there to where its slope is 0.
+        Number of Newton steps from there to a zero of its slope.
     """
 
     degree: int = 8
@@ -44,8 +44,10 @@ INTERPOLATION = InterpolationOptions()
 
 
 def tops_between(system: System, path: Path, quantities: ReportedQuantities) -> tuple[FloatArray, FloatArray]:
-    """Greatest amplitudes (dof,) of a path, and their frequencies, at its points or beside the highest of
-    these: where the amplitude grows at one of two neighbours and shrinks at the other."""
+    """Greatest amplitudes (dof,) of a path and their frequencies, at its points or next to the highest point.
+
+    Between two neighbours there is a peak if the amplitude grows at the first and decreases at the second.
+    """
     top, d = quantities.amplitude.argmax(axis=0), np.arange(quantities.amplitude.shape[1])
     height, omega = quantities.amplitude[top, d], path.parameter[top]
     last = len(path.z) - 1
@@ -60,7 +62,7 @@ def tops_between(system: System, path: Path, quantities: ReportedQuantities) -> 
 
 
 class _Way:
-    """The curve from a point of a path to the next, for some degrees of freedom."""
+    """The segment of a curve from a point of a path to the next, for some degrees of freedom."""
 
     def __init__(self, system: System, path: Path, first: int, dofs: Indices) -> None:
         scene = system.scene
@@ -72,13 +74,13 @@ class _Way:
         self.dofs, self.between = dofs, Segment(self.system.new_balance(), path, first)
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
-        """Raises heights (dof,) and their frequencies to greater ones found on the way."""
+        """Updates heights (dof,) and their frequencies with greater ones found on the segment."""
         self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, INTERPOLATION.max_halvings)
 
     def _part(
         self, low: float, high: float, which: Indices, height: FloatArray, omega: FloatArray, halvings: int
     ) -> None:
-        """Searches a part of the curve for greater peaks, for some of its degrees of freedom."""
+        """Searches a part of the segment for greater amplitudes of some of its degrees of freedom."""
         degree = INTERPOLATION.degree
         x = chebyshev.chebpts2(degree + 1)
         points = [self._at(low + 0.5 * (1.0 + one) * (high - low)) for one in x]
@@ -103,12 +105,12 @@ class _Way:
                 height[d], omega[d] = value, float(chebyshev.chebval(at, of_omega))
 
     def _at(self, part: float) -> FloatArray | None:
-        """The point of the curve there."""
+        """The point of the curve at a fraction of the segment; None if it is not found."""
         return self.between.z if self.between.find(part) else None
 
 
 def _highest(polynomial: FloatArray) -> float:
-    """Place in [-1, 1] at which a Chebyshev series is greatest."""
+    """The argument in [-1, 1] at which a Chebyshev series is greatest."""
     places = np.linspace(-1.0, 1.0, INTERPOLATION.samples)
     at = float(places[chebyshev.chebval(places, polynomial).argmax()])
     slope, bend = chebyshev.chebder(polynomial), chebyshev.chebder(polynomial, 2)

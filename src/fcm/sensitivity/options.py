@@ -1,4 +1,4 @@
-"""Steps and tolerances of the derivatives of peaks by numbers of a scene."""
+"""Options of the derivatives of peaks by numbers of a scene: steps and tolerances."""
 
 from __future__ import annotations
 
@@ -6,29 +6,29 @@ from fcm.frozen import Frozen
 
 
 class SensitivityOptions(Frozen):
-    """Options on how derivatives of peaks are found.
+    """Options on how derivatives of peaks are computed.
 
-    Lengths are along the curve, in the scale of its unknowns.
+    Lengths are along the curve, in scaled unknowns.
 
     Attributes
     ----------
     step : float
         Step of a difference quotient: relative to a number, and as a length along the curve.
     side_distance : float
-        Length to either side of a peak at which its slope has the one sign and the other.
+        Distance from a peak, on either side, at which the slope of the amplitude is tested.
     flat_slope : float
-        Slope of the amplitude at that length, relative to the amplitude, below which a peak is smooth; above
-        it is a corner.
+        Slope at this distance, relative to the amplitude, below which a peak is smooth. Otherwise it is a
+        corner if a margin changes sign there.
     max_iterations : int
-        Most Newton steps from where a peak is said to be to where it is.
+        Greatest number of Newton steps from a given point to the peak.
     tolerance : float
         Length of a Newton step below which it is the last.
     corner, corner_tolerance : float
-        Length within which a corner moves with the number, and error to which the corner is found.
+        Distance within which a corner is searched for after a change of the number, and its tolerance.
     number : float
         Step of the difference quotients of the structure's arrays, relative to the number.
     friction : float
-        Coefficient of friction that stands for none: the derivative by it is taken from its forces.
+        Small coefficient of friction in place of mu = 0, to compute the derivative by mu from its forces.
     """
 
     step: float = 1e-4
@@ -42,4 +42,4 @@ class SensitivityOptions(Frozen):
     friction: float = 1e-9
 
 
-SENSITIVITY = SensitivityOptions()  # where nothing else is said
+SENSITIVITY = SensitivityOptions()  # the defaults

@@ -1,13 +1,13 @@
-r"""Derivatives of the balance, and of what is reported, by any number of the scene, its unknowns held.
+r"""Derivatives of the balance and of reported displacements by any number of the scene, at fixed unknowns.
 
-A law's forces depend on its numbers only through the products k_u u, mu k_v v, mu n_0 and k_v v, n_0. The
-derivatives by those come from the law itself, evaluated with stiffnesses of 1. The structure's modal
-displacements a = c q under the modal forces q = f - P F give
+The forces of a contact law depend on its numbers only through the products k_u u, mu k_v v, mu n_0 and k_v v,
+n_0. The derivatives by these come from the law itself, evaluated with stiffnesses of 1. With the structure's
+modal displacements a = c q under the modal forces q = f - P F,
 
     dR = -d(P^T a) = -(dP^T a + P^T (dc q + c dq)),    dq = df - dP F - P dF
 
-The derivatives of the structure's arrays by a number are differences of sixth order with a step of 0.3 %:
-exact where they are linear, to some 1e-12 elsewhere.
+The derivatives of the structure's arrays by a number are sixth-order differences with a step of 0.3 %. They
+are exact for linear dependence, and otherwise accurate to about 1e-12.
 """
 
 from __future__ import annotations
@@ -31,31 +31,35 @@ from fcm.structure.linear import Linear, linear_of
 
 ComplexArray = npt.NDArray[np.complex128]
 
-STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # of the first derivative, of the sixth order
+STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # central differences of sixth order, first derivative
 ARRAYS = ("natural", "damping", "ports", "dofs", "force", "square", "load", "flexibility", "counted")
 
 
 class Rates(Frozen):
-    """Rates of a number's system: of mu, k_u, k_v, n_0 (contact, 4), of the displacements (port,) at which
-    contacts start unstressed, and of the structure's arrays."""
+    """Rates of a system by a number: of contact numbers, sliders and the structure's arrays.
+
+    contact: rates of mu, k_u, k_v, n_0 (contact, 4). sliders: rates (port,) of the displacements at which
+    contacts start unstressed.
+    """
 
     contact: FloatArray
     sliders: FloatArray
-    linear: Linear  # of rates, not a structure
+    linear: Linear  # holds rates of the arrays of a structure
     system: System
     options: SensitivityOptions = SENSITIVITY
 
     def at(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
-        """Rates of the residual (unknown,) and of the displacements X (harmonic, dof) reported, at fixed z.
+        """Rates of the residual (unknown,) and of reported displacements X (harmonic, dof), at fixed z.
 
-        Of a displacement that is made up of those of contacts, which are unknowns, only what the combination
-        changes. Together with the derivatives by the unknowns it is right at solutions.
+        Some displacements are combinations of contact displacements, which are unknowns. Their rates only
+        include the change of the combination. With the derivatives by the unknowns, they are complete at
+        solutions.
         """
         balance.evaluate(z)
         return self.here(balance, z)
 
     def here(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
-        """Rates of residual and displacements as of `at`, where the balance was evaluated last."""
+        """The rates of `at`, if the balance was last evaluated at z."""
         residual, displacements = self._without_sliders(balance, z)
         if self.sliders.any():
             residual[balance.layout.mean_at] += self.sliders
@@ -89,7 +93,7 @@ class Rates(Frozen):
             c = np.asarray(receptance.c_re)[j] + 1j * np.asarray(receptance.c_im)[j]
             a, da = c * q, self._compliance(c, h * z[-1]) * q + c * dq
             rows[:, 1 + j] = -(rate.ports.T @ a + structure.ports.T @ da)
-            # of combinations of ports, what these no longer are when the ports themselves change
+            # for combinations of ports, the change of the ports' shapes enters with the opposite sign
             of_ports = np.asarray(balance.displacements.attached).T @ (rate.ports.T @ a)
             apart = np.asarray(balance.displacements.without_modes) > 0
             displacements[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
@@ -97,11 +101,11 @@ class Rates(Frozen):
 
     @cached_property
     def _of_laws(self) -> bool:
-        """Whether nothing of the structure changes, only how contacts answer."""
+        """Whether the number changes only contact laws, and not the structure."""
         return not any(getattr(self.linear, name).any() for name in ARRAYS)
 
     def _at_laws(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
-        """Rates as of `at` for a number of contacts alone: response to the rates of their forces."""
+        """The rates of `at` for a number of contacts alone: response to the rates of their forces."""
         structure, receptance, layout = self.system.linear, balance.receptance, balance.layout
         apart = np.asarray(balance.displacements.without_modes) > 0
         displacements = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
@@ -115,12 +119,12 @@ class Rates(Frozen):
 
     @cached_property
     def _of_forces(self) -> bool:
-        """Whether nothing but the harmonic forces on the structure changes."""
+        """Whether the number changes only the harmonic forces."""
         others = (getattr(self.linear, name) for name in ARRAYS if name not in ("force", "square"))
         return not self.contact.any() and not any(other.any() for other in others)
 
     def _at_forces(self, balance: Balance, omega: float) -> tuple[FloatArray, ComplexArray]:
-        """Rates as of `at` for a number of the forces alone: response to the rates of the forces."""
+        """The rates of `at` for a number that changes only forces: response to the rates of the forces."""
         structure, receptance = self.system.linear, balance.receptance
         residual = np.zeros(balance.unknowns)
         displacements = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
@@ -144,7 +148,7 @@ class Rates(Frozen):
         return -c * c * (2.0 * linear.natural * rate.natural + 2j * w * damped)
 
     def _forces(self, balance: Balance, z: FloatArray) -> FloatArray:
-        """Rates of the contacts' forces (unknown,), without those counted to the structure."""
+        """Rates of the contact forces (unknown,), without the part that is counted to the structure."""
         found, normal = np.zeros(balance.unknowns), balance.directions - 1
         for i, rate in enumerate(self.contact):
             first = i * balance.width
@@ -175,37 +179,37 @@ def law_rates(law: Law, x: FloatArray, options: SensitivityOptions = SENSITIVITY
         by_mu = slope @ load / mu
     law.k_u, law.k_v = k_u, k_v
     by_n_0 = slope[:, mean].copy()
-    by_n_0[mean] -= float(n_0 > 0.0)  # the preload that the structure at rest is in equilibrium with
+    by_n_0[mean] -= float(n_0 > 0.0)  # the preload is in equilibrium with the structure at rest
     return np.stack((np.where(normal, 0.0, by_mu), slope @ (x * ~normal), slope @ (x * normal), by_n_0))
 
 
 def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
-    """Rate of each amplitude (dof,) when the displacements just reported have the rates X (harmonic, dof)."""
+    """Rate of each amplitude (dof,), if the last reported displacements have the rates X (harmonic, dof)."""
     displacements, harmonics = balance.displacements, np.asarray(balance.receptance.harmonics)
     now = np.asarray(displacements.re) + 1j * np.asarray(displacements.im)
     if harmonics.size == 1:
         size = np.abs(now[0])
         return np.where(size > 0.0, (np.conj(now[0]) * X[0]).real / np.where(size > 0.0, size, 1.0), 0.0)
     turned = np.exp(1j * harmonics[:, None, None] * np.asarray(displacements.angles)) * X[:, None]
-    rates = turned.sum(axis=0).real  # of the greatest and of the least displacement
+    rates = turned.sum(axis=0).real  # rates of the greatest and of the least displacement
     growth: FloatArray = 0.5 * (rates[0] - rates[1])
     return growth
 
 
 def rates_of(system: System, address: str, options: SensitivityOptions = SENSITIVITY) -> Rates:
-    """The rates of a system when a number moves by one of its unit; ones of several add up.
+    """The rates of a system by a number; if the number stands for several, their rates add up.
 
     Parameters
     ----------
     address : str
-        The number as in [sweep], "contact.shroud.n_0"; with several, of all of them moved together.
+        The key path of the number as in [sweep], such as "contact.shroud.n_0".
 
     Raises
     ------
     SceneError
         If there is no such number.
     ValueError
-        If it changes what rigid-body motions a structure has.
+        If the number changes which rigid-body motions the structure has.
 
     Examples
     --------
@@ -236,15 +240,15 @@ def rates_of(system: System, address: str, options: SensitivityOptions = SENSITI
 
 
 def contact_numbers(scene: Scene) -> FloatArray:
-    """mu, k_u, k_v, n_0 (contact, 4); each is linear in whatever number of a scene it depends on."""
+    """mu, k_u, k_v, n_0 (contact, 4); each depends linearly on any number of a scene."""
     return np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]).reshape(-1, 4)
 
 
-_OF_LAW = ("mu", "k_u", "n_0", "gap")  # numbers of contacts that the structure's arrays do not have
+_OF_LAW = ("mu", "k_u", "n_0", "gap")  # numbers of contacts that do not affect the structure's arrays
 
 
 def changes_rigid_bodies(linear: Linear, number: Number, value: float) -> bool:
-    """Whether a number at a value changes the rigid-body motions, so that rates by it are not known."""
+    """Whether a number at a value changes the rigid-body motions, so that rates by it are unknown."""
     address = number.addresses[0]
     of_modes = address[0] == "modal" and "damping" not in address
     of_contacts = address[0] == "contact" and address[-1] not in _OF_LAW and not value
@@ -254,7 +258,7 @@ def changes_rigid_bodies(linear: Linear, number: Number, value: float) -> bool:
 def _linear(
     system: System, number: Number, value: float, options: SensitivityOptions = SENSITIVITY
 ) -> Iterator[tuple[str, npt.NDArray[np.inexact]]]:
-    """Derivatives of the arrays of the structure."""
+    """Yields name and derivative of each array of the structure that depends on the number."""
     kind, field = number.addresses[0][0], number.addresses[0][-1]
     rigid = bool((system.linear.natural == 0.0).any())
     if (kind == "contact" and field in _OF_LAW) or (field == "k_v" and not rigid):

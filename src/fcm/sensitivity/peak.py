@@ -21,7 +21,7 @@ from fcm.scene.draft import Number
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import Rates, growth_of
 
-STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))  # of the first derivative, of the fourth order
+STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))  # central differences of fourth order, first derivative
 ONE_SIDED = ((0, -25.0 / 12.0), (1, 4.0), (2, -3.0), (3, 4.0 / 3.0), (4, -0.25))  # for numbers at a limit
 
 
@@ -35,7 +35,7 @@ class PeakKind(Enum):
 
 
 class Unknown(Enum):
-    """Why a peak has no derivatives, or not by a number."""
+    """Why the derivatives of a peak, or its derivative by one number, are unknown."""
 
     NOTHING = ""  # they are known
     AT_REST = "nothing moves there"
@@ -48,7 +48,7 @@ class Unknown(Enum):
 
 
 class ParameterStencil(Frozen):
-    """The balance with other values of a number: weights of a derivative, with the balances."""
+    """Difference quotient by a number: weights, each with the balance at a changed value of the number."""
 
     terms: list[tuple[float, Newton]]
 
@@ -72,7 +72,7 @@ def moved_by(
 
 
 class PeakSolution:
-    """One peak: its point, the direction of the curve there, and its kind."""
+    """One peak: its point, the tangent of the curve there, and its kind."""
 
     def __init__(
         self, system: System, dof: int, z: FloatArray, edge: bool, options: SensitivityOptions = SENSITIVITY
@@ -80,11 +80,11 @@ class PeakSolution:
         self.options = options
         self.dof, self.newton, self.edge = dof, Newton(system.new_balance()), edge
         self.kind, self.margin, self.curvature = PeakKind.UNKNOWN, -1, np.nan
-        self.why = Unknown.NOT_SOLVED  # where the kind is unknown
+        self.why = Unknown.NOT_SOLVED  # the reason if the kind is unknown
         balance = self.newton.problem
         balance.evaluate_scale(z)
         self.scale = np.array(balance.scale)
-        self.unit = np.eye(z.size)[-1]  # the curve is met across this, in scaled coordinates
+        self.unit = np.eye(z.size)[-1]  # normal of the plane of solutions, in scaled coordinates
         self.z = np.array(z)
         if not edge:
             self.newton.scale[:], self.newton.z[:], self.newton.row[:] = self.scale, z, self.unit
@@ -98,7 +98,7 @@ class PeakSolution:
         self.kind, self.why = (PeakKind.EDGE, Unknown.NOTHING) if edge else self._kind()
 
     def solved(self, newton: Newton, guess: FloatArray) -> FloatArray | None:
-        """The point of a curve in the plane across the direction through the guess; tangent is that there."""
+        """The point of a curve in the plane normal to `unit` through the guess, or None; sets the tangent."""
         newton.scale[:], newton.z[:], newton.row[:] = self.scale, guess, self.unit
         if not newton.correct(1.0):
             return None
@@ -106,18 +106,18 @@ class PeakSolution:
         return point if newton.take_tangent() else None
 
     def slope(self, newton: Newton, z: FloatArray) -> float:
-        """Growth of the amplitude along the curve, over a unit of length, at a point just solved."""
+        """Derivative of the amplitude by length along the curve, at the last solved point."""
         newton.problem.evaluate(z)
         newton.problem.evaluate_outputs(z, np.ascontiguousarray(np.asarray(newton.tangent) * self.scale))
         return float(newton.problem.growth[self.dof])
 
     def along(self, length: float) -> FloatArray:
-        """A guess at a length along the curve."""
+        """A guess at a distance along the tangent of the curve."""
         guess: FloatArray = self.z + length * self.scale * self.unit
         return guess
 
     def _kind(self) -> tuple[PeakKind, Unknown]:
-        """Find the peak next to where it is said to be, and what it is, or why that is unknown."""
+        """Finds the peak next to the given point, and returns its kind, or why this is unknown."""
         before, after = (
             self._at_length(-self.options.side_distance),
             self._at_length(self.options.side_distance),
@@ -127,7 +127,7 @@ class PeakSolution:
             return PeakKind.UNKNOWN, Unknown.ONE_SIDED
         flat = max(abs(before[0]), abs(after[0])) < self.options.flat_slope * size
         changed = np.flatnonzero(before[1] * after[1] < 0.0)
-        if flat or not changed.size:  # a steep one without a corner is narrow
+        if flat or not changed.size:  # a steep peak without a corner is a narrow smooth one
             found = self._climb()
             return (PeakKind.SMOOTH, Unknown.NOTHING) if found else (PeakKind.UNKNOWN, Unknown.NO_MAXIMUM)
         if changed.size > 1:
@@ -136,7 +136,7 @@ class PeakSolution:
         return PeakKind.CORNER, Unknown.NOTHING
 
     def _at_length(self, length: float) -> tuple[float, FloatArray] | None:
-        """Slope and margins at a length along the curve."""
+        """Slope and margins at a distance along the curve; None if no solution is found."""
         point = self.solved(self.newton, self.along(length))
         if point is None:
             return None
@@ -144,7 +144,7 @@ class PeakSolution:
         return self.slope(self.newton, point), np.array(self.newton.problem.margin)
 
     def _climb(self) -> bool:
-        """Newton's method along the curve to where the slope is 0."""
+        """Moves by Newton's method along the curve to a maximum, where the slope is 0; False if it fails."""
         for _ in range(self.options.max_iterations):
             self.curvature = bend = self.bend()
             point = self.solved(self.newton, self.z)
@@ -191,7 +191,7 @@ class PeakSolution:
 
     @cached_property
     def _factors(self) -> tuple[FloatArray, npt.NDArray[np.int32]]:
-        """Factors of the equations of the plane across the curve: how the point moves in it."""
+        """LU factors of the bordered Jacobian, for motions of the point in the plane normal to the curve."""
         balance = self.newton.problem
         assert isinstance(balance, Balance)
         balance.evaluate(self.z)
@@ -202,7 +202,7 @@ class PeakSolution:
         return factors
 
     def _slope_by_number(self, moved: ParameterStencil) -> float:
-        """c_p: derivative of the slope by the number, in the plane across the curve."""
+        """c_p: derivative of the slope by the number, in the plane normal to the curve."""
         total = 0.0
         for weight, newton in moved.terms:
             point = self.solved(newton, self.z)
@@ -218,7 +218,7 @@ class PeakSolution:
         return float(total[0]), float(total[1])
 
     def _landed(self, newton: Newton) -> FloatArray | None:
-        """The corner of a curve next to the peak."""
+        """The corner of a curve next to the peak; None if there is none."""
 
         def margin(length: float) -> float:
             point = self.solved(newton, self.along(length))

@@ -1,13 +1,14 @@
-r"""Sensitivities: the derivatives of a peak, its height and its frequency, by the numbers of a scene.
+r"""Sensitivities: derivatives of the height and frequency of peaks by the numbers of a scene.
 
-With the balance R(z, p) = 0, z the unknowns and the frequency, and t the direction of the curve, solutions
-move with a number p by w, for which R_z w = -R_p and t . w = 0, and along the curve by alpha t. The peak of
-an amplitude A has A_z . t = 0, so the derivative of its height is A_p + A_z . w, exact from the Jacobian.
-Along the curve the slope c = A_z . t / |t| stays 0, so that alpha = -c_p / c_s. These derivatives are
-differences of c between solutions at p +- delta, and at s +- delta along the curve.
+Let R(z, p) = 0 be the balance, with the unknowns and the frequency in z, and t the tangent of the curve. A
+change of a number p moves a solution by w, with R_z w = -R_p and t . w = 0, and by alpha t along the curve.
+The peak of an amplitude A has A_z . t = 0. So the derivative of its height is A_p + A_z . w, exact from the
+Jacobian. At the peak the slope c = A_z . t / |t| stays 0, so that alpha = -c_p / c_s. These two derivatives
+are differences of c between solutions at p +- delta, and at s +- delta along the curve.
 
-A peak at a corner of the curve, where a margin of the problem is 0, is landed on with the number at p +-
-delta. Its derivatives are differences of the fourth order. They hold as long as the peak is at the corner.
+A peak can be at a corner of the curve, where a margin of the problem is 0. The corner is then located at
+several values of the number around p, and the derivatives are differences of fourth order. They hold as long
+as the peak stays at the corner.
 """
 
 from __future__ import annotations
@@ -37,14 +38,14 @@ class Sensitivities(Frozen):
     height: FloatArray  # (dof, number) derivative of the peak's height
     frequency: FloatArray  # (dof, number) and of its frequency [rad/s]
     kind: tuple[PeakKind, ...]  # (dof,)
-    why: tuple[Unknown, ...]  # (dof,) of derivatives that are unknown by every number
-    why_by_number: tuple[tuple[Unknown, ...], ...]  # (dof, number) of those of a known kind
+    why: tuple[Unknown, ...]  # (dof,) reason if the derivatives by all numbers are unknown
+    why_by_number: tuple[tuple[Unknown, ...], ...]  # (dof, number) reason for peaks of a known kind
 
 
 def numbers_of(scene: Scene) -> list[Number]:
-    """The numbers of a scene by which peaks have derivatives: contacts, forces, loads, modes.
+    """The numbers of a scene for which derivatives are computed: of contacts, forces, base, loads and modes.
 
-    Contacts of one group are moved together. The scene is that of one curve, `unswept`.
+    Numbers of contacts of one group change together. The scene is that of one curve, see `unswept`.
     """
     assert scene.draft is not None
     parts = scene.draft.parts
@@ -57,22 +58,22 @@ def numbers_of(scene: Scene) -> list[Number]:
     forces, bases = _names(parts["force"]), len(parts["base"])
     keys += [f"force.{name}.amplitude" for name in forces]
     phases = ["base.phase"] * bases + [f"force.{name}.phase" for name in forces]
-    keys += phases if len(phases) > 1 else []  # that of one alone shifts the time
+    keys += phases if len(phases) > 1 else []  # a single phase only shifts the time
     keys += ["base.acceleration"] * bases + [f"load.{name}.force" for name in _names(parts["load"])]
-    own = scene.modal.mass.size - scene.modal.added  # not the flexibility of the modes left out
+    own = scene.modal.mass.size - scene.modal.added  # without those for the flexibility of omitted modes
     keys += [f"modal.{key}.{i}" for key in ("frequency", "damping") for i in range(own)]
     known = Addresses(parts)
     return [number_of(scene, key) for key in keys if known.numbers.get(key) or key.startswith("contact.")]
 
 
 def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Names of forces or loads as in key paths: the index where a name is not unique."""
+    """Names of forces or loads in key paths; the index replaces a name that is not unique."""
     names = [draft["name"] for draft in drafts]
     return [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
 
 
 def unswept(scene: Scene) -> Scene:
-    """The scene of one curve as if nothing had been swept: its values are those of the curve."""
+    """The scene of one curve without a sweep: the curve's swept values are written into its draft."""
     draft = scene.draft
     if not isinstance(draft, Draft):
         raise ValueError(f"the scene {quoted(scene.name)} was not read from a file or a dict")
@@ -86,15 +87,15 @@ def sensitivities(
     dofs: int,
     options: SensitivityOptions = SENSITIVITY,
 ) -> Sensitivities:
-    """Derivatives of peaks by every number of a scene (of one curve).
+    """Derivatives of peaks by every number of a scene, which is that of one curve.
 
     Parameters
     ----------
     peaks : sequence of (dof, z, edge)
-        The degree of freedom by its place, a point (unknown + 1,) at or very near its peak, and whether the
-        peak is where the range ends.
+        The index of the degree of freedom, a point (unknown + 1,) at or very near its peak, and whether the
+        peak is at an end of the range.
     dofs : int
-        How many degrees of freedom there are.
+        Number of degrees of freedom.
     options : SensitivityOptions, optional
         Steps and tolerances.
     """
@@ -107,7 +108,7 @@ def sensitivities(
     for k, number in enumerate(numbers):
         try:
             rates = rates_of(system, number.key, options)
-        except ValueError:  # it changes what rigid-body motions there are
+        except ValueError:  # the number changes the rigid-body motions
             for point in points:
                 why_by_number[point.dof][k] = Unknown.RIGID
             continue
