@@ -1,13 +1,13 @@
 """Friction contacts with variable normal load: closed-form hysteresis, tables, response curves.
 
-The names below are imported when first used, so that a command pays only for what it needs.
+The names below are imported at their first use, so that a command imports only what it needs.
 """
 
 from __future__ import annotations
 
 from fcm.lazy_import import on_demand
 
-TYPE_CHECKING = False  # typing alone would take as long as all the rest
+TYPE_CHECKING = False  # importing typing would take as long as everything else
 if TYPE_CHECKING:
     from fcm.contact import (
         fourier_coefficients,

@@ -1,4 +1,4 @@
-"""``python -m fcm``: the program, as ``fcm``."""
+"""``python -m fcm`` runs the program like the command ``fcm``."""
 
 from fcm.cli.__main__ import run
 

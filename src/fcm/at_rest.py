@@ -1,4 +1,4 @@
-"""Amplitude up to which a degree of freedom is at rest: what rounding leaves of sums over modes."""
+"""Decides which degrees of freedom are at rest: their amplitudes are only rounding of sums over modes."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from fcm.frozen import Frozen
 class RestOptions(Frozen):
     """Thresholds below which a displacement counts as rest.
 
-    displacement : part of the greatest amplitude of a curve, up to which an amplitude is rounding. A sum over
-        modes is off by some hundred units of the last of its sixteen digits.
-    uncertain : relative rounding of an amplitude from which nothing of it is known. It decides where contacts
-        are so stiff that smaller displacements have digits, and larger ones may have none.
+    displacement : amplitude, relative to the greatest of a curve, up to which it is rounding. A sum over
+        modes has errors of some hundred units in the last of its sixteen digits.
+    uncertain : relative rounding error above which nothing is known of an amplitude. It matters for very
+        stiff contacts, with which smaller displacements can be accurate, and larger ones may not be.
     """
 
     displacement: float = 1e-13
@@ -22,8 +22,7 @@ class RestOptions(Frozen):
 
 
 def at_rest(size: npt.NDArray[np.float64], options: RestOptions | None = None) -> npt.NDArray[np.bool_]:
-    """Mask of the degrees of freedom, of greatest amplitudes (dof,), that move by rounding alone or not at
-    all.
+    """Mask (dof,) of the degrees of freedom that are at rest, from their greatest amplitudes size (dof,).
 
     >>> at_rest(np.array([3.0, 1e-6, 2e-15, 0.0])).tolist()
     [False, False, True, True]

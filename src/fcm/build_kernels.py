@@ -1,14 +1,14 @@
 """Compiles the kernels: the modules of ``ext-modules`` in pyproject.toml, by Cython and a C compiler.
 
-A kernel is Python that Cython's pure mode can also compile. Where it is compiled, Python imports the machine
-code, which then lies beside the source; where it could not be, the source itself: slower, and else the same.
+A kernel is a Python module that Cython's pure mode can also compile. The machine code lies next to the
+source, and Python imports it if it exists. Otherwise Python imports the source, slower but equivalent.
 ``python src/fcm/build_kernels.py`` in the top folder, or ``make kernels``, compiles them in place.
 
-What the .pxd beside a kernel declares is C: functions, methods and attributes that need no Python, no lock,
-and that other kernels import as ``from cython.cimports.fcm...``; see `fcm.contact.closed_form`.
-There a float is a double; other types are named as Cython does. What is not declared is for Python to call.
-A function that calls Python declares what it returns for an exception (``except -1``): declared ``noexcept``
-it would print an interruption and go on with numbers that were not computed. Such a kernel is refused.
+The .pxd file of a kernel declares what is C: functions, methods and attributes that need neither Python nor
+its lock. Other kernels import them as ``from cython.cimports.fcm...``; see `fcm.contact.closed_form`. There a
+float is a double; other types have Cython's names. Only Python calls what is not declared. A function that
+calls Python must declare its return value for an exception (``except -1``). Declared ``noexcept``, it would
+print an interruption and continue with numbers that were not computed; such a kernel is refused.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ DIRECTIVES = {
     "wraparound": False,
     "cdivision": True,
     "initializedcheck": False,
-    "auto_pickle": False,  # no kernel is sent elsewhere, and it would be a third of the machine code
+    "auto_pickle": False,  # no kernel object is pickled, and this would be a third of the machine code
 }
-# One rounding for each operation as it is written: the sequence of a contact hangs on signs.
+# Each operation is rounded as written (no fused ones): the state sequence of a contact depends on signs.
 FLAGS = ["-g0", "-ffp-contract=off"]
-# What -O3 makes of loops over harmonics is a tenth of the time of a curve; elsewhere it only takes longer.
+# For loops over harmonics -O3 saves a tenth of the time of a curve; elsewhere it only compiles longer.
 LOOPS = (
     "fcm.cubic",
     "fcm.contact.",
@@ -45,7 +45,7 @@ LOOPS = (
     "fcm.stability.monodromy",
     "fcm.stability.planar_monodromy",
 )
-# What decides, once a step, is compiled in two thirds of the time with -O1, and no slower for that.
+# Decisions made once a step compile in two thirds of the time with -O1, and run no slower.
 DECISIONS = (
     "fcm.accuracy.curve_distance",
     "fcm.continuation.events",
@@ -58,27 +58,27 @@ DECISIONS = (
     "fcm.time_domain.measures",
     "fcm.time_domain.segment",
 )
-# What Cython adds to a kernel, two thirds of its C, is in no loop: to set it up is not optimised at all, and
-# to talk to Python little. That takes a quarter off the time of compiling.
+# Two thirds of a kernel's C are added by Cython, outside of loops. The setup code is not optimised at all,
+# the interface to Python little. This saves a quarter of the compile time.
 SECTION = "/* #### Code section: {} ### */\n"
 LEVELS = (("module_exttypes", "O1"), ("init_module", "O0"), ("utility_code_def", "O1"))
 PRAGMA = """#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize ("{}")
 #endif
 """
-ANY_PYTHON = ("Py_LIMITED_API", "0x030B0000")  # from 3.11 on
-BESIDE = ("Makefile", ".ci/*", ".github/**/*", "tests/**/*")  # in an sdist, for its tests
-ARRAYS = "fcm.kernel_arrays"  # what Cython adds for arrays, once for all kernels
+ANY_PYTHON = ("Py_LIMITED_API", "0x030B0000")  # Python 3.11 and later
+BESIDE = ("Makefile", ".ci/*", ".github/**/*", "tests/**/*")  # additional files of an sdist, for its tests
+ARRAYS = "fcm.kernel_arrays"  # Cython's code for arrays, shared by all kernels
 
-_LOST = re.compile(r'\n\s+__Pyx_WriteUnraisable\("([^"]*)"')  # where a translated function loses exceptions
-_NONE = re.compile(  # raised for None in the place of an object, which no kernel passes: no Python is called
+_LOST = re.compile(r'\n\s+__Pyx_WriteUnraisable\("([^"]*)"')  # a translated function that loses exceptions
+_NONE = re.compile(  # an exception for None in place of an object, which no kernel passes; it calls no Python
     r'"cannot pass None into a C function[^\n]*\n(?:[^\n]*GILState_Release[^\n]*\n|\s*#[^\n]*\n)*'
     r"[^\n]*__PYX_ERR\([^\n]*\n"
 )
 
 
 def losing(translated: str) -> list[str]:
-    """The functions of a kernel in C that would lose an exception of what they call."""
+    """The functions of a kernel in C that would lose an exception from a function they call."""
     code, found = _NONE.sub("\n", translated), []
     for lost in _LOST.finditer(code):
         begin = code.rfind("\nstatic ", 0, lost.start())
@@ -88,7 +88,7 @@ def losing(translated: str) -> list[str]:
 
 
 class Kernels(build_ext):
-    """The step of setuptools that compiles; in place, for developers, a failure is an error."""
+    """The setuptools step that compiles the kernels; for developers (in place) a failure is an error."""
 
     def finalize_options(self) -> None:
         kernels = self.distribution.ext_modules
@@ -102,7 +102,7 @@ class Kernels(build_ext):
         self.parallel = os.cpu_count()
 
     def run(self) -> None:
-        # here, for it is set aside for what follows
+        # stored here because the base class changes inplace
         self.optional, self.in_place = self.editable_mode or not self.inplace, self.inplace
         super().run()
 
@@ -125,11 +125,11 @@ class Kernels(build_ext):
             kernel.sources = in_C.sources
             for source in map(Path, in_C.sources):
                 set_up_plainly(source)
-        if self.editable_mode or self.in_place:  # for developers: users may have another Cython
+        if self.editable_mode or self.in_place:  # only for developers: users may have another Cython
             self._check([Path(source) for kernel in translated for source in kernel.sources])
         super().build_extensions()
         if self.editable_mode:
-            # as pip does for what it copies: where Python may not write bytecode, a start takes 0.1 s longer
+            # pip does this for installed files: without bytecode, a start takes 0.1 s longer
             compile_dir("src/fcm", quiet=1)
 
     def _check(self, sources: list[Path]) -> None:
@@ -159,7 +159,7 @@ def set_up_plainly(source: Path) -> None:
 
 
 def compiles_not(distribution: Distribution) -> str:
-    """Why C is not compiled here with Python's headers, so that nothing need be translated; or ''."""
+    """Why C with Python's headers cannot be compiled here, which makes translating useless; or ''."""
     trial = build_ext(distribution)
     trial.ensure_finalized()
     compiler = new_compiler(compiler=trial.compiler)
@@ -175,10 +175,10 @@ def compiles_not(distribution: Distribution) -> str:
 
 
 class Wheel(bdist_wheel):
-    """A wheel that is tagged as what it is: without compiled kernels it is for every Python and machine."""
+    """A wheel with the right tag: without compiled kernels it is for every Python version and machine."""
 
     def finalize_options(self) -> None:
-        wanted = "editable_wheel" not in self.distribution.command_obj  # that has its own way to do without
+        wanted = "editable_wheel" not in self.distribution.command_obj  # which handles missing kernels itself
         if wanted and self.distribution.ext_modules and (reason := compiles_not(self.distribution)):
             self.announce(f"the kernels of fcm are not compiled: {reason}", 3)
             self.distribution.ext_modules, self.py_limited_api = [], False
@@ -186,13 +186,13 @@ class Wheel(bdist_wheel):
 
 
 class Sources(sdist):
-    """A source distribution with all that the tests read: the guide, the Makefile and the tests."""
+    """A source distribution that includes what the tests read: the guide, the Makefile and the tests."""
 
     def make_release_tree(self, base_dir: str, files: list[str]) -> None:
         found = (path for pattern in BESIDE for path in sorted(Path().glob(pattern)))
         own = {str(path) for path in found if path.is_file() and "__pycache__" not in path.parts}
         super().make_release_tree(base_dir, [*files, *sorted(own.difference(files))])
-        Path(base_dir, "tables").symlink_to("src/fcm/tables")  # of which the package holds the files
+        Path(base_dir, "tables").symlink_to("src/fcm/tables")  # the files are in the package
 
 
 if __name__ == "__main__":

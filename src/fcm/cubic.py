@@ -1,8 +1,8 @@
-"""Kernel: the cubic with given values and slopes at both ends of an interval, and what it proves between.
+"""Kernel: the cubic Hermite interpolant of an interval, and bounds of a function from it.
 
-That is the cubic Hermite interpolant. A function that has these values and slopes differs from it by no more
-than its fourth derivative allows. So the Bernstein coefficients of the interpolant bound the function, its
-slope and its bend (second derivative) on the interval.
+A function with the interpolant's values and slopes at both ends differs from it by at most a multiple of its
+fourth derivative. So the Bernstein coefficients of the interpolant bound the function, its slope and its bend
+(second derivative) on the interval.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import cython
 import numpy as np
 import numpy.typing as npt
 
-# Errors of the cubic over the greatest fourth derivative and powers of the length: of the value, the slope
-# and the bend (Birkhoff and Priver, 1967).
+# Factors of the errors of value, slope and bend of the cubic, to be multiplied by the greatest fourth
+# derivative and a power of the length (Birkhoff and Priver, 1967).
 VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
 SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
 BEND_ERROR = cython.declare(cython.double, 1.0 / 12.0)
 
 
 def cubic(before: float, after: float, begin: float, end: float, unit: float, x: float) -> float:
-    """The value at x of the cubic with given values at 0 and 1, and slopes there in a unit."""
+    """The value at x of the cubic with given values at 0 and 1, and slopes there times unit."""
     return (
         before * (1.0 + 2.0 * x) * (1.0 - x) * (1.0 - x)
         + after * x * x * (3.0 - 2.0 * x)
@@ -28,7 +28,7 @@ def cubic(before: float, after: float, begin: float, end: float, unit: float, x:
 
 
 def powers(rise: float, begin: float, end: float) -> tuple[float, float]:
-    """Coefficients of x^2 and x^3 of the cubic that rises from 0 to 1, with slopes there."""
+    """Coefficients of x^2 and x^3 of the cubic on [0, 1] with a given rise, and slopes at both ends."""
     return 3.0 * rise - 2.0 * begin - end, begin + end - 2.0 * rise
 
 
@@ -40,7 +40,7 @@ def curve_between(
     unit: float,
     x: float,
 ) -> npt.NDArray[np.float64]:
-    """The point (d,) at x of the curve with given points (d,) at 0 and 1, and slopes there in a unit.
+    """The point (d,) at x of the curve with given points (d,) at 0 and 1, and slopes there times unit.
 
     >>> points, slopes = np.array([[0.0, 1.0], [1.0, 1.0]]), np.array([[1.0, 0.0], [0.0, 0.0]])
     >>> curve_between(*points, *slopes, 3.0, 0.5).tolist()
@@ -57,9 +57,9 @@ def curve_between(
 def value_bounds(
     length: float, fourth: float, g_0: float, d_0: float, g_1: float, d_1: float
 ) -> tuple[float, float]:
-    """Bounds of a function in an interval, from below and from above.
+    """Lower and upper bound of a function on an interval.
 
-    g_0, d_0, g_1, d_1: its values and slopes at both ends; fourth: bound of its fourth derivative.
+    g_0, d_0, g_1, d_1: values and slopes at both ends; fourth: bound of the fourth derivative.
     """
     b_1: float = g_0 + length * d_0 / 3.0
     b_2: float = g_1 - length * d_1 / 3.0
@@ -70,14 +70,14 @@ def value_bounds(
 def slope_bounds(
     length: float, fourth: float, g_0: float, d_0: float, g_1: float, d_1: float
 ) -> tuple[float, float]:
-    """Bounds of the slope of a function in an interval, from below and from above; see `value_bounds`."""
+    """Lower and upper bound of the slope of a function on an interval; arguments as `value_bounds`."""
     middle: float = middle_slope(length, g_0, d_0, g_1, d_1)
     off: float = SLOPE_ERROR * (fourth * length * length * length)
     return min(d_0, middle, d_1) - off, max(d_0, middle, d_1) + off
 
 
 def greatest_bend(length: float, fourth: float, g_0: float, d_0: float, g_1: float, d_1: float) -> float:
-    """Bound of the bend of a function in an interval, from above, times the length; see `value_bounds`."""
+    """Upper bound of the bend's size on an interval, times the length; arguments as `value_bounds`."""
     middle: float = middle_slope(length, g_0, d_0, g_1, d_1)
     bend: float = 2.0 * max(middle - d_0, d_1 - middle)
     bend += BEND_ERROR * (fourth * length * length) * length
@@ -85,5 +85,5 @@ def greatest_bend(length: float, fourth: float, g_0: float, d_0: float, g_1: flo
 
 
 def middle_slope(length: float, g_0: float, d_0: float, g_1: float, d_1: float) -> float:
-    """The Bernstein coefficient of the interpolant's slope between those at the ends."""
+    """The middle Bernstein coefficient of the interpolant's slope."""
     return 3.0 * ((g_1 - length * d_1 / 3.0) - (g_0 + length * d_0 / 3.0)) / length

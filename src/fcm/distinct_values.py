@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 
 def distinct_values(*values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """The values of some arrays, sorted, each once: `numpy.unique` of all together.
+    """The sorted distinct values of some arrays, as `numpy.unique` of their concatenation.
 
-    That loads masked arrays, of which there are none, and with them takes 8 ms when it is first called: more
-    than to follow a curve.
+    `numpy.unique` imports masked arrays, so that its first call takes 8 ms, longer than following a curve.
 
     >>> distinct_values(np.array([3, 1]), np.array([1, 2])).tolist()
     [1, 2, 3]

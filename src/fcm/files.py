@@ -1,4 +1,4 @@
-"""Files that are whole or not there, and what stands in the way of writing them."""
+"""Writes files completely or not at all, and explains why a file cannot be read or written."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 MEASURED = (".csv", ".txt", ".dat", ".mat", ".npz", ".uff", ".unv")  # endings of measured points
-NETCDF = "NetCDF:"  # how a RuntimeError begins that comes from that library
+NETCDF = "NetCDF:"  # beginning of the message of a RuntimeError from that library
 
 
 NOT_THERE = "is not there"
@@ -32,7 +32,7 @@ def no_file(path: str | Path, wanted: str = "read") -> str:
     """
     try:
         mode = os.stat(path).st_mode  # noqa: PTH116  # pathlib hides what is wrong
-    except (FileNotFoundError, NotADirectoryError, ValueError):  # or it is no name of a file
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # ValueError: not a valid file name
         return NOT_THERE
     except OSError as error:
         if error.errno == errno.ELOOP:
@@ -42,12 +42,12 @@ def no_file(path: str | Path, wanted: str = "read") -> str:
 
 
 def real(path: str | Path) -> Path:
-    """Path at which a file is or will be, with all symbolic links followed.
+    """The path at which a file is or will be, with all symbolic links followed.
 
     Raises
     ------
     OSError
-        If they are a loop.
+        If the links form a loop.
     """
     try:
         found = Path(path).resolve()
@@ -62,7 +62,7 @@ def real(path: str | Path) -> Path:
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:
-    """Whether two names are of one file, also by links, symbolic or hard."""
+    """Whether two names refer to the same file, also by symbolic or hard links."""
     with suppress(OSError, ValueError):
         return Path(one).samefile(other)
     with suppress(OSError, ValueError):
@@ -72,14 +72,14 @@ def same_file(one: str | Path, other: str | Path) -> bool:
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A name to write under; the file takes its place at ``path`` only when it is whole.
+    """Yields a temporary name for writing; the file replaces ``path`` only after it is complete.
 
-    What processes have left there that were killed while they wrote is removed.
+    Partial files of processes that were killed while writing are removed.
 
     Raises
     ------
     OSError
-        If it cannot be written: with the name of the file, and the true reason where a library hides it.
+        If the file cannot be written; with its name, and the true reason if a library hides it.
     """
     target = real(path)
     partial = partial_of(target)
@@ -98,12 +98,12 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def partial_of(target: Path) -> Path:
-    """The name under which this process writes a file: the longest of all that are made beside it."""
+    """The temporary name under which this process writes a file, the longest name created next to it."""
     return target.with_name(f".{target.stem}.{os.getpid():08d}.partial{target.suffix}")
 
 
 def remove_stale(target: Path) -> None:
-    """Remove the partial files of processes that have ended."""
+    """Removes the partial files of a target from processes that have ended."""
     name = re.compile(rf"\.{re.escape(target.stem)}\.(\d+)\.partial{re.escape(target.suffix)}", re.DOTALL)
     with suppress(OSError):
         for entry in os.scandir(target.parent):
@@ -113,7 +113,7 @@ def remove_stale(target: Path) -> None:
 
 
 def lives(process: int) -> bool:
-    """Whether there is a process of that number."""
+    """Whether a process with this number exists."""
     try:
         os.kill(process, 0)
     except PermissionError:
@@ -124,7 +124,7 @@ def lives(process: int) -> bool:
 
 
 def _unwritten(error: OSError | RuntimeError, partial: Path, path: str | Path) -> OSError:
-    """Why a file could not be written: a full disk is named, which libraries take for something else."""
+    """The error for a file that could not be written; it names a full disk, which libraries misreport."""
     number = getattr(error, "errno", None) or errno.EIO
     found = _refusal(partial)
     if found is None:
@@ -137,8 +137,8 @@ def _unwritten(error: OSError | RuntimeError, partial: Path, path: str | Path) -
 
 
 def _refusal(partial: Path) -> int | None:
-    """Error number of the system when more bytes than the file has are written; None if it takes them."""
-    size, block = 0, bytes(1 << 20)  # a megabyte more: else the disk is not the reason
+    """Error number of the system for writing more bytes than the file has; None if it succeeds."""
+    size, block = 0, bytes(1 << 20)  # up to a megabyte more; if it succeeds, the disk is not the reason
     with suppress(OSError):
         size = partial.stat().st_size
         partial.unlink()

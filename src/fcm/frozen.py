@@ -1,7 +1,7 @@
-"""Records that do not change: frozen dataclasses whose methods are written once.
+"""Immutable records: frozen dataclasses whose methods are shared by all classes.
 
-`dataclasses.dataclass` writes and compiles six methods for each class, which takes 0.6 ms. A run imports two
-hundred such classes, so that a third of a short run would be spent on it.
+`dataclasses.dataclass` generates and compiles six methods for each class, which takes 0.6 ms. A run imports
+two hundred such classes, so that this would take a third of a short run.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Signature:
-    """The arguments of a class, for ``help`` and messages; found when asked for."""
+    """The signature of a class, for ``help`` and messages; computed on access."""
 
     def __get__(self, record: object, cls: type[Frozen]) -> Signature:
         from inspect import Parameter, Signature
@@ -33,10 +33,10 @@ class _Signature:
 class Frozen:
     """Base class that makes subclasses frozen records, as ``@dataclass(frozen=True)`` does.
 
-    Fields are annotated names, with `dataclasses.field` where that is needed; `dataclasses.replace`, `fields`
-    and ``__post_init__`` work as ever. Records are equal where they are of one class and all compared fields
-    are. Raises `dataclasses.FrozenInstanceError` where a field is set, and TypeError of arguments that are
-    no fields or are missing.
+    Fields are annotated names, with `dataclasses.field` if needed. `dataclasses.replace`, `fields` and
+    ``__post_init__`` work as usual. Records are equal if they have the same class and all compared fields are
+    equal. Setting a field raises `dataclasses.FrozenInstanceError`; unknown or missing arguments raise
+    TypeError.
 
     >>> class Spring(Frozen):
     ...     stiffness: float
@@ -48,8 +48,8 @@ class Frozen:
     __signature__: ClassVar[Any] = _Signature()
     __dataclass_fields__: ClassVar[dict[str, dataclasses.Field[Any]]]
     _positional: ClassVar[tuple[str, ...]] = ()  # the fields that are arguments
-    _taken: ClassVar[tuple[str, ...]] = ()  # the same, and those that are given by name only
-    _known: ClassVar[frozenset[str]] = frozenset()  # what has a value before `__post_init__`
+    _taken: ClassVar[tuple[str, ...]] = ()  # these and the keyword-only fields
+    _known: ClassVar[frozenset[str]] = frozenset()  # fields that have a value before `__post_init__`
     _defaults: ClassVar[dict[str, Any]] = {}
     _factories: ClassVar[dict[str, Any]] = {}
     _compared: ClassVar[tuple[str, ...]] = ()
@@ -86,7 +86,7 @@ class Frozen:
         """Hook after initialisation; does nothing here."""
 
     def _refused(self, values: tuple[Any, ...], named: dict[str, Any]) -> TypeError:
-        """TypeError on wrong arguments, with the words Python uses for a function."""
+        """TypeError for wrong arguments, with the message of Python for a function."""
         try:
             type(self).__signature__.bind(*values, **named)
         except TypeError as error:
@@ -113,10 +113,10 @@ class Frozen:
 
 
 def _fields_of(cls: type[Frozen]) -> tuple[dataclasses.Field[Any], ...]:
-    """Make a class a dataclass without methods; its fields.
+    """Makes a class a dataclass without methods, and returns its fields.
 
-    `dataclasses` reads each annotation three times, as it may be a string that means no field. That takes
-    half of the time, and is left out.
+    `dataclasses` would parse each annotation three times, since a string may not define a field. Placeholder
+    annotations avoid this, which halves the time.
     """
     own = cls.__dict__.get("__annotations__", {})  # noqa: RUF063  # inspect would be loaded for it
     cls.__annotations__ = {name: object for name, kind in own.items() if "ClassVar" not in str(kind)}

@@ -1,6 +1,6 @@
-"""Local maxima of a curve, and how far they stand out.
+"""Local maxima of a curve, and their prominence.
 
-A local maximum is a point higher than the one before and no lower than the one behind.
+A local maximum is a point that is higher than the previous one and not lower than the next one.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 
 def local_maxima(amplitude: npt.NDArray[np.float64], least: float) -> npt.NDArray[np.bool_]:
-    """Mask of amplitudes (point, dof) that are local maxima, above a fraction of the greatest of each.
+    """Mask of amplitudes (point, dof) that are local maxima, and above a fraction of the greatest of the dof.
 
-    Ends are none, nor are those of parts between rows of NaN.
+    Ends do not count, nor do ends of parts between rows of NaN.
 
     >>> local_maxima(np.array([[1.0], [3.0], [2.0], [4.0], [0.0]]), 0.1).ravel().tolist()
     [False, True, False, True, False]
@@ -27,8 +27,8 @@ def local_maxima(amplitude: npt.NDArray[np.float64], least: float) -> npt.NDArra
 def prominence(heights: npt.NDArray[np.float64], k: int) -> float:
     """Prominence of a point: its height above the higher of the two lowest points on either side.
 
-    A side reaches to a higher point, or to the end of the branch; that before the point to one as high, too,
-    so that the first of several is the peak.
+    A side extends to the next higher point, or to the end of the branch. The side before the point also ends
+    at an equally high point, so that the first of several equal points is the peak.
 
     >>> prominence(np.array([0.0, 3.0, 2.0, 4.0, 1.0]), 1)
     1.0
@@ -39,6 +39,6 @@ def prominence(heights: npt.NDArray[np.float64], k: int) -> float:
 
 
 def _lowest(side: npt.NDArray[np.float64], counts: npt.NDArray[np.bool_]) -> float:
-    """The lowest of a way that begins at a peak, as far as the points behind that count."""
+    """The lowest height of a side that begins at the peak, up to the first point that does not count."""
     ends = np.flatnonzero(~counts)
     return float(side[: 1 + (ends[0] if ends.size else counts.size)].min())

@@ -1,4 +1,4 @@
-"""Text in messages: in double quotes, as in the files that it is of."""
+"""Text in messages, in double quotes as in files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Room for what a run is to make, in memory and on disk, and its time, told before it is made."""
+"""Available memory and disk space, and sizes and times in words for notices before a run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _UNITS = ((1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
 
 
 def size(bytes_taken: float) -> str:
-    """A number of bytes in the largest unit of which it has one.
+    """A number of bytes in words, in the largest unit that gives at least 1.
 
     >>> size(2_340_000_000.0), size(512.0)
     ('2.3 GB', '1 kB')
@@ -20,7 +20,7 @@ def size(bytes_taken: float) -> str:
 
 
 def duration(seconds: float) -> str:
-    """A time in the largest unit of which it has two.
+    """A time in words, in the largest unit that gives at least 2.
 
     >>> duration(9.2), duration(900.0), duration(3e5)
     ('9 s', '15 minutes', '83 hours')
@@ -31,13 +31,13 @@ def duration(seconds: float) -> str:
 
 
 def memory() -> float:
-    """Bytes that this process can still take; infinite where the system does not say."""
+    """Bytes of memory that this process can still allocate; infinite if unknown."""
     found = [_available(), _left_of_limit()]
     return min(found)
 
 
 def disk(folder: Path) -> float:
-    """Bytes that files in a folder can still take; infinite where the system does not say."""
+    """Bytes of free disk space for files in a folder; infinite if unknown."""
     try:
         return float(shutil.disk_usage(folder).free)
     except OSError:
@@ -45,7 +45,7 @@ def disk(folder: Path) -> float:
 
 
 def _available() -> float:
-    """Bytes of memory that the system can give without swapping, within the limit of a container."""
+    """Bytes of memory available without swapping, within the limit of a container; infinite if unknown."""
     found = float("inf")
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
@@ -61,7 +61,7 @@ def _available() -> float:
 
 
 def _left_of_limit() -> float:
-    """Bytes of address space left, where `ulimit -v` limits it; else inf."""
+    """Bytes of address space left if `ulimit -v` limits it; else infinite."""
     try:
         import resource
     except ImportError:  # a system without limits

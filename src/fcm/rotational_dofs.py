@@ -1,16 +1,16 @@
-"""Degrees of freedom that are rotations, the unit of each, and which are told first."""
+"""Rotational degrees of freedom: recognises them by name, with units and the order for reports."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-MOST_DOFS = 4  # degrees of freedom whose peaks fit beside each other on a line of a table
+MOST_DOFS = 4  # number of degrees of freedom whose peaks fit on one line of a table
 _ROTATION = re.compile(r"(\d+|.+[: _])[: _]?(r[xyz]|rot[xyz]?|th[xyz]?|theta[xyz]?)|\d+:[456]", re.IGNORECASE)
 
 
 def is_rotation(dof: str) -> bool:
-    """Whether a degree of freedom is that of a node about an axis, by its name.
+    """Whether a degree of freedom is a rotation of a node, by its name.
 
     >>> [is_rotation(dof) for dof in ("40rz", "40:6", "21th", "tip_rz", "40z", "tip")]
     [True, True, True, True, False, False]
@@ -19,7 +19,7 @@ def is_rotation(dof: str) -> bool:
 
 
 def dof_unit(dof: str, length: str) -> str:
-    """The unit of a displacement where lengths have one: a rotation is in radians.
+    """The unit of a displacement: that of length, or rad for a rotation; empty if length has none.
 
     >>> dof_unit("40z", "mm"), dof_unit("40rz", "mm"), dof_unit("40rz", "")
     ('mm', 'rad', '')
@@ -28,7 +28,7 @@ def dof_unit(dof: str, length: str) -> str:
 
 
 def greatest_first(dofs: Sequence[str], heights: Sequence[float]) -> list[int]:
-    """The places of degrees of freedom from the greatest height down: all displacements, then all rotations.
+    """The indices of degrees of freedom by descending height: first all displacements, then all rotations.
 
     >>> greatest_first(["1x", "1rx", "2x"], [1.0, 9.0, 7.0])
     [2, 0, 1]

@@ -1,10 +1,10 @@
-"""Signals that end a program: Ctrl-C, SIGTERM and SIGHUP are one thing, an interruption.
+"""Handles signals that end a program: Ctrl-C, SIGTERM and SIGHUP all count as an interruption.
 
-While the program loads, nothing is to be saved: it ends at once with one line. While it works, it is a
-KeyboardInterrupt, so that finished work is written. When it has ended, only the interpreter is left to be
-shut down: that goes on to the exit code that was decided.
+While the program loads, there is nothing to save, and an interruption ends it at once with one line. While it
+works, the interruption is a KeyboardInterrupt, so that finished work is written. After the work, signals are
+ignored, and the interpreter shuts down with the exit code that was decided.
 
-This module imports next to nothing, for it is the first thing that the program does.
+This module imports almost nothing, because the program imports it first.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ ALL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if
 class _Program:
     """State of the program that decides what an interruption does.
 
-    Signals within `min_interval` [s] are one: `timeout` sends two, a terminal that closes even more. An
-    interruption that nobody could raise is raised again after `delay` [s].
+    Signals within `min_interval` [s] count as one: `timeout` sends two, a closing terminal even more. An
+    interruption that could not be raised is repeated after `delay` [s].
     """
 
     min_interval = 1.0
@@ -36,10 +36,10 @@ class _Program:
 
     def __init__(self) -> None:
         self.works, self.last = False, -self.min_interval
-        self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
-        self.imports = 0  # that were under way when the work began
-        self.deferred = self.insists = False  # until an import has ended; whether one more came meanwhile
-        self.notice = b""  # said at once, as what follows may take a moment
+        self.shields, self.waits = 0, False  # number of active shields; whether an interruption waits
+        self.imports = 0  # number of import frames when the work began
+        self.deferred = self.insists = False  # deferred for an import; another signal came meanwhile
+        self.notice = b""  # written at once, as the reaction to a signal may take a moment
         self.before: dict[int, Any] = {}
 
     def interrupted(self, _number: int, _frame: FrameType | None) -> None:
@@ -51,40 +51,40 @@ class _Program:
             self.insists = self.deferred
             try:
                 os.write(2, self.notice)
-            except OSError:  # be standard error closed
+            except OSError:  # standard error is closed
                 self.notice = b""
             self.again(_number, _frame)
 
     def leave(self) -> None:
         try:
             os.write(2, f"fcm: {INTERRUPTED}\n".encode())
-        finally:  # be standard error closed
+        finally:  # even if standard error is closed
             os._exit(NOT_COMPLETED)
 
     def again(self, _number: int, frame: FrameType | None) -> None:
-        """Interrupt, but not where the exception could be lost; that is left within moments.
+        """Raises KeyboardInterrupt, or defers it while it could be lost, which lasts only moments.
 
-        In the middle of an import libraries make other errors of it, or swallow it; who interrupts once more
-        does not wait for its end. Compiled code drops it while it notes where an exception came from.
+        During an import, libraries convert or swallow the exception; a second interruption does not wait for
+        the end of the import. Compiled code drops it while it records the origin of another exception.
         """
         if self.shields:
             self.waits = True
             return
         if self.insists:
-            signal.setitimer(signal.ITIMER_REAL, 0.0)  # the one that was deferred does not come, too
+            signal.setitimer(signal.ITIMER_REAL, 0.0)  # cancels the deferred interruption
         imports = not self.insists and _imports(frame) > self.imports
         self.deferred = (imports or _notes_an_origin(frame)) and _later()
         if not self.deferred:
             raise KeyboardInterrupt
 
     def lost(self, unraisable: Any) -> None:
-        """An exception that nobody could catch: an interruption comes again, others concern nobody."""
+        """Hook for exceptions that cannot be raised: repeats an interruption and ignores others."""
         if issubclass(unraisable.exc_type, KeyboardInterrupt):
             _later()
 
 
 def _later() -> bool:
-    """Have an interruption come again, where the system has a timer."""
+    """Repeats an interruption after a delay; False if the system has no timer."""
     if not hasattr(signal, "setitimer"):
         return False
     signal.setitimer(signal.ITIMER_REAL, _Program.delay)
@@ -101,10 +101,10 @@ def _imports(frame: FrameType | None) -> int:
 
 
 def _notes_an_origin(frame: FrameType | None) -> bool:
-    """Whether a compiled module is making the frame that it shows in a traceback.
+    """Whether a compiled module is creating a frame for a traceback.
 
-    Cython evaluates ``_getframe()`` for that, with the limited interface of Python, and clears what is raised
-    in it.
+    With the limited API of Python, Cython evaluates ``_getframe()`` for this, and clears exceptions raised in
+    it.
     """
     return frame is not None and frame.f_code.co_names == ("_getframe",)
 
@@ -113,9 +113,9 @@ _program: _Program | None = None
 
 
 def take() -> bool:
-    """Take signals as interruptions; False if that is so already, or is not for this thread to do.
+    """Handles signals as interruptions from now on; False if this is already so, or not the main thread.
 
-    A signal that is ignored stays so: `nohup` and the shell's `&` ask for it.
+    An ignored signal stays ignored, as `nohup` and the shell's `&` require.
     """
     global _program
     if _program is not None:
@@ -135,7 +135,7 @@ def take() -> bool:
 
 
 def give_back() -> None:
-    """Leave the signals as they were found."""
+    """Restores the signal handlers that `take` replaced."""
     global _program
     if _program is not None:
         for number, handler in _program.before.items():
@@ -145,7 +145,7 @@ def give_back() -> None:
 
 
 def interrupt() -> None:
-    """Interrupt the program from another thread, by a signal that it takes."""
+    """Interrupts the program from another thread, by a signal that it handles."""
     import _thread
 
     taken = () if _program is None else _program.before
@@ -167,14 +167,14 @@ def announce(notice: str) -> None:
 
 
 def ends() -> None:
-    """Ignores signals from now on: nothing is left to be saved, and the exit code is decided."""
+    """Ignores signals from now on: everything is saved, and the exit code is decided."""
     if _program is not None:
         for number in _program.before:
-            signal.signal(number, signal.SIG_IGN)  # the interpreter itself would undo any other handler
+            signal.signal(number, signal.SIG_IGN)  # the interpreter would reset any other handler
 
 
 def interrupted(error: BaseException) -> bool:
-    """Whether an exception is an interruption, or what an import that was interrupted made of it."""
+    """Whether an exception is an interruption, or was made from one by an interrupted import."""
     made = Exception if _program is not None and _program.insists else (ImportError, SystemError)
     seen: BaseException | None = error
     for _ in range(100):
@@ -185,7 +185,7 @@ def interrupted(error: BaseException) -> bool:
 
 
 class undisturbed:  # noqa: N801
-    """``with undisturbed():`` what must not stop halfway; an interruption is raised after it."""
+    """``with undisturbed():`` protects code that must not stop halfway; an interruption follows it."""
 
     def __enter__(self) -> None:
         if _program is not None:

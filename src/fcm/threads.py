@@ -1,6 +1,6 @@
-"""Threads of the linear algebra: one, for the matrices here are small and many.
+"""Limits linear algebra to one thread, since the matrices are small and many.
 
-Threads that wait for one another made a large scene ten times slower on a machine with other work.
+Threads that wait for each other made a large scene ten times slower on a machine with other work.
 """
 
 from __future__ import annotations
@@ -25,23 +25,25 @@ def one_by_default() -> None:
 
 
 def one_each() -> dict[str, str]:
-    """Environment variables of a process that has one core for itself."""
+    """Environment variables that limit a process to one thread."""
     return dict.fromkeys(_VARIABLES, "1")
 
 
 def one_here() -> AbstractContextManager[object]:
-    """`one_thread()` for a program that uses this one as a library; nothing where its environment says how
-    many threads there are, as that of the command does."""
+    """`one_thread()` for use as a library; no limit if the environment already sets a number of threads.
+
+    The environment of the command does so.
+    """
     from contextlib import nullcontext
 
     return nullcontext() if any(name in os.environ for name in _VARIABLES) else one_thread()
 
 
 class one_thread:  # noqa: N801
-    """``with one_thread():`` in a process of others, where numpy has been imported with as many as it likes.
+    """``with one_thread():`` limits linear algebra to one thread after numpy has been imported.
 
-    The number is the whole process's: the first of the threads that are inside sets it, the last gives it
-    back.
+    The limit applies to the whole process: the first Python thread to enter sets it, the last to leave
+    restores the old one.
     """
 
     _lock, _inside = threading.Lock(), 0
@@ -66,9 +68,9 @@ def _limited() -> Any:
 
 @lru_cache(maxsize=1)
 def _libraries(_: int) -> Any:
-    """The libraries of linear algebra that this process has loaded, cached.
+    """The linear algebra libraries that this process has loaded, cached by the number of imported modules.
 
-    Looking for them takes a millisecond, and is repeated only when more modules have been imported.
+    The search takes a millisecond, and is repeated only after further imports.
     """
     from threadpoolctl import ThreadpoolController
 

@@ -1,4 +1,4 @@
-"""Frequencies in the unit of a scene; units of the numbers that are swept."""
+"""Converts frequencies to the unit of a scene, and gives units of swept numbers."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class AngleOptions(Frozen):
-    """Options on when an angle without a unit leads to a question."""
+    """Options on when an angle without a unit is questioned."""
 
-    # [rad] largest angle without a unit that is not doubted: a whole turn and a little more
+    # [rad] angle without a unit from which on it is questioned: slightly more than a turn
     largest: float = 2.001 * np.pi
 
 
 ANGLES = AngleOptions()
 
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
-CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}  # as the conventions for netCDF files write them
-EXCITATION = "excitation.frequency"  # key of where a curve over the level of the forces is
-QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}  # powers of i omega, over a displacement
-PER_TIME = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # behind the unit of a displacement
-EXCITED = "excitation.level"  # key of the level of the forces of a curve, where several were measured
-NATURAL = "modal.frequency"  # key of the frequencies of all modes; with its number of one
-DIGITS = 15  # that every number of so many has again after it was a binary one
+CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}  # spelling of the CF conventions for netCDF files
+EXCITATION = "excitation.frequency"  # key of the fixed frequency of a curve over the force level
+QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}  # powers of i omega on a displacement
+PER_TIME = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # suffixes to the unit of length
+EXCITED = "excitation.level"  # key of the force level of a curve, if several levels were measured
+NATURAL = "modal.frequency"  # key of the frequencies of all modes; one mode's has its index appended
+DIGITS = 15  # decimal numbers with so many digits survive conversion to binary and back
 
 
 def spoken(omega: float, unit: str) -> str:
-    """A frequency [rad/s] in a unit, as a message names it.
+    """A frequency [rad/s] in words, in a unit.
 
     >>> spoken(2.0 * np.pi * 0.5, "Hz"), spoken(2.0, "rad/s")
     ('0.5 Hz', '2 rad/s')
@@ -39,10 +39,10 @@ def spoken(omega: float, unit: str) -> str:
 
 
 def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
-    """Frequencies [rad/s] in a unit.
+    """Converts frequencies [rad/s] to a unit.
 
-    Two roundings may change the last bit of a frequency that was given in Hz; so where a number of 15 digits
-    is this frequency in rad/s, it is that number.
+    Conversion back and forth may change the last bit of a frequency given in Hz. So if a number with 15
+    digits converts exactly to the frequency in rad/s, this number is returned.
 
     >>> float(in_unit(2.0 * np.pi * 52.0, "Hz")), float(np.float64(2.0 * np.pi * 52.0) / (2.0 * np.pi))
     (52.0, 52.00000000000001)
@@ -54,14 +54,14 @@ def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
     value: FloatArray = exact / scale
     size = np.abs(np.where(np.isfinite(value) & (value != 0.0), value, 1.0))
     power = 10.0 ** np.clip(DIGITS - 1 - np.floor(np.log10(size)), -300, 300)
-    with np.errstate(all="ignore"):  # where it is too large to be rounded it stays as it is
+    with np.errstate(all="ignore"):  # a value that is too large to be rounded stays as it is
         rounded = np.round(value * power) / power
         same = rounded * scale == exact
     return np.where(same, rounded, value)
 
 
 def unit_of_number(key: str, length: str, force: str, frequency: str) -> str:
-    """The unit of a number that is swept by its key path, empty where none is given or known.
+    """The unit of a swept number, by its key path; empty if it has none or it is unknown.
 
     >>> given = "mm", "N", "Hz"
     >>> unit_of_number("contact.*.n_0", *given), unit_of_number("contact.shroud.k_u", *given)
@@ -81,7 +81,7 @@ def unit_of_number(key: str, length: str, force: str, frequency: str) -> str:
 
 
 def headed(key: str, length: str, force: str, frequency: str) -> str:
-    """The head of a column of swept numbers, with their unit where it is known.
+    """The heading of a column of swept numbers, with their unit if it is known.
 
     >>> headed("contact.shroud.n_0", "mm", "N", "Hz"), headed("contact.shroud.mu", "mm", "N", "Hz")
     ('contact.shroud.n_0 [N]', 'contact.shroud.mu')

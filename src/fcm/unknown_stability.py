@@ -1,4 +1,4 @@
-"""Points of a curve at which it is unknown whether a motion is stable."""
+"""Finds the points of a curve with unknown stability."""
 
 from __future__ import annotations
 
