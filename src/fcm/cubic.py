@@ -19,7 +19,7 @@ BEND_ERROR = cython.declare(cython.double, 1.0 / 12.0)
 
 
 def cubic(before: float, after: float, begin: float, end: float, unit: float, x: float) -> float:
-    """The value at x of the cubic with given values at 0 and 1, and slopes there times unit."""
+    """The value at x of the cubic with values before, after and slopes unit * begin, unit * end at 0, 1."""
     return (
         before * (1.0 + 2.0 * x) * (1.0 - x) * (1.0 - x)
         + after * x * x * (3.0 - 2.0 * x)
@@ -40,7 +40,7 @@ def curve_between(
     unit: float,
     x: float,
 ) -> npt.NDArray[np.float64]:
-    """The point (d,) at x of the curve with given points (d,) at 0 and 1, and slopes there times unit.
+    """The point (d,) at x of the cubic curve with the arguments of `cubic`, as arrays (d,) at 0 and 1.
 
     >>> points, slopes = np.array([[0.0, 1.0], [1.0, 1.0]]), np.array([[1.0, 0.0], [0.0, 0.0]])
     >>> curve_between(*points, *slopes, 3.0, 0.5).tolist()
@@ -77,7 +77,7 @@ def slope_bounds(
 
 
 def greatest_bend(length: float, fourth: float, g_0: float, d_0: float, g_1: float, d_1: float) -> float:
-    """Upper bound of the bend's size on an interval, times the length; arguments as `value_bounds`."""
+    """Upper bound of the bend of a function on an interval, times length; arguments as `value_bounds`."""
     middle: float = middle_slope(length, g_0, d_0, g_1, d_1)
     bend: float = 2.0 * max(middle - d_0, d_1 - middle)
     bend += BEND_ERROR * (fourth * length * length) * length

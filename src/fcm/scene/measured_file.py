@@ -208,7 +208,7 @@ def _curves(
     chosen: Mapping[str, int],
     others: Mapping[str, str],
 ) -> list[str]:
-    """Fault of a file of ``fcm respond`` that contains several curves instead of one response; or ''."""
+    """Fault of a file of ``fcm respond`` that contains several curves, as a list; empty if it has one."""
     own = any(heads[i][0] == others.get(key) for key, i in chosen.items())
     places = [i for i, (name, _) in enumerate(heads) if name == "curve"]
     found = len({row[places[0]] for row in rows}) if own and places else 1
