@@ -63,7 +63,7 @@ def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray
     """Responses of the ports with springs held (case, port): (frequency, case, driven, port)."""
     cases, ports = held.shape
     linear = system.linear
-    if type(linear) is Linear and linear.natural.size <= ports:
+    if type(linear) is Linear and linear.natural.size < ports:
         return np.moveaxis(linear.answers_with(held, np.array(frequencies, dtype=np.float64)), 0, 1)
     found = np.empty((len(frequencies), cases, len(linear.driven), ports), dtype=np.complex128)
     unit = np.eye(ports)

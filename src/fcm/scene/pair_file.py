@@ -15,6 +15,7 @@ from fcm.model.interface import FloatArray, Interface
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.number_text import fault_of_number, number_in
+from fcm.scene.options import MESSAGES
 
 _COMMA = re.compile(r"\d+,\d+", re.ASCII)
 # node numbers as written by numpy, and by pandas in a column with empty cells
@@ -99,7 +100,7 @@ def read_pair_table(path: Path) -> PairTable:
     if not table.pairs and not faults:
         faults.append("holds no pair of nodes behind its first line")
     if faults:
-        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:5]))
+        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[: MESSAGES.faults]))
     return replace(table, places=np.array(places)) if where else table
 
 
@@ -131,7 +132,7 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
         what = f"{quoted(one)} may be a number with a decimal comma, or a node and its number"
         faults.append(f"{what}, and so may all others: write {point}, or {one.replace(',', ' ')}")
     if faults:
-        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:5]))
+        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[: MESSAGES.faults]))
     values = [number_in(words[-1]) or 0.0 for words in rows]
     if not rows or len(rows[0]) == 1:
         if len(values) != len(pairs):
