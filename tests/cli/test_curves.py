@@ -527,9 +527,9 @@ def test_the_error_of_a_peaks_frequency_is_told_with_its_degree_of_freedom():
     }
     one = {"points": 3, "harmonics": [1], "truncation_error": 0.1, "peak": peak}
     summary = {"curves": [one], "seconds": 1.0, "method": "balance"}
-    assert cost_and_error(summary).endswith("; 5.0e-01 of the frequency of the greatest peak of v")
+    assert cost_and_error(summary).endswith("; 5.0e-01 in the frequency of the greatest peak of v")
     del peak["v"]
-    assert cost_and_error(summary).endswith("; 1.0e-03 of the frequency of the greatest peak")
+    assert cost_and_error(summary).endswith("; 1.0e-03 in the frequency of the greatest peak")
 
 
 def test_an_error_of_which_nothing_is_told_is_not_said_to_be_none():
@@ -546,7 +546,7 @@ def test_an_error_of_which_nothing_is_told_is_not_said_to_be_none():
 def test_the_greatest_error_of_a_peak_stands_beside_the_greatest_of_any_point():
     """An error of 3 beside a fold is not one of the peaks that a designer reads."""
     peak = {"u": {"amplitude": 1.0, "error": 0.01}, "v": {"amplitude": 1.0, "error": 0.02}}
-    curve = {"points": 3, "harmonics": [1, 3], "truncation_error": 3.0, "peak": peak}
+    curve = {"points": 3, "harmonics": [1, 3], "truncation_error": 3.0, "peak": peak, "folds": [1.0]}
     said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
     assert said.endswith(
         "2.0e-02 of peaks and more than 100 % of the greatest amplitude at any point (beside folds), by the "

@@ -161,7 +161,7 @@ def test_a_file_says_which_peaks_are_at_an_end_of_the_range(tmp_path):
 )
 def test_the_least_peak_is_not_told_without_its_stability(stable, said):
     some = replace(peaks(n_0=[0, 10, 20]), stable=np.array([[1, 1], [stable, 1], [1, 1]]))
-    assert title(draw_peak(some).axes[0]) == f"least peak 6{said} at $n_{{0}}$ = 10"
+    assert title(draw_peak(some).axes[0]) == f"least peak 6 at $n_{{0}}$ = 10{said}"
 
 
 def test_decades_of_positive_values_are_logarithmic():

@@ -207,10 +207,7 @@ def test_percentiles_of_peaks_have_bounds_by_errors_and_by_the_number_of_draws(s
     *_, table = as_table(printed, "rad/s").partition("percentiles of 11 curves")
     rows = [line.split() for line in table.splitlines()]
     assert ["peak", "u", "1.00000", "-", "3.50000", "6.00000", "8.50000", "-", "11.0000"] in rows
-    assert (
-        "\n- a percentile of too few curves, the least or the greatest of them. It takes 20 for 5 and 95"
-        in table
-    )
+    assert "\n- of peak u and peak v: a percentile of too few curves. It takes 20 for 5 and 95" in table
     assert ["from", "-", "0.875", "2.62", "5.25", "7.87"] in rows
     assert ["to", "3.38", "6.75", "10.2", "12.4", "-"] in rows
     assert "with 90 % confidence. They count the errors of peaks, 1.2e-01 at most\n" in table

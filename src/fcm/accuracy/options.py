@@ -253,6 +253,9 @@ class RefinementOptions(Frozen):
         Target for the effect of the harmonics left out, relative to the accuracy.
     feedback_factor : float
         Effect of harmonics, relative to that without feedback, as long as the pair does not give it.
+    max_gain : float
+        Effect of harmonics by the pair, relative to that without feedback, above which the spectrum does not
+        explain it: they act by the motion of contacts. Low harmonics are then taken without gaps.
     max_first_added, max_growth : int
         Most harmonics that are added at once, as a number, and relative to the present number; the larger
         limit holds.
@@ -274,6 +277,7 @@ class RefinementOptions(Frozen):
     max_rounds: int = 8
     safety: float = 0.4
     feedback_factor: float = 3.0
+    max_gain: float = 10.0
     max_first_added: int = 6
     max_growth: int = 2
     rival_fraction: float = 0.8

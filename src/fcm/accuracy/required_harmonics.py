@@ -5,6 +5,10 @@ feedback, is |G(h omega) F_h| relative to the amplitude. Together the missing ha
 than the sum of their shares, as they act on one another. The pair gives this gain:
 
     gain = change / sum of the shares of the reference's further harmonics
+
+The shares are those of the motion of the structure where it counts. A harmonic may move the contacts alone,
+as an even one on the two faces of a shroud does, and change the motion by their forces. The gain is then
+large, and low harmonics are taken without gaps.
 """
 
 from __future__ import annotations
@@ -101,14 +105,19 @@ def needed(
     accuracy: float,
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[int, ...]:
-    """The present harmonics with the largest missing ones added, as many as the accuracy needs."""
+    """The present harmonics with the largest missing ones added, as many as the accuracy needs.
+
+    Where the shares explain little of the change, low harmonics are added without gaps.
+    """
     share = required.share.copy()
     share[np.array(harmonics) - 1] = 0.0
     order = np.argsort(-share, kind="stable")
     left = share.sum() - np.cumsum(share[order])
     new = [h - 1 for h in required.reference if h not in harmonics and h <= LIMITS.harmonics]
-    known = required.is_known and required.change > accuracy and share[new].any()
-    gain = max(required.change / share[new].sum(), 1.0) if known else options.feedback_factor
+    known = required.change > accuracy and bool(share[new].any())
+    gain = required.change / share[new].sum() if known else 0.0
+    unexplained = gain > options.max_gain
+    gain = max(gain, 1.0) if known and required.is_known else options.feedback_factor
     count = 1 + int(np.count_nonzero(gain * left > options.safety * accuracy))
     count = min(
         count,
@@ -116,7 +125,10 @@ def needed(
         LIMITS.harmonics - len(harmonics),
     )
     chosen = {int(k) + 1 for k in order[:count] if share[k] > 0.0}
-    low = range(1, options.complete_harmonics + 1) if chosen else ()
+    complete = options.complete_harmonics
+    if unexplained:
+        complete = min(max(options.max_growth * len(harmonics), complete), LIMITS.harmonics)
+    low = range(1, complete + 1) if chosen else ()
     return tuple(sorted({*harmonics, *chosen, *low}))
 
 

@@ -220,13 +220,14 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     beyond = found["curves_beyond"]
     heads = ["", "least", *(f"{percent} %" for percent in beyond), "greatest", ""]
     lines = [head, aligned([heads, *rows], left=1)]
-    if any("-" in row[1:-1] for row in rows if not row[0].startswith(" ")):
+    lacking = [row[0].strip() for row in rows if "-" in row[1:-1] and not _is_of_above(row)]
+    if lacking:
         needs = ", ".join(
             f"{needed} for {low} and {high} %" if low != high else f"{needed} for {low} %"
             for (low, needed), high in zip(beyond.items(), reversed(beyond), strict=True)
             if float(low) <= float(high)
         )
-        lines.append(f"- a percentile of too few curves, the least or the greatest of them. It takes {needs}")
+        lines.append(f"- of {_in_words(lacking)}: a percentile of too few curves. It takes {needs}")
     if found["peak"] and dofs:
         lines.append(
             "each line is in its own order: a peak and a frequency of one column are not of one draw"
@@ -236,6 +237,11 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     if any(one["untold"] for one in jumps.values()):
         lines.append("unknown: stability is not known, and a sweep may jump")
     return "\n".join(lines)
+
+
+def _is_of_above(row: Sequence[str]) -> bool:
+    """Whether a line of percentiles has bounds, or the frequencies, of those of a line above."""
+    return row[0].strip().partition(" ")[0] in ("from", "to", "at")
 
 
 def _spread(found: Mapping[str, Any], what: str) -> list[str]:
@@ -276,14 +282,32 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
             f"{draws - count} of {draws} draws have no complete curve. The percentiles are without "
             "them, and may be too low where their peaks are high; the bounds count them as unknown"
         )
+    unbounded = [
+        percent
+        for percent, needed in found["curves_needed"].items()
+        if draws >= needed and any(None in peak["interval"][percent] for peak in peaks)
+    ]
+    if unbounded:
+        lines.append(
+            f"- of from or to of {_in_words(unbounded)} %: some errors are unknown, the others are too few"
+        )
     short_of = {percent: needed for percent, needed in found["curves_needed"].items() if draws < needed}
     if short_of:
-        *before, last = short_of
-        named = f"{', '.join(before)} and {last}" if before else last
+        named = _in_words(list(short_of))
         few = f"{draws} draw is" if draws == 1 else f"{draws} draws are"
         needed = max(short_of.values())
         lines.append(f"{few} too few for both bounds of {named} %: {needed} are needed")
     return lines
+
+
+def _in_words(names: Sequence[str]) -> str:
+    """Percentiles or names of lines as a list in words.
+
+    >>> _in_words(["5", "50", "95"]), _in_words(["5"])
+    ('5, 50 and 95', '5')
+    """
+    *before, last = names
+    return f"{', '.join(before)} and {last}" if before else last
 
 
 def _of_large_errors(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
@@ -586,7 +610,9 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
                 of_peaks = f"{alone} of peaks"
                 if max(lower) > max(peaks):
                     of_peaks = alone = f"{alone} of the greatest peaks, {_amount(max(lower))} of lower ones"
-                beside = " (beside folds)" if harmonic > 1.0 else ""
+                beside = (
+                    " (beside folds)" if harmonic > 1.0 and any(one.get("folds") for one in curves) else ""
+                )
                 of_any = f"{_amount(harmonic)} of the greatest amplitude at any point{beside}"
                 of_all = alone
                 if max(peaks) < harmonic:
@@ -598,7 +624,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         ]:
             off, dof = max(places)
             of = f" of {dof}" if len(shown) > 1 else ""
-            errors.append(f"{off:.1e} of the frequency of the greatest peak{of}")
+            errors.append(f"{off:.1e} in the frequency of the greatest peak{of}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"

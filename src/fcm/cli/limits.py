@@ -22,6 +22,7 @@ class RemarkOptions(Frozen):
     tried: int = 2  # values listed on either side of an optimum that was found by trials
     # relative error of a peak at an optimum, or of random draws, from which on it is reported
     doubtful_error: float = 0.1
+    unreliable_error: float = 0.3  # relative error of a greatest peak beyond which a result is called so
     # relative amount below the least peak from which on the response at an optimum lacks that peak
     lacking: float = 1e-3
     lines: int = 12  # lines of a table of peaks, jumps or windows that all curves share

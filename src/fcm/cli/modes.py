@@ -15,7 +15,8 @@ from fcm.cli.options import scene_argument
 
 _FRICTION = (
     "the damping ratio that friction can add to each resonance, estimated for closed contacts{}.\n"
-    "open: the mode without contacts of the most alike shape, MAC: how alike, 1 the same; - below {:g}:"
+    "open: the mode without contacts of the most alike shape, MAC: how alike, 1 the same; - if below {:g}.\n"
+    "most in: the contact that takes the largest share of the energy; n_0: its preload then"
 )
 _OF_PAIRS = "; n_0 is that of a pair"
 _OF_TOTALS = "; n_0 is the total of all pairs"

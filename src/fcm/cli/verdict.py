@@ -8,6 +8,7 @@ from typing import Any
 from fcm.cli import schedule, track
 from fcm.cli.columns import most_of, short
 from fcm.cli.curves import incomplete, shown_dofs, visited_frequencies
+from fcm.cli.limits import SENTENCES
 from fcm.model.question import MissingModes
 
 _UNSURE = ("folds_unsure_at", "branches_unsure_at", "symmetry_lost_at")  # of curves
@@ -26,6 +27,9 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     'result: complete; every peak shown is stable; errors of peaks are at most 2.0e-04'
     >>> verdict({"curves": [curve | {"folds_unsure_at": [1.0]}]}, 1).split(";")[0]
     'result: complete, but branches may be missing'
+    >>> doubtful = curve | {"peak": {"u": peak | {"error": 0.4}}}
+    >>> verdict({"curves": [doubtful]}, 0).split(";")[0]
+    'result: complete, but not to be relied on: peaks err too much'
     >>> verdict({"curves": [curve], "histories": [{"complete": False}]}, 0).split(";")[0]
     'result: the schedule stopped early'
     >>> other = curve | {"complete": False, "peak": {"u": peak | {"stable": None, "error": None}}}
@@ -39,7 +43,10 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
         return ""
     unsure = any(curve.get(key) for curve in curves for key in _UNSURE)
     ends = incomplete(summary), schedule.incomplete(summary.get("histories", []))
-    parts = [(" and ".join(filter(None, ends)) or "complete") + ", but branches may be missing" * unsure]
+    but = ["branches may be missing"] * unsure + _of_doubtful(curves, shown_dofs(summary) if curves else [])
+    parts = [" and ".join(filter(None, ends)) or "complete"]
+    if but:
+        parts[0] += f", but {', and '.join(but)}"
     if tracked:
         parts = tracked
     elif any("mode" in curve for curve in curves):
@@ -56,6 +63,16 @@ def verdict(summary: Mapping[str, Any], remarks: int) -> str:
     if remarks:
         parts.append(f"{remarks} remark{'s' * (remarks > 1)} on it above")
     return f"result: {'; '.join(parts)}"
+
+
+def _of_doubtful(curves: Sequence[Mapping[str, Any]], dofs: Sequence[str]) -> list[str]:
+    """Clause on curves whose greatest peaks have errors too large to rely on; none if there are none."""
+    errors = [[(curve["peak"].get(dof) or {}).get("error") or 0.0 for dof in dofs] for curve in curves]
+    doubtful = sum(max(every, default=0.0) > SENTENCES.unreliable_error for every in errors)
+    if not doubtful:
+        return []
+    of = f" of {doubtful} of {len(curves)} curves" if len(curves) > 1 else ""
+    return [f"not to be relied on: peaks{of} err too much"]
 
 
 def _shown(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:

@@ -343,7 +343,7 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     what = "peak" if peaks.damping is None else "resonance"
     height = f"{y:.4g} {dof_unit(peaks.dofs[column], peaks.length)}".rstrip()
     errs = "" if peaks.error is None or y == 0.0 else _erring(float(peaks.error[least, column]))
-    said = f"least {what} {height}{stays}{errs} at {where}"
+    said = f"least {what} {height} at {where}{stays}{errs}"
     if key not in _WHOLE and found.at_end_of_sweep:
         (symbol,) = symbols([key])
         said += f"\nan end of the sweep of {symbol}: less may be beyond, or before the next value"

@@ -195,10 +195,10 @@ def how_far_off(matrices: StructureMatrices, bound: float, damping: float, lost:
     if lost:
         why = "the damping of rigid-body modes, which have no ratio, being left out"
         return f"Receptances at the forces' frequencies are off by at most {most}, {why}"
-    text = f"Receptances up to the forces' highest frequency are off by at most {most}"
-    if not ratio:
-        return text
-    return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}"
+    text = (
+        f"Receptances up to the forces' highest frequency, not at higher harmonics, are off by at most {most}"
+    )
+    return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}" if ratio else text
 
 
 def _upwards(bound: float) -> str:
