@@ -147,6 +147,20 @@ def test_harwell_boeing_with_the_mapping_of_ansys(tmp_path):
     assert found.frequency == pytest.approx(EXACT, rel=1e-9)
 
 
+def test_rows_without_names_beside_named_ones_are_not_guessed(tmp_path):
+    """The mass was taken in the order of the other file: a peak at 19.1 rad/s in place of 23.3."""
+    write(tmp_path, model__pch=PUNCH, M__matrix=BOEING.replace("E+05", "E+00").replace("D+05", "E+00"))
+    assert "dofs in its order" in refused(tmp_path, stiffness="model.pch:KAAX", mass="M.matrix")
+    assert modal(tmp_path, stiffness="model.pch:KAAX", mass="M.matrix", dofs=list(ROWS)).dofs == ROWS
+
+
+def test_harwell_boeing_that_ends_within_a_number_is_cut_off(tmp_path):
+    write(tmp_path, K__matrix=BOEING.rstrip()[:-6])
+    assert "line 9 ends within a number" in refused(tmp_path, stiffness="K.matrix", dofs=list(ROWS))
+    write(tmp_path, L__matrix=BOEING.rstrip())
+    assert modal(tmp_path, stiffness="L.matrix", dofs=list(ROWS)).dofs == ROWS
+
+
 @pytest.mark.parametrize("kind", ["dense", "sparse by columns", "sparse by rows", "matlab", "matlab sparse"])
 def test_hdf5(tmp_path, kind):
     h5py = pytest.importorskip("h5py")

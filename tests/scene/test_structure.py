@@ -659,6 +659,19 @@ def test_matrices_in_each_others_place_beside_a_contact(count):
     assert "in each other's place" in said
 
 
+def test_a_mass_a_thousand_times_too_great_is_not_called_exchanged():
+    """Exchanged with the stiffness it had a mode, but none within the range."""
+    chain = 1e3 * (2.0 * np.eye(4) - np.eye(4, k=1) - np.eye(4, k=-1))
+    first = 2.0 * np.sqrt(1e3) * np.sin(pi / 10.0)
+    scene = read(
+        top={"response": {"frequency": [0.5 * first, 2.0 * first]}},
+        dofs=[f"{i + 1}x" for i in range(4)],
+        stiffness=chain.tolist(),
+        mass=(1e3 * np.eye(4)).tolist(),
+    )
+    assert scene.modal.frequency[0] == pytest.approx(first / np.sqrt(1e3))
+
+
 @pytest.mark.parametrize("ending", [".npy", ".txt", ".csv"])
 def test_what_numpy_writes_otherwise_is_told_how_it_is_made_an_archive(ending, tmp_path, monkeypatch):
     """By doing what the message says."""

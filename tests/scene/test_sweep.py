@@ -241,6 +241,14 @@ def test_two_keys_for_one_number(data, mistakes, one, other):
     assert f'sweep."{other}": sets the same number as "{one}"' in mistakes(data)
 
 
+def test_phases_in_degrees(data, mistakes):
+    data["sweep"] = {"force.u.phase": ["0deg", "30deg", 0.2]}
+    swept = [float(one.parameters["force.u.phase"]) for one in scene_from_dict(data).curves]
+    assert swept == pytest.approx([0.0, np.pi / 6.0, 0.2])
+    data["sweep"] = {"contact.shroud.mu": ["30deg"]}
+    assert "write 0.523599" in mistakes(data)
+
+
 def test_too_many_curves(data, mistakes):
     values = {"from": 1, "to": 2, "count": 1001}
     data["sweep"] = dict.fromkeys(["contact.shroud.n_0", "contact.shroud.k_u"], values)

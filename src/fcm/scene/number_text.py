@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from math import isfinite
+from math import isfinite, radians
 
 from fcm.scene.errors import quoted
 
@@ -41,6 +41,8 @@ def fault_of_number(text: str) -> str:
     ('"100,5" has a decimal comma: write 100.5', '"100.5kN" has "kN" behind the number: write 100.5')
     >>> fault_of_number("30 %")
     '"30 %" has "%" behind the number: write 0.3'
+    >>> fault_of_number("30deg")
+    '"30deg" has "deg" behind the number: write 0.523599'
     >>> fault_of_number("nan"), fault_of_number("1e999")
     ('"nan" is not a number', '"1e999" is too large for a number: 1.8e308 is the largest')
     """
@@ -51,6 +53,7 @@ def fault_of_number(text: str) -> str:
     if _HEXADECIMAL.match(text):
         return f"{quoted(text)} is hexadecimal: write it in decimals"
     if ((match := _BEHIND.fullmatch(text)) and match[2][0].isalpha()) or (match and match[2][0] in "%°[("):
-        meant = match[1] if match[2].strip() != "%" else f"{(number_in(match[1]) or 0.0) / 100.0:.12g}"
+        factor = {"%": 0.01, "deg": radians(1.0), "\u00b0": radians(1.0)}.get(match[2].strip(), 1.0)
+        meant = match[1] if factor == 1.0 else f"{(number_in(match[1]) or 0.0) * factor:.6g}"
         return f"{quoted(text)} has {quoted(match[2])} behind the number: write {meant}"
     return f"{quoted(text)} is not a number"

@@ -99,12 +99,12 @@ def exchanged(matrices: StructureMatrices, kept: FloatArray, ends: tuple[float, 
     """Detects exchanged stiffness and mass; returns a frequency [rad/s] of a mode with them swapped, else 0.
 
     They count as exchanged if the structure as given has no mode near the range or above it, but with the
-    matrices swapped has one near the range. The highest mode as given is the reciprocal of the lowest elastic
-    mode after the swap. kept (mode,) [rad/s]: the computed modes of the structure as given.
+    matrices swapped has one within the range. The highest mode as given is the reciprocal of the lowest
+    elastic mode after the swap. kept (mode,) [rad/s]: the computed modes of the structure as given.
     """
     if not (np.isfinite(ends).all() and ends[0] > 0.0):
         return 0.0
-    low, high = ends[0] / MESSAGES.range_near, ends[1] * MESSAGES.range_near
+    low = ends[0] / MESSAGES.range_near
     if kept.max(initial=0.0) >= low:
         return 0.0
     nothing = np.zeros((len(matrices.dofs), 0))
@@ -113,8 +113,8 @@ def exchanged(matrices: StructureMatrices, kept: FloatArray, ends: tuple[float, 
     except StructureError:
         return 0.0
     elastic = np.sqrt(other.modes.stiffness[other.rigid :])
-    near = elastic[(elastic >= low) & (elastic <= high)]
-    return float(near[0]) if near.size and 1.0 / elastic[0] < low else 0.0
+    within = elastic[(elastic >= ends[0]) & (elastic <= ends[1])]
+    return float(within[0]) if within.size and 1.0 / elastic[0] < low else 0.0
 
 
 def in_each_others_place(mode: float) -> str:

@@ -85,13 +85,13 @@ class Section:
         value = self.data.get(key)
         if not isinstance(value, str):
             return self.number(key, ANY, default)
-        degrees = number_in(value.removesuffix("deg").rstrip()) if value.endswith("deg") else None
-        if degrees is None:
+        angle = angle_in(value)
+        if angle is None:
             what = f"must be a number, is the string {quoted(value)}"
             number = number_in(value.rstrip("\u00b0 "))
             asked = "45" if number is None or "\u00b0" not in value else f"{number:.12g}"
             self.wrong(key, f'{what}; degrees are written "{asked}deg"')
-        return nan if degrees is None else radians(degrees)
+        return nan if angle is None else angle
 
     def text(self, key: str, default: str | None = None) -> str:
         """A string; empty after a mistake."""
@@ -198,6 +198,16 @@ class Section:
             else:
                 self.wrong(key, f"{what}; {dofs.key} are {choices(dofs)}{dofs.held(dof)}", dof, dofs)
         return not unknown
+
+
+def angle_in(text: str) -> float | None:
+    """The angle [rad] of a text in degrees; None for another text.
+
+    >>> angle_in("180deg"), angle_in("180"), angle_in("north")
+    (3.141592653589793, None, None)
+    """
+    degrees = number_in(text.removesuffix("deg").rstrip()) if text.endswith("deg") else None
+    return None if degrees is None else radians(degrees)
 
 
 def _combination(dofs: Names | None) -> str:

@@ -35,7 +35,7 @@ from fcm.scene.draws import Correlation, Draws, read_correlation, read_draws
 from fcm.scene.errors import kind, quoted, shown
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import ANY, RULES, Rule
-from fcm.scene.section import Section
+from fcm.scene.section import Section, angle_in
 
 FORMS = (
     "a list of numbers, { from = , to = , count = }, "
@@ -222,7 +222,13 @@ def _values(section: Section, path: str, key: str, value: object) -> Any:
     if not len(value):
         section.mistakes.add(path, "is an empty list; give at least one value")
         return None
-    return section.numbers(value, path, ANY)
+    return section.numbers([_angle_or(one) for one in value] if key.endswith(".phase") else value, path, ANY)
+
+
+def _angle_or(value: object) -> object:
+    """The angle [rad] of a text in degrees, such as "30deg"; another value as it is."""
+    angle = angle_in(value) if isinstance(value, str) else None
+    return value if angle is None else angle
 
 
 _FORM_KEYS = {"from", "to", "count", "log", "seed", *DRAWN}

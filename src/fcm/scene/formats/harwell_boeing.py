@@ -32,7 +32,8 @@ class Fields(NamedTuple):
 
 def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
     """The matrix of a file, by the name "matrix"; its rows have no names."""
-    lines = path.read_bytes().decode("latin-1").splitlines()
+    content = path.read_bytes()
+    lines = content.decode("latin-1").splitlines()
     if len(lines) < HEAD:
         raise UnreadableError("it has no header of the Harwell-Boeing format")
     cards = [_count(lines[1], i, 2) for i in range(5)]
@@ -52,6 +53,8 @@ def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
     for card, form, size in zip(cards[1:4], formats, (columns + 1, entries, entries), strict=True):
         parts.append(_numbers(lines, begin, card, form, size))
         begin += card
+    if begin == len(lines) and len(lines[-1]) % formats[2].width and not content.endswith((b"\n", b"\r")):
+        raise UnreadableError(f"it is cut off: line {begin} ends within a number")
     pointer, index, value = _whole(parts[0]), _whole(parts[1]), parts[2]
     steps = np.diff(pointer)
     if pointer[0] != 1 or pointer[-1] != entries + 1 or (steps < 0).any():
