@@ -300,6 +300,8 @@ def test_factors_that_are_deviations_are_asked_about(factors, asked):
          ["factors: has 2 numbers, but there are 6 sectors", "blade: missing; name"]),
         ({"stiffness": [1.0] * 3, "of": "mass"},
          ['of: must be "stiffness" or', 'factors: missing; give a list']),
+        ({"stiffness": [1.0] * 3, "of": {"from": 1.0}, "factors": FACTORS},
+         ['of: must be "stiffness" or "frequency", is a table']),
         ({"blade": ["tp"], "factors": FACTORS},
          ['blade[0]: no degree of freedom matches "tp"; did you mean']),
         ({"blade": ["tip"], "factors": FACTORS},

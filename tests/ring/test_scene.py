@@ -62,6 +62,8 @@ def wrong(**tables):
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [1, 1, 1]}}, ["diameter 0, which the"]),
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [1, 1, 0]}}, ["of diameter 0, so it"]),
         ({"structure": None, "modal": MODAL | {"pairs": True}}, ["frequencies differ, 200 and 300"]),
+        ({"structure": None, "modal": MODAL | {"pairs": True, "damping": [0.01, 0.01]}},
+         ["damping: has 2 numbers, but"]),
         ({"structure": None, "cyclic": None, "modal": MODAL, "contact": None},
          ["shapes[1][2]: must be a number", "shapes[2][1]", "modal.nodal_diameter: is of the modes of"]),
     ],

@@ -48,7 +48,7 @@ def read_mistuning(section: Section, sectors: float) -> Part | None:
         return None
     table.only(*names(KEY))
     of = table.data.get("of", "stiffness")
-    if of not in OF:
+    if not isinstance(of, str) or of not in OF:
         table.wrong("of", f'must be "stiffness" or "frequency", is {_worded(of)}')
     scale = table.number("scale", RULES["scale"], default=1.0)
     factors, drawn = _factors(table, sectors)

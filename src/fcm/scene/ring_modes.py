@@ -67,6 +67,8 @@ def travelling(section: Section, draft: Part, sectors: float) -> Part:
     arrays = ("mass", "frequency", "damping", "shapes", "diameter")
     if any(draft[key] is None for key in arrays) or isnan(sectors):
         return draft
+    if len({len(draft[key]) for key in arrays}) > 1:  # said where the modes are checked
+        return draft
     if not pairs:
         if "pairs" not in section.data:
             _check_no_pairs(section, draft, int(sectors))
