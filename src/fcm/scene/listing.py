@@ -12,6 +12,7 @@ from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.contact_springs import stuck_stiffness
 from fcm.scene.contact_stiffness import contact_flexibility
 from fcm.scene.errors import counted
+from fcm.scene.modal import lacks_modes_above
 from fcm.scene.open_modes import stuck_modes
 from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
@@ -434,14 +435,7 @@ def _of_range(scene: Scene) -> list[str]:
     undamped = np.flatnonzero(inside & (modal.damping == 0.0)) + 1
     if undamped.size:
         said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")
-    highest = modal.frequency.max()
-    lacking = not (modal.added or modal.complete)
-    if (
-        lacking
-        and highest < MESSAGES.range_above * ranges[-1][1]
-        and modal.frequency.size > 1
-        and scene.contacts
-    ):
-        where = f"{highest / UNIT[unit]:.6g} {unit}"
+    if lacks_modes_above(scene, ranges[-1][1]):
+        where = f"{modal.frequency.max() / UNIT[unit]:.6g} {unit}"
         said.append(f"the highest mode is at {where}: a contact lacks the flexibility of all modes above")
     return said

@@ -39,6 +39,7 @@ from fcm.scene.linear import (
 )
 from fcm.scene.mistuning import KEY as MISTUNING
 from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_sweep, whole_ring
+from fcm.scene.modal import notes_of_modes_above
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
 from fcm.scene.options import FILES, MESSAGES, TOLERANCES
@@ -251,6 +252,7 @@ def _made(name: str, fields: dict[str, Any], notices: SizeNotices | None, solved
         notes=(
             *scene.notes,
             *_notes_of_modes(scene),
+            *(notes_of_modes_above(scene) if solved and not scene.of_matrices else ()),
             *(note_of_stability(scene) if solved else ()),
             *question_of_joints(scene),
             *note_of_harmonics(scene.forces),

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.scene import FloatArray, Modal
+from fcm.model.question import MissingModes
+from fcm.model.scene import FloatArray, Modal, Scene
 from fcm.scene.errors import choices, counted, kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.names import Names, checked_names
+from fcm.scene.options import MESSAGES
 from fcm.scene.ring_modes import complex_row, read_diameters, travelling
 from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
@@ -53,6 +55,29 @@ def read_modal(
         if key in section.data:
             section.wrong(key, "is of the modes of a ring: give [cyclic] with sectors and engine_order")
     return draft
+
+
+def lacks_modes_above(scene: Scene, high: float) -> bool:
+    """Whether modes above a frequency [rad/s] may be missing, which give a contact flexibility."""
+    modal = scene.modal
+    known = modal.added or modal.complete or modal.frequency.size == 1 or not scene.contacts
+    return bool(not known and modal.frequency.max() < MESSAGES.range_above * high)
+
+
+def notes_of_modes_above(scene: Scene) -> list[str]:
+    """A note that modes may be missing within the range; none for as many modes as degrees of freedom."""
+    if not scene.has_range or scene.ring is not None or len(scene.modal.frequency) == len(scene.modal.dofs):
+        return []
+    high, unit = scene.frequency_range[1] * max(one.harmonic for one in scene.forces), scene.frequency_unit
+    if not lacks_modes_above(scene, high / MESSAGES.range_above):
+        return []
+    where = f"{scene.modal.frequency.max() / UNIT[unit]:.6g} {unit}"
+    return [
+        MissingModes(
+            f"modal: is a mode missing? The highest is at {where}, within the range. Contacts lack the "
+            "flexibility of modes above, so that peaks err by more than is said"
+        )
+    ]
 
 
 def modal_of(draft: dict[str, Any], unit: str) -> Modal:
