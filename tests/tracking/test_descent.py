@@ -201,3 +201,11 @@ def test_a_least_peak_where_nothing_stable_was_found_says_so_in_its_headline():
     ):
         shown = as_table(run | {"curves": [{"no_stable_motion": [stretch]}]}, "rad/s")
         assert said in shown.splitlines()[0]
+
+
+def test_a_way_down_from_numbers_without_a_peak_ends_there():
+    """Its response rises to an end of the range; it was a traceback."""
+    numbers = np.array([0.5, 0.5])
+    nowhere = SimpleNamespace(traced=lambda q: (np.inf, []), options=DESCENT)
+    q, value, members = downhill(nowhere, numbers)
+    assert (q == numbers).all() and value == np.inf and members == []

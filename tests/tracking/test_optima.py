@@ -214,3 +214,18 @@ def test_a_curve_that_runs_along_the_frequency_at_the_end_of_its_range_has_ended
     scene = scene_from_dict(tomllib.loads(oscillator("[response]\nfrequency = [0.7, 1.7]\n")))
     tracked = track(scene, TrackRequest("slip", "contact.shroud.n_0", (2.0, 200.0)), harmonics=1).tracking
     assert [one.reason for one in tracked.curves] == [""] and tracked.complete
+
+
+def test_numbers_beside_the_least_without_a_peak_in_the_range(fcm, tmp_path):
+    """Above 39 N the curve rises to the end of the range: a traceback."""
+    text = (
+        'title = "blade"\nfrequency_unit = "Hz"\n[modal]\ndofs = ["tip", "rad"]\nfrequency = [100.0, 260.0]\n'
+        "damping = [0.003, 0.002]\nshapes = [[20.0, 3.0], [-14.0, 9.0]]\n"
+        '[[contact]]\nname = "left"\ntangential = "tip"\nnormal = "rad"\nmu = 0.3\nk_u = 1500.0\n'
+        'k_v = 2000.0\nn_0 = 30.0\n[[force]]\ndof = "tip"\namplitude = 10.0\n'
+        "[response]\nfrequency = [104.0, 112.0]\nharmonics = 1\n"
+        '[optimum]\nvary = ["contact.left.n_0"]\nbounds = [[20, 120]]\nminimise = "peak.tip"\n'
+    )
+    (tmp_path / "scene.toml").write_text(text)
+    done = fcm("respond", "scene.toml")
+    assert done.code == 0 and "least peak" in done.err + done.out

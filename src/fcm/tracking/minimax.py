@@ -242,8 +242,13 @@ def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
 
 
 def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
-    """Descend from q until neither a full step nor repeated halvings of it find a lower greatest peak."""
+    """Descend from q until neither a full step nor repeated halvings of it find a lower greatest peak.
+
+    Where the response has no peak at q, this ends there.
+    """
     value, members = valley.traced(q)
+    if not members:
+        return q, value, members
     for _ in range(valley.options.max_rounds):
         end = _minimax(valley, q, members, value)
         for _ in range(valley.options.max_halvings):

@@ -56,7 +56,7 @@ def error_of_higher(search: LowestPeakSearch, best: EnvelopeMinimum) -> tuple[fl
     """
     worst, at = 0.0, best.s
     for s in best.between or ():
-        condition, top = max(search.known_points.get(s, [(None, MIN_HEIGHT)]), key=lambda one: one[1].value)
+        condition, top = max(search.known_points.get(s) or [(None, MIN_HEIGHT)], key=lambda one: one[1].value)
         if condition is None or not top.value > best.value * (1.0 + search.options.height_tolerance):
             continue
         point = land(search.setup, condition, top.z)
