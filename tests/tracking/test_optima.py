@@ -1,11 +1,13 @@
 """A search for optima that is interrupted: what was found is not sought again, and comes out the same."""
 
+import json
 import tomllib
 
 import netCDF4
 import numpy as np
 import pytest
 
+import fcm as fcm_module
 from fcm.cli.track import as_table
 from fcm.response.least_peak import PeakTask
 from fcm.response.optimum import optima, optimise
@@ -216,16 +218,34 @@ def test_a_curve_that_runs_along_the_frequency_at_the_end_of_its_range_has_ended
     assert [one.reason for one in tracked.curves] == [""] and tracked.complete
 
 
+LEAVES = (
+    'title = "blade"\nfrequency_unit = "Hz"\n[modal]\ndofs = ["tip", "rad"]\nfrequency = [100.0, 260.0]\n'
+    "damping = [0.003, 0.002]\nshapes = [[20.0, 3.0], [-14.0, 9.0]]\n"
+    '[[contact]]\nname = "left"\ntangential = "tip"\nnormal = "rad"\nmu = 0.3\nk_u = 1500.0\n'
+    'k_v = 2000.0\nn_0 = 30.0\n[[force]]\ndof = "tip"\namplitude = 10.0\n'
+)  # a peak that leaves the range of frequencies as the preload grows
+
+
 def test_numbers_beside_the_least_without_a_peak_in_the_range(fcm, tmp_path):
     """Above 39 N the curve rises to the end of the range: a traceback."""
-    text = (
-        'title = "blade"\nfrequency_unit = "Hz"\n[modal]\ndofs = ["tip", "rad"]\nfrequency = [100.0, 260.0]\n'
-        "damping = [0.003, 0.002]\nshapes = [[20.0, 3.0], [-14.0, 9.0]]\n"
-        '[[contact]]\nname = "left"\ntangential = "tip"\nnormal = "rad"\nmu = 0.3\nk_u = 1500.0\n'
-        'k_v = 2000.0\nn_0 = 30.0\n[[force]]\ndof = "tip"\namplitude = 10.0\n'
-        "[response]\nfrequency = [104.0, 112.0]\nharmonics = 1\n"
+    (tmp_path / "scene.toml").write_text(
+        LEAVES + "[response]\nfrequency = [104.0, 112.0]\nharmonics = 1\n"
         '[optimum]\nvary = ["contact.left.n_0"]\nbounds = [[20, 120]]\nminimise = "peak.tip"\n'
     )
-    (tmp_path / "scene.toml").write_text(text)
     done = fcm("respond", "scene.toml")
     assert done.code == 0 and "least peak" in done.err + done.out
+
+
+def test_a_peak_that_leaves_the_range_is_followed_with_more_harmonics_too(fcm, tmp_path):
+    """The greatest peak of the span, 0.047 at n_0 = 0, was told as the least."""
+    (tmp_path / "scene.toml").write_text(
+        LEAVES + "[response]\nfrequency = [89.15, 119.08]\n"
+        '[optimum]\nvary = ["contact.left.n_0"]\nbounds = [[0, 60]]\nminimise = "peak.rad"\n'
+    )
+    found = json.loads(fcm("respond", "scene.toml", "--json").out)["optimum"][0]
+    swept = LEAVES + "[response]\nfrequency = [89.15, 119.08]\nharmonics = 4\n"
+    curves = fcm_module.respond(
+        scene_from_dict(tomllib.loads(swept + '[sweep]\n"contact.left.n_0" = [21, 30, 33]\n'))
+    )
+    least = float(curves.peak_amplitude.sel(dof="rad").min())
+    assert found["value"] < least

@@ -138,7 +138,9 @@ class LowestPeakSearch:
     def _unknown(self, best: EnvelopeMinimum | None) -> list[float]:
         """Values in gaps without a followed peak, except where all peaks are far above the least."""
         return [
-            s for s in uncovered_values(self.setup, self.pieces) if best is None or self._is_near(s, best)
+            s
+            for s in uncovered_values(self.setup, self.pieces, self.visited)
+            if best is None or self._is_near(s, best)
         ]
 
     def _is_near(self, s: float, best: EnvelopeMinimum) -> bool:
@@ -242,6 +244,7 @@ class LowestPeakSearch:
         for curve in known.curves:
             for i in sorted({0, len(curve.points) // 2, len(curve.points) - 1}):
                 z = self.system.extended(curve.points[i].z, known.harmonics)
+                z[-1] = np.clip(z[-1], *self.span)  # an end may lie a rounding beyond it
                 point = land(self.setup, curve.condition, z) if curve.greatest[i] else None
                 if point is not None:
                     self.follow(curve.condition, point)

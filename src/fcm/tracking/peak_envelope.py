@@ -7,7 +7,7 @@ value is at a minimum of a piece, at a crossing of two pieces, or at an end of o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -252,17 +252,26 @@ def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, f
     return s
 
 
-def uncovered_values(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> list[float]:
-    """Values of s that no piece covers: ends of the span, and middles of gaps."""
+def uncovered_values(
+    setup: TrackingSetup, pieces: Sequence[MonotonePiece], tried: Collection[float] = ()
+) -> list[float]:
+    """Values of s that no piece covers: ends of the span, and middles of gaps.
+
+    An end that was tried, and has no peak, is replaced by the middle of its gap.
+    """
     low, high = setup.span
     least, found, last = setup.options.envelope.min_gap * (high - low), [], low
     if not pieces:
-        return [low, high]
+        ends = [end for end in setup.span if end not in tried]
+        return ends or [0.5 * (low + high)]
     for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
         if piece.s[0] - last > least:
-            found.append(low if last == low else 0.5 * (last + float(piece.s[0])))
+            at_end = last == low and low not in tried
+            found.append(low if at_end else 0.5 * (last + float(piece.s[0])))
         last = max(last, float(piece.s[-1]))
-    return [*found, high] if high - last > least else found
+    if high - last > least:
+        found.append(0.5 * (last + high) if high in tried else high)
+    return found
 
 
 def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from fcm.tracking.error import error_of_peak
-from fcm.tracking.lowest_peak import MIN_HEIGHT, LowestPeakSearch
+from fcm.tracking.lowest_peak import LowestPeakSearch
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.peak_envelope import EnvelopeMinimum
 
@@ -56,8 +56,10 @@ def error_of_higher(search: LowestPeakSearch, best: EnvelopeMinimum) -> tuple[fl
     """
     worst, at = 0.0, best.s
     for s in best.between or ():
-        condition, top = max(search.known_points.get(s) or [(None, MIN_HEIGHT)], key=lambda one: one[1].value)
-        if condition is None or not top.value > best.value * (1.0 + search.options.height_tolerance):
+        if not (found := search.known_points.get(s)):
+            continue  # no peak there
+        condition, top = max(found, key=lambda one: one[1].value)
+        if not top.value > best.value * (1.0 + search.options.height_tolerance):
             continue
         point = land(search.setup, condition, top.z)
         error = np.nan if point is None else error_of_peak(search.setup, condition, point)
