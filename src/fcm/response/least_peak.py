@@ -272,8 +272,8 @@ def _no_peak(task: PeakTask) -> str:
     if height.size and at_rest(height)[each].all():
         return f"optimum: {still(dofs, len(each))}"
     have = "has" if len(each) == 1 else "have"
-    why = f"{dofs} {have} no peak inside the range of frequencies"
-    return f"optimum: {why}; minimise greatest.NAME, or widen the range"
+    why = f"{dofs} {have} no peak inside the range of frequencies at the bounds and amid them"
+    return f"optimum: {why}; minimise greatest.NAME, widen the range, or give narrower bounds"
 
 
 def still(dofs: str, count: int) -> str:
