@@ -7,10 +7,12 @@ mode with a narrow peak least, and their effect lies between those of all stuck 
 
 from __future__ import annotations
 
+import numpy as np
+
 from fcm.branches.options import LINEAR_LIMITS
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.structure.linear import Linear, damped_with_springs
+from fcm.structure.linear import Linear
 from fcm.structure.ring import RingLinear
 
 
@@ -29,8 +31,8 @@ def narrow_resonances(system: System) -> list[tuple[float, float]]:
 
 
 def _excited_modes(linear: Linear, order: int, springs: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Natural frequencies and damping ratios, with springs, of the modes that a harmonic excites."""
-    modes = (
-        linear.wave(order) if isinstance(linear, RingLinear) else linear
-    )  # in a ring: other modes for each
-    return damped_with_springs(modes.natural, modes.damping, modes.ports, springs)
+    """Natural frequencies with springs of the modes that a harmonic excites, in order; their damping."""
+    if isinstance(linear, RingLinear):  # each harmonic excites other modes
+        wave = linear.wave(order)
+        return np.sort(wave.stiffened(springs)), wave.damping[np.argsort(wave.natural)]
+    return np.sort(linear.stiffened(springs)), linear.damping[np.argsort(linear.natural)]

@@ -161,42 +161,18 @@ def _single_shares(ports: FloatArray, dofs: FloatArray) -> FloatArray:
 
 def with_springs(natural: FloatArray, ports: FloatArray | ComplexArray, springs: FloatArray) -> FloatArray:
     """Natural frequencies (mode,) of modes with springs (port,) on ports (mode, port), ascending."""
-    return damped_with_springs(natural, np.zeros(natural.size), ports, springs)[0]
-
-
-def damped_with_springs(
-    natural: FloatArray, damping: FloatArray, ports: FloatArray | ComplexArray, springs: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    r"""Natural frequencies (mode,) of modes with springs (port,) on ports (mode, port), and damping ratios.
-
-    Frequencies are ascending. A mode with the shape :math:`\phi` (in modes without springs, of length 1) and
-    the frequency :math:`\omega` has the ratio :math:`\sum_m \zeta_m\omega_m|\phi_m|^2/\omega` where damping
-    is light; 0 for a rigid body.
-
-    >>> frequencies, ratios = damped_with_springs(
-    ...     np.array([1.0, 2.0]), np.array([0.1, 0.01]), np.array([[3.0], [0.0]]), np.array([1.0])
-    ... )
-    >>> (frequencies**2).round(3).tolist(), (ratios * frequencies).round(3).tolist()
-    ([4.0, 10.0], [0.02, 0.1])
-    """
-    return _with_springs(
-        natural.tobytes(), damping.tobytes(), ports.tobytes(), ports.dtype.str, springs.tobytes()
-    )
+    return _with_springs(natural.tobytes(), ports.tobytes(), ports.dtype.str, springs.tobytes())
 
 
 @lru_cache(REDUCTION.max_cached)
-def _with_springs(
-    of_modes: bytes, of_damping: bytes, of_ports: bytes, kind: str, of_springs: bytes
-) -> tuple[FloatArray, FloatArray]:
-    """What `damped_with_springs` returns, from the bytes of its arrays so that it can be cached."""
-    natural, damping, springs = np.frombuffer(of_modes), np.frombuffer(of_damping), np.frombuffer(of_springs)
+def _with_springs(of_modes: bytes, of_ports: bytes, kind: str, of_springs: bytes) -> FloatArray:
+    """Natural frequencies for `with_springs`, from the bytes of its arrays so that they can be cached."""
+    natural, springs = np.frombuffer(of_modes), np.frombuffer(of_springs)
     ports = np.frombuffer(of_ports, dtype=kind).reshape(natural.size, springs.size)
-    squares, shapes = np.linalg.eigh(np.diag(natural**2) + (ports.conj() * springs) @ ports.T)
-    frequencies: FloatArray = np.sqrt(np.maximum(squares, 0.0))
-    rates = (damping * natural) @ np.abs(shapes) ** 2
-    ratios = np.divide(rates, frequencies, out=np.zeros_like(rates), where=frequencies > 0.0)
-    frequencies.flags.writeable = ratios.flags.writeable = False
-    return frequencies, ratios
+    stiffness = np.diag(natural**2) + (ports.conj() * springs) @ ports.T
+    found: FloatArray = np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0))
+    found.flags.writeable = False
+    return found
 
 
 def amplitudes(
