@@ -116,8 +116,8 @@ def needed(
     new = [h - 1 for h in required.reference if h not in harmonics and h <= LIMITS.harmonics]
     known = required.change > accuracy and bool(share[new].any())
     gain = required.change / share[new].sum() if known else 0.0
-    unexplained = gain > options.max_gain
-    gain = max(gain, 1.0) if known and required.is_known else options.feedback_factor
+    explained = gain <= options.max_gain  # by the spectrum
+    gain = max(gain, 1.0) if known and required.is_known and explained else options.feedback_factor
     count = 1 + int(np.count_nonzero(gain * left > options.safety * accuracy))
     count = min(
         count,
@@ -126,7 +126,7 @@ def needed(
     )
     chosen = {int(k) + 1 for k in order[:count] if share[k] > 0.0}
     complete = options.complete_harmonics
-    if unexplained:
+    if not explained:
         complete = min(max(options.max_growth * len(harmonics), complete), LIMITS.harmonics)
     low = range(1, complete + 1) if chosen else ()
     return tuple(sorted({*harmonics, *chosen, *low}))
