@@ -1,6 +1,6 @@
-"""One contact, dimensionless (sections 2 to 4.2 of the paper): cycle, loop, Fourier coefficients.
+"""One dimensionless contact (sections 2 to 4.2 of the paper): cycle, loop, Fourier coefficients.
 
-The names below are imported when first used: a balance needs few of them.
+The names below are imported at first use, as a harmonic balance needs few of them.
 """
 
 import warnings
@@ -67,7 +67,7 @@ __getattr__ = on_demand(__name__, _HOME)
 if (kernel := find_spec("fcm.contact.closed_form")) and str(kernel.origin).endswith(".py"):
     import multiprocessing
 
-    if multiprocessing.parent_process() is None:  # workers need not say it again
+    if multiprocessing.parent_process() is None:  # worker processes need not repeat it
         warnings.warn(
             "the kernels of fcm run as Python, slowly: they were not compiled when it was installed, for "
             "want of a C compiler",

@@ -7,27 +7,28 @@ While the contact is closed, |f| <= n says that the slip motion w = u - f lies b
     lower(theta) = sin(theta) - n(theta) =  ell_1 cos(theta - theta_P) - n0_bar
     upper(theta) = sin(theta) + n(theta) = -ell_2 cos(theta - theta_N) + n0_bar
 
-Where the greatest of the lower limit is no more than the least of the upper one, it sticks (`SlipLimits`).
+If the greatest value of the lower limit does not exceed the least value of the upper, it sticks
+(`SlipLimits`).
 
-Positive slip is the lower limit pushing w up, so it ends at theta_P, where that limit is greatest; negative
-slip is the upper limit pushing w down, and ends at theta_N. Between consecutive extremes of the two limits
+In positive slip the lower limit pushes w up, so it ends at theta_P, where that limit is greatest. In negative
+slip the upper limit pushes w down, and slip ends at theta_N. Between successive extremes of the two limits,
 sections 3.2.1 to 3.2.4 are one clip, ``w_end = max(lower, min(w_start, upper))``. There is at most one slip,
 which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P, by theta_N,
-and by the separation (or by theta_N again when the contact never opens). Nothing has to be searched for, and
-a rounding error can shift an event but never choose a wrong sequence by more than that (`HarmonicCycle`).
+and by the separation (or by theta_N again if the contact never opens). No search is needed. A rounding error
+can shift an event, but cannot choose a wrong sequence by more than that shift (`HarmonicCycle`).
 
-The states of the cycle, as a word and with the angles at which they begin, are a `Sequence`.
+`Sequence` holds the states of the cycle as a word, with the angles at which they begin.
 
-Of it come the Fourier coefficients of the friction force, equation (27), and their derivatives. While the
-contact slips the force is +-n, while it sticks u - w with w at rest. So (27) is a sum over the spans of a
-cycle of integrals of sines and cosines. The force is continuous in theta, so the derivative of the integral
-is the integral of the derivative. That is +-(dn/dx) in a slip, and constant in a stick, as at its start.
+The Fourier coefficients of the friction force, equation (27), and their derivatives follow from the cycle. In
+slip the force is +-n, in stick it is u - w with w at rest. So (27) is a sum over the spans of a cycle of
+integrals of sines and cosines. The force is continuous in theta, so the derivative of the integral is the
+integral of the derivative: +-(dn/dx) in slip, and in stick the constant value from its start.
 
-The closed form is one `CoefficientLaw`, a table another. The numbers of a point lie one after the other: F_b,
-F_s, F_c, then the derivatives of each by n0_bar, b_bar and phi, twelve in all. A third gives the `Boundaries`
-between the regimes. A contact is fully open where n0 + b < 0, and opens and closes within the cycle where
-n0 - b < 0 < n0 + b. Of the rest it slips where n0 - (ell_1 + ell_2) / 2 < 0, the slip limit (25), and sticks
-above. These functions are smooth but for b = 1 at phi = 0 and pi, where ell_1 or ell_2 is a cone.
+The closed form is one `CoefficientLaw`, a table another. The numbers of a point are stored in sequence: F_b,
+F_s, F_c, then the derivatives of each by n0_bar, b_bar and phi, twelve in all. A third law gives the
+`Boundaries` between the regimes. A contact is fully open where n0 + b < 0, and opens and closes within the
+cycle where n0 - b < 0 < n0 + b. Otherwise it slips where n0 - (ell_1 + ell_2) / 2 < 0, the slip limit (25),
+and sticks above. These functions are smooth except at b = 1, phi = 0 or pi, where ell_1 or ell_2 is a cone.
 """
 
 from __future__ import annotations
@@ -39,27 +40,27 @@ from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, 
 from fcm.contact.options import CLOSED_FORM, ClosedFormOptions
 
 LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
-FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
-SHRINK = cython.declare(cython.double, 2.0**-32)  # both by this, where b is beyond LARGEST
+FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, also infinite ones, are limited to this
+SHRINK = cython.declare(cython.double, 2.0**-32)  # scales n0 and b if b is beyond LARGEST
 
-# what a contact does over a cycle, by the numbers that `periodic` has for it as well
+# behaviour of a contact over a cycle, with the numbers that `periodic` uses as well
 OPEN = cython.declare(cython.int, 0)  # below n0 = -b
-UNKNOWN = cython.declare(cython.int, 3)  # an argument is no number
+UNKNOWN = cython.declare(cython.int, 3)  # an argument is NaN
 STUCK = cython.declare(cython.int, 4)  # above the slip limit (25)
 SLIPPING = cython.declare(cython.int, 5)
 
 
 @cython.cclass
 class SlipLimits:
-    """`behaviour` takes the arguments of a contact and classifies its cycle.
+    """Limits of the slip motion of a contact; `behaviour` takes its arguments and classifies its cycle.
 
-    n0 and b are the preload and the amplitude of the load as they are calculated with; ell_1 and ell_2 the
-    amplitudes of the limits, lower_P the greatest of the lower one, at theta_P, upper_N the least of the
-    upper one, at theta_N.
+    n0 and b are the preload and the load amplitude used in the calculation. ell_1 and ell_2 are the
+    amplitudes of the limits, lower_P is the greatest value of the lower limit, at theta_P, and upper_N the
+    least value of the upper one, at theta_N.
     """
 
     def behaviour(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
-        """Code of what a contact does: OPEN, STUCK, SLIPPING or UNKNOWN.
+        """Behaviour of a contact: OPEN, STUCK, SLIPPING or UNKNOWN.
 
         An infinite n0_bar counts as a very large one.
         """
@@ -81,7 +82,7 @@ class SlipLimits:
         return min(max(0.0, -self.upper_N), max(-self.lower_P, -self.upper_N))
 
     def _limits(self, phi: float) -> None:
-        """Amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
+        """Computes the amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
 
         theta_P = atan2(1 - b cos phi, -b sin phi) and theta_N = atan2(-(1 + b cos phi), -b sin phi) are the
         branch-free forms of (A4), (A5). Only their sines and cosines are needed. Where an amplitude vanishes
@@ -138,24 +139,25 @@ def angle_from(sin_0: float, cos_0: float, sin_1: float, cos_1: float) -> float:
 
 @cython.cclass
 class HarmonicCycle(SlipLimits):
-    """Goes through the cycle of a contact span by span; subclasses define what is done with a span in `take`.
+    """Passes through the cycle of a contact span by span; subclasses define in `take` what to do with a span.
 
-    Of the cycle: ``theta_1`` is half the contact duration [rad], pi where the contact never opens, and
-    ``closing_rate`` is b sin(theta_1), d n / d theta when it closes. It starts in the direction ``first``, at
-    the end of the separation or, where there is none, of negative slip. ``pull``: there d w = -pull d n at
-    fixed theta, which is what a first stick remembers.
+    For the cycle: ``theta_1`` is half the contact duration [rad], pi if the contact never opens.
+    ``closing_rate`` is b sin(theta_1), d n / d theta when it closes. The cycle starts in the direction
+    ``first``, at the end of the separation or, without one, of negative slip. There d w = -``pull`` d n at
+    fixed theta, which a first stick remembers.
 
-    Of a span: from the direction ``start`` to ``end`` it is ``length`` [rad]: stick, then slip; either may be
-    absent. The slip is ``slip`` [rad], from the direction ``begin`` on; ``sin``, ``versine`` and ``deficit``
-    are the three of `arc`. ``side`` is +1 for positive slip, -1 for negative, 0 for none; w goes from
-    ``w_start`` to ``w_end``, and side (slope sin(y) + curvature (1 - cos(y))) of it in the last y [rad].
+    For a span, from the direction ``start`` to ``end``: ``length`` [rad] is that of stick, then slip; either
+    may be absent. ``slip`` [rad] is that of the slip, which begins in the direction ``begin``; ``sin``,
+    ``versine`` and ``deficit`` are its three values of `arc`. ``side`` is +1 for positive slip, -1 for
+    negative, 0 for none. w changes from ``w_start`` to ``w_end``; in the last y [rad] it changes by side
+    (slope sin(y) + curvature (1 - cos(y))).
     """
 
     def take(self) -> None:
         """Hook called at the end of each span; a subclass defines it."""
 
     def find(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
-        """Classifies a contact as `behaviour` does; if it is SLIPPING, its whole cycle is passed through."""
+        """Classifies a contact as `behaviour` does, and passes through its cycle if it is SLIPPING."""
         behaviour: cython.int = self.behaviour(n0_bar, b_bar, phi)
         if behaviour == SLIPPING:
             self._pass()
@@ -169,7 +171,7 @@ class HarmonicCycle(SlipLimits):
         to_N: float = length
         if self.opens:
             to_N = angle_from(self.first_sin, self.first_cos, self.sin_N, self.cos_N)
-        else:  # always comes by theta_P, if only at the very end
+        else:  # always comes by theta_P, at the very end at the latest
             to_P = min(to_P, length)
         P_comes: cython.bint = to_P < length or not self.opens
         N_comes: cython.bint = to_N < length
@@ -276,7 +278,7 @@ class HarmonicCycle(SlipLimits):
             rise: float = slope * scale
             root: float = sqrt(max(rise * rise + change * (2.0 * curvature * scale - change), 0.0))
             self.slip = min(2.0 * atan2(change, max(rise + root, 0.0)), self.length)
-        # one that its own limit ends is over; one by a limit that recedes, a rounding error made up
+        # a slip that its own limit ends is over; a slip by a receding limit is rounding
         self.goes_on = not turns and slope >= 0.0
 
     def _end(self) -> None:
@@ -299,18 +301,18 @@ LETTER_E = cython.declare(cython.int, ord("E"))
 LETTER_P = cython.declare(cython.int, ord("P"))
 LETTER_N = cython.declare(cython.int, ord("N"))
 LETTER_S = cython.declare(cython.int, ord("S"))
-MOST = cython.declare(cython.int, 7)  # states of a cycle, and one more
+MOST = cython.declare(cython.int, 7)  # greatest number of states of a cycle, and one more
 
 
 @cython.cclass
 class Sequence(HarmonicCycle):
-    """The regions of a cycle that float64 resolves, and those that the sequence cannot do without.
+    """The states of a cycle that float64 resolves, and those that a consistent sequence needs.
 
     Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
     slip: the limit that pushed w is past its extreme, and w must leave it to be at the other one at the end.
 
-    ``regions`` has a row for each, ``count`` in all: its letter, its angle since the first begins, and w
-    while it sticks. ``state`` is +1 in positive slip, -1 in negative slip, 0 in stick, 2 in separation.
+    ``regions`` has a row for each, ``count`` in all: its letter, its angle relative to the first, and w if it
+    is a stick. ``state`` is +1 in positive slip, -1 in negative slip, 0 in stick, 2 in separation.
     """
 
     def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
@@ -318,7 +320,7 @@ class Sequence(HarmonicCycle):
         self.regions = np.empty((MOST, 3))
 
     def of(self, n0_bar: float, b_bar: float, phi: float) -> None:
-        """Fills the regions of a contact; there are none where its behaviour is UNKNOWN."""
+        """Fills the regions of a contact; none if its behaviour is UNKNOWN."""
         self.count = 0
         behaviour: cython.int = self.find(n0_bar, b_bar, phi)
         if behaviour == STUCK:
@@ -348,10 +350,10 @@ class Sequence(HarmonicCycle):
             self.state = self.last_slip = side
 
     def _seen(self) -> float:
-        """Side (+1 or -1) of the slip in a span, 0 where no slip can be resolved."""
+        """Side (+1 or -1) of the slip in a span, 0 if float64 resolves none."""
         if self.opens:
             return self.side if fabs(self.w_end - self.w_start) > self.min_change else 0.0
-        if self.lower_P - self.upper_N <= self.min_change:  # there are both slips, equally large, or none
+        if self.lower_P - self.upper_N <= self.min_change:  # both slips occur, equally large, or none
             return 0.0
         return 1.0 if self.span == 0 else -1.0
 
@@ -366,7 +368,7 @@ class Sequence(HarmonicCycle):
     def loop(
         self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double
     ) -> tuple[float, np.ndarray]:
-        """Angle [rad] at which the first region begins, and the regions (region, 3); arguments finite."""
+        """Angle [rad] at which the first region begins, and the regions (region, 3); for finite arguments."""
         self.of(n0_bar, b_bar, phi)
         at: float = 0.0
         if self.count > 1:
@@ -402,7 +404,7 @@ class CoefficientLaw:
     ) -> None:
         """Writes the numbers of one point to out[at:]: three coefficients, or all twelve with the gradient.
 
-        b_bar is not negative. Where an argument is NaN, or b_bar or phi infinite, they are NaN.
+        b_bar is not negative. The numbers are NaN if an argument is NaN, or if b_bar or phi is infinite.
         """
 
     def unknown(self, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
@@ -412,7 +414,7 @@ class CoefficientLaw:
             out[at + i] = NAN
 
     def many(self, n0_bar: object, b_bar: object, phi: object, gradient: cython.bint) -> np.ndarray:
-        """Numbers (3 or 12, ...) of many points, whose arguments are broadcast together.
+        """Numbers (3 or 12, ...) of many points, whose arguments are broadcast.
 
         Raises ValueError if an element of b_bar is negative.
         """
@@ -437,7 +439,7 @@ class CoefficientLaw:
         out: cython.double[::1],
         numbers: cython.Py_ssize_t,
     ) -> bool:
-        """Evaluates all points; True, and stopped, at the first negative element of b_bar."""
+        """Evaluates all points; stops and returns True at the first negative element of b_bar."""
         i: cython.Py_ssize_t
         with cython.nogil:
             for i in range(b_bar.shape[0]):
@@ -450,14 +452,14 @@ class CoefficientLaw:
 @cython.final
 @cython.cclass
 class CoefficientIntegrals(HarmonicCycle):
-    """CoefficientIntegrals of one contact's force over its cycle: three coefficients and nine derivatives.
+    """Integrals of one contact's force over its cycle: three coefficients and nine derivatives.
 
-    While they are summed over the spans, they are pi times the coefficients.
+    During the summation over the spans they are pi times the coefficients.
 
     ``b_n`` is the derivative of F_b by n0_bar, ``c_phi`` that of F_c by phi. ``kept_n``, ``kept_b``,
-    ``kept_phi`` are dw/dx while the contact sticks. A ``light`` load is integrated as a force, with the
-    relative error of the arguments, however small they are against the motion, 1; else u - w is: exact where
-    the load is not small, and faster.
+    ``kept_phi`` are dw/dx in stick. For a ``light`` load the force is integrated; this keeps the relative
+    error of the arguments, however small they are against the motion, 1. Otherwise u - w is integrated, which
+    is faster, and exact because the load is not small.
     """
 
     def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
@@ -519,7 +521,7 @@ class CoefficientIntegrals(HarmonicCycle):
             self._stick_gradient()
         if self.side != 0.0 and (self.light or self.gradient):
             self._slipped()
-        # a whole span at a time: those of a symmetric loop cancel to the last digit
+        # a whole span at a time: the spans of a symmetric loop cancel to the last digit
         self.F_b, self.F_s, self.F_c = self.F_b + self.span_b, self.F_s + self.span_s, self.F_c + self.span_c
         if self.side != 0.0:
             self._keep(self.side, self.end_sin, self.end_cos)
@@ -538,7 +540,7 @@ class CoefficientIntegrals(HarmonicCycle):
         self.kept_phi = -pull * self.b * (cos_theta * self.cos_phi - sin_theta * self.sin_phi)
 
     def _motion(self) -> None:
-        """CoefficientIntegrals of -w, -w sin(theta) and -w cos(theta) over a span."""
+        """Computes the integrals of -w, -w sin(theta) and -w cos(theta) over a span."""
         stick_sin: float = self.start_cos - self.begin_cos
         stick_cos: float = self.begin_sin - self.start_sin
         self.span_b = -(self.w_start * (self.length - self.slip) + self.w_end * self.slip)
@@ -555,7 +557,7 @@ class CoefficientIntegrals(HarmonicCycle):
             self.span_c -= self.end_cos * g_cos + self.end_sin * g_sin
 
     def _stick_force(self) -> None:
-        """CoefficientIntegrals of the force over the stick of a span, for a light load."""
+        """Computes the integrals of the force over the stick of a span, for a light load."""
         length: float = self.length - self.slip
         sine, versine, deficit = arc(length)
         start_sin: float = self.start_sin
@@ -594,9 +596,9 @@ class CoefficientIntegrals(HarmonicCycle):
         cos: float = self.end_cos
         s: float = self.side * self.sin_phi
         c: float = self.side * self.cos_phi
-        sin_2: float = 0.5 * (self.deficit + self.sin * self.versine)  # of sin(y)^2
+        sin_2: float = 0.5 * (self.deficit + self.sin * self.versine)  # integral of sin(y)^2
         sin_cos: float = 0.5 * self.sin * self.sin
-        one_s: float = sin * self.sin - cos * self.versine  # of 1 times sin(theta)
+        one_s: float = sin * self.sin - cos * self.versine  # integral of sin(theta)
         one_c: float = sin * self.versine + cos * self.sin
         s_s: float = sin * sin * (self.slip - sin_2) + cos * cos * sin_2 - 2.0 * sin * cos * sin_cos
         c_c: float = self.slip - s_s
@@ -661,7 +663,7 @@ class ClosedForm(CoefficientLaw):
 
 @cython.cclass
 class Boundaries(CoefficientLaw):
-    """The regime boundaries n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, in the form of a coefficient law."""
+    """The functions n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2 of the regimes, as a coefficient law."""
 
     def __init__(self) -> None:
         self.limits = SlipLimits()

@@ -1,12 +1,12 @@
-"""Kernel: what the kernels of contacts on a line and in a plane have in common.
+"""Kernel: base classes of the kernels of contacts on a line and in a plane.
 
 A contact slides along one direction or two; its last direction is its normal. Unknowns and forces are real
 numbers in the same order: the means along all directions, then for each harmonic h the Re and Im along each
 direction, with x(theta) = Re sum X_h exp(i h theta).
 
-Over a cycle the forces are rows of a motion, trigonometric polynomials, times functions of the angle such as
-1 while the contact sticks. So their coefficients, and the derivatives of these by those of the motion at the
-same angle, need only the integrals of these functions times exp(-i m theta) (`FourierIntegrals`).
+Over a cycle the forces are rows of a motion, which are trigonometric polynomials, times functions of the
+angle such as 1 while the contact sticks. So their coefficients, and the derivatives of these by the motion's
+coefficients, need only the integrals of these functions times exp(-i m theta) (`FourierIntegrals`).
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if cython.compiled:
 else:
     from fcm.contact.closed_form import PI
 
-# What a contact does over a cycle
+# Behaviour of a contact over a cycle
 OPEN = cython.declare(cython.int, 0)
-CLOSED = cython.declare(cython.int, 1)  # its load alone; it may slip
-MIXED = cython.declare(cython.int, 2)  # its load alone opens and closes; of a whole cycle it is any other
-UNKNOWN = cython.declare(cython.int, 3)  # a number is not finite
+CLOSED = cython.declare(cython.int, 1)  # by its load; it may slip
+MIXED = cython.declare(cython.int, 2)  # its load opens and closes; for a whole cycle: any other behaviour
+UNKNOWN = cython.declare(cython.int, 3)  # an argument is not finite
 STUCK = cython.declare(cython.int, 4)
 UNSOLVED = cython.declare(cython.int, 5)  # no steady cycle was found
 
-# Of the format of doubles, which ends at 1e-308: scales are at least that, and such a share of the mean
+# Doubles end at 1e-308: scales are at least SMALLEST, and SMALLEST_SHARE of the mean
 SMALLEST = cython.declare(cython.double, 1e-290)
 SMALLEST_SHARE = cython.declare(cython.double, 1e-150)
 
@@ -37,8 +37,9 @@ SMALLEST_SHARE = cython.declare(cython.double, 1e-150)
 class ContactParameters:
     """Parameters of a contact: mu [-], k_u, k_v [force / length], preload n_0 [force].
 
-    start_x, start_y: the tangential displacement at which it began unstressed [length], usually 0. The slider
-    of a contact that never slips rests there, or as near as the slip limits allow. On a line start_y is 0.
+    start_x, start_y: tangential displacement at which the contact began unstressed [length], usually 0. The
+    slider of a contact that never slips rests there, or as near as the slip limits permit. On a line start_y
+    is 0.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class ContactParameters:
         self.start_x, self.start_y = start_x, start_y
 
     def take_row(self, table: cython.double[:, ::1], i: cython.Py_ssize_t) -> None:
-        """Takes row i of (contact, 4 to 6): mu, k_u, k_v, n_0, start_x, start_y; those left out are 0."""
+        """Takes row i of (contact, 4 to 6): mu, k_u, k_v, n_0, start_x, start_y; missing ones are 0."""
         self.mu, self.k_u = float(table[i, 0]), float(table[i, 1])
         self.k_v, self.n_0 = float(table[i, 2]), float(table[i, 3])
         self.start_x = float(table[i, 4]) if table.shape[1] > 4 else 0.0
@@ -66,7 +67,7 @@ class ContactParameters:
         self.start_x, self.start_y = other.start_x, other.start_y
 
     def equals(self, other: ContactParameters) -> bool:
-        """Whether all parameters are those of another contact."""
+        """Whether all parameters equal those of another contact."""
         if not (self.mu == other.mu and self.k_u == other.k_u and self.k_v == other.k_v):
             return False
         return self.n_0 == other.n_0 and self.start_x == other.start_x and self.start_y == other.start_y
@@ -79,13 +80,13 @@ class HarmonicMotion:
     Attributes
     ----------
     number, order (harmonic,)
-        The harmonics, as whole numbers and as floats; `highest` is the last.
+        The harmonics, as integers and as floats; `highest` is the last.
     moving
-        The harmonics after so many are nothing, as where few are looked at among more.
+        Number of harmonics up to the last one that is not zero.
     mean (row,), re, im (row, harmonic)
         The coefficients, of forces divided by their scale.
     scale, load_scale, ratio, preload
-        What forces on u and on v are divided by; mu load_scale / scale; the mean load [force].
+        Scale of forces due to u, and of those due to v; mu load_scale / scale; the mean load [force].
     """
 
     def __init__(self, harmonics: list[int], directions: int, rows: int) -> None:
@@ -97,7 +98,7 @@ class HarmonicMotion:
         self.scale = self.load_scale = self.ratio = self.preload = 0.0
 
     def measure(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> bool:
-        """Sets `moving` and all scales for the motion x[first:]; False where a number is not finite."""
+        """Sets `moving` and all scales for the motion x[first:]; False if a number is not finite."""
         k: cython.int
         p: cython.int
         along: cython.int = 2 * self.directions - 2
@@ -146,13 +147,13 @@ class FourierIntegrals:
     Attributes
     ----------
     most, highest
-        The greatest harmonic of the forces, and the greatest m: that and the highest harmonic of the motion.
+        The greatest harmonic of the forces, and the greatest m: the sum of `most` and the motion's highest.
     cos_sum, sin_sum (function, m)
         Integrals of the functions times cos(m theta) and sin(m theta).
     power_cos, power_sin (slot, m)
         cos(m theta) and sin(m theta) at some angles.
     re, im
-        The integral by `product`.
+        The integral that `product` computed.
     """
 
     def __init__(self, motion: HarmonicMotion, most: int, functions: int) -> None:
@@ -184,7 +185,7 @@ class FourierIntegrals:
             self.power_cos[slot, m], self.power_sin[slot, m] = c, s
 
     def add(self, which: cython.int, begin: cython.int, end: cython.int, length: float, value: float) -> None:
-        """Adds an interval, of angles in two slots, in which a function has a constant value."""
+        """Adds an interval, between the angles of two slots, in which a function has a constant value."""
         m: cython.int
         self.cos_sum[which, 0] += value * length
         for m in range(1, self.highest + 1):
@@ -220,7 +221,7 @@ class FourierIntegrals:
 class ForceDerivatives:
     """Derivatives of forces by the unknowns of a motion, `jacobian` (force, unknown).
 
-    place (output,): which harmonic of the motion an output is, or -1.
+    place (output,): number of the motion's harmonic that equals an output, or -1.
     """
 
     def __init__(self, integrals: FourierIntegrals, outputs: list[int]) -> None:
@@ -241,7 +242,7 @@ class ForceDerivatives:
                 self.jacobian[i, j] = value
 
     def stick_waves(self) -> None:
-        """Sets the derivatives of the harmonics of a contact that never slips, which are the motion's."""
+        """Sets the derivatives of the harmonics of a contact that never slips: those of the motion."""
         d: cython.int = self.motion.directions
         i: cython.int
         p: cython.int
@@ -251,9 +252,9 @@ class ForceDerivatives:
                     self.jacobian[d + 2 * d * i + p, d + 2 * d * self.place[i] + p] = 1.0
 
     def add_product(self, i: cython.int, direction: cython.int, which: cython.int, along: cython.int) -> None:
-        """Adds what a displacement times a function of the angle gives the force along a direction.
+        """Adds the contribution of a displacement times function `which` to the force along `direction`.
 
-        Of output i, or of the mean if that is -1; the displacement is that along a direction.
+        i is the output, or -1 for the mean; `along` is the direction of the displacement.
         """
         n: cython.int = self.motion.directions
         h: cython.int = self.output[i] if i >= 0 else 0
@@ -265,7 +266,7 @@ class ForceDerivatives:
         c: float
         s: float
         column: cython.Py_ssize_t
-        if along == n - 1:  # a slider forgets the mean of the others
+        if along == n - 1:  # a slider forgets the mean of the tangential displacements
             self.jacobian[row, along] += factor * self.integrals.cos_sum[which, h]
             if i >= 0:
                 self.jacobian[row + 1, along] -= factor * self.integrals.sin_sum[which, h]
@@ -306,17 +307,18 @@ class ForceDerivatives:
 
 @cython.cclass
 class ContactKernel:
-    """Kernel of contacts with given harmonics of their motion and forces, evaluated one after the other.
+    """Kernel of contacts with given harmonics of motion and forces, evaluated one after the other.
 
-    Other kernels call `evaluate`, which needs no lock, and read `forces` and `jacobian`. Each thread needs a
-    kernel of its own.
+    Other kernels call `evaluate`, which needs no lock, and read `forces` and `jacobian`. Each thread needs
+    its own kernel.
 
     Attributes
     ----------
     forces (equation,), jacobian (equation, unknown)
-        Of the motion evaluated last.
+        For the motion evaluated last.
     kind, behaviour
-        Of its cycle: OPEN, STUCK, MIXED, UNKNOWN or UNSOLVED. Of its load alone: OPEN, CLOSED or MIXED.
+        kind of its cycle: OPEN, STUCK, MIXED, UNKNOWN or UNSOLVED; behaviour by its load: OPEN, CLOSED or
+        MIXED.
     """
 
     def __init__(self, derivatives: ForceDerivatives) -> None:
@@ -329,23 +331,23 @@ class ContactKernel:
     def evaluate(
         self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters, gradient: bool
     ) -> cython.int:
-        """Evaluates the motion x[first:]: `forces`, and if wanted their derivatives in `jacobian`.
+        """Evaluates the motion x[first:]: `forces`, and with gradient their derivatives in `jacobian`.
 
         Returns
         -------
         int
-            `kind`. Where it is UNKNOWN or UNSOLVED, results are NaN.
+            `kind`. If it is UNKNOWN or UNSOLVED, the results are NaN.
         """
         return UNKNOWN
 
     def solve(
         self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters
     ) -> cython.int:
-        """Solves the cycle of the motion x[first:], if that costs less without its forces; returns `kind`."""
+        """Solves the cycle of the motion x[first:], without its forces if that costs less; returns `kind`."""
         return self.evaluate(x, first, contact, False)
 
     def resist(self, contact: ContactParameters, resistance: cython.double[:, ::1]) -> None:
-        """Fills the derivatives of the forces by the displacements, in the mean over the present cycle."""
+        """Fills the derivatives of the forces by the displacements, averaged over the present cycle."""
 
     def at(self, x: cython.double[::1], contact: ContactParameters, gradient: bool = True) -> int:
         """Calls `evaluate` from Python."""
@@ -361,7 +363,7 @@ class ContactKernel:
     ) -> int:
         """Fills `forces` (point, equation) of motions (point, unknown) with `parameters` (point, 4 to 6).
 
-        `jacobians` (point, equation, unknown) is filled as well, unless it has no points. Returns the number
+        `jacobians` (point, equation, unknown) is filled as well unless it has no points. Returns the number
         of a point without a steady cycle, or -1.
         """
         gradient: cython.bint = jacobians.shape[0] > 0
@@ -401,7 +403,7 @@ class ContactKernel:
                 self.forces[at], self.forces[at + 1] = self.motion.re[row, k], self.motion.im[row, k]
 
     def press(self, row: cython.int) -> None:
-        """Sets the normal force of a contact that never opens: that of its motion, in a row."""
+        """Sets the normal force of a contact that never opens to a row of the motion."""
         self.forces[self.motion.directions - 1] = self.motion.mean[row]
         self.take_waves(self.motion.directions - 1, row)
 
@@ -418,17 +420,17 @@ class ContactKernel:
 
 @cython.cclass
 class CycleMeasures:
-    """Forces, energy and states of the cycle that a contact has solved last, in the units of its arguments.
+    """Forces, energy and states of the cycle that a contact solved last, in the units of its arguments.
 
     Attributes
     ----------
     greatest_load, greatest_friction
-        Greatest normal force, and magnitude of the friction force [force].
+        Greatest normal force, and greatest magnitude of the friction force [force].
     dissipation, slip_path
-        Energy that friction takes in a cycle [force length], never negative, and the way of the slider while
+        Energy dissipated by friction in a cycle [force length], never negative, and path of the slider while
         it slips [length].
     pieces, state (piece,)
-        The states in their order.
+        The number of states, and the states in order.
     """
 
     def __init__(self, state: cython.int[::1]) -> None:

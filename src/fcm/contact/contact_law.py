@@ -17,20 +17,19 @@ class ContactLawError(ValueError):
 class ContactLaw(ABC):
     """A user-defined contact law in Python: the forces of a contact on the structure in periodic motion.
 
-    A subclass says what they are at equally spaced instants of one cycle. The harmonic balance takes their
-    Fourier coefficients, and solves with their derivatives. Give it to a contact by
-    `fcm.scene.Scene.with_laws`.
+    A subclass returns them at equally spaced instants of one cycle. The harmonic balance takes their Fourier
+    coefficients, and solves with their derivatives. `fcm.scene.Scene.with_laws` gives a law to a contact.
 
     Attributes
     ----------
     samples : int
-        Instants of a cycle at least [-]; more for the highest harmonic that is asked for. What a law does
-        faster than that folds back onto the harmonics of the balance, and no error shows it.
+        Least number of instants of a cycle [-]; more are taken if the highest harmonic needs them. Harmonics
+        of a law beyond them alias onto the harmonics of the balance, and no error shows it.
 
     Notes
     -----
-    The forces are those beyond rest: of a motion that is zero they are subtracted. The mean of the normal
-    force at rest is so the preload.
+    The forces are relative to rest: the forces of a zero motion are subtracted. So the mean normal force at
+    rest is the preload.
 
     Examples
     --------
@@ -50,30 +49,31 @@ class ContactLaw(ABC):
 
     @abstractmethod
     def forces(self, x: FloatArray, dx: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Forces of a motion over one cycle, and their change with the motion.
+        """Forces of a motion over one cycle, and their changes with the motion.
 
         Parameters
         ----------
         x : (direction, sample)
-            Relative displacements over one cycle: along the tangential direction, or the two of a scene with
-            a contact in a plane, and last the normal. They repeat themselves: what the law remembers has to
-            as well, so that it goes through the cycle until it does.
+            Relative displacements over one cycle: along one tangential direction (two for a contact in a
+            plane), and last the normal. They are periodic. A law with memory has to pass through the cycle
+            until its memory is periodic as well.
         dx : (direction, sample, variation)
             Small changes of the motion.
 
         Returns
         -------
         force : (direction, sample)
-            On the structure, as of a spring that resists: positive for a positive displacement.
+            On the structure, as of a spring that resists: positive at a positive displacement.
         change : (direction, sample, variation)
-            Of the forces with the motion, to first order in dx.
+            Changes of the forces, to first order in dx.
         """
 
     def off_by(self, x: FloatArray, step: float = 1e-6) -> float:
-        """Greatest error of the changes of the forces against central differences, relative to the greatest
-        change.
+        """Greatest error of the changes of the forces against central differences.
 
-        x : (direction, sample), one motion about which each displacement is moved by step times the greatest.
+        It is relative to the greatest change.
+
+        x : (direction, sample), the motion; each of its displacements is moved by step times the greatest.
         """
         x = np.asarray(x, dtype=np.float64)
         size = step * float(np.abs(x).max())

@@ -69,13 +69,13 @@ def fourier_gradients(
     F : ndarray, shape (3, ...)
         F_b, F_s, F_c [-].
     dF : ndarray, shape (3, 3, ...)
-        ``dF[i, j]`` is the derivative of F[i] by (n0_bar, b_bar, phi)[j]. Finite everywhere; on a boundary
-        between sequences where a derivative jumps, that of one side.
+        ``dF[i, j]`` is the derivative of F[i] by (n0_bar, b_bar, phi)[j]. It is finite everywhere. On a
+        boundary between sequences where a derivative jumps, it is the one-sided derivative of one side.
 
     Notes
     -----
-    The force is continuous in theta, so the derivative of the integral is the integral of the derivative.
-    That is +-(dn/dx) while slipping, and while sticking the constant that the contact brought into the stick.
+    The force is continuous in theta, so the derivative of the integral is the integral of the derivative: of
+    +-(dn/dx) in slip, and in stick of the constant value from the beginning of the stick.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Converts motions and parameters of contacts to the arrays of kernels, and their results back."""
+"""Convert motions and parameters of contacts to the arrays of kernels, and their results back."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class KernelArguments(NamedTuple):
     outputs: list[int]  # harmonics of the forces
     shape: tuple[int, ...]  # to which the arguments broadcast
     unknowns: FloatArray  # (point, unknown)
-    parameters: FloatArray  # (point, number): mu, k_u, k_v, n_0 and where sliders start
+    parameters: FloatArray  # (point, number): mu, k_u, k_v, n_0 and starts of sliders
 
     @classmethod
     def of(
@@ -69,7 +69,7 @@ class KernelArguments(NamedTuple):
     def of_one(
         cls, motions: Mapping[str, npt.ArrayLike], numbers: Mapping[str, npt.ArrayLike]
     ) -> KernelArguments:
-        """Arguments from one motion of one contact; ValueError if there are several, or one is not finite."""
+        """Arguments for one motion of one contact; ValueError if there are several, or one is not finite."""
         found = cls.of(motions, None, numbers)
         if found.shape:
             raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {found.shape}")
@@ -106,7 +106,7 @@ class KernelArguments(NamedTuple):
         return [one.reshape(*self.shape, *one.shape[1:]) for one in found]
 
     def derivatives(self, jacobian: FloatArray) -> list[ComplexArray]:
-        """Derivatives of the force coefficients, with axes motion, harmonic and part instead of the last."""
+        """Derivatives of the force coefficients; the last axis becomes motion, harmonic and part."""
         points, equations, unknowns = jacobian.shape
         d = self.directions
         means = np.zeros((points, equations, 1, 2 * d))

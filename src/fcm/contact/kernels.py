@@ -1,4 +1,4 @@
-"""Kernels of contacts shared within a thread: read a result before the next user evaluates."""
+"""Kernels of contacts, shared within a thread: read the results before other code evaluates the kernel."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Kernels(threading.local):
-    """Kernels that each thread keeps, by their harmonics."""
+    """The kernels of each thread, by their harmonics."""
 
     def __init__(self) -> None:
         self.on_a_line = lru_cache(KERNELS.max_kernels)(_periodic)

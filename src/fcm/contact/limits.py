@@ -12,8 +12,9 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def regime_boundaries(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
-    """The boundary functions n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, shape (3, ...); arguments
-    broadcast.
+    """The boundary functions n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, shape (3, ...).
+
+    The arguments broadcast.
 
     >>> regime_boundaries(0.5, 0.25, 0.0).tolist()  # closed throughout, and slips
     [0.75, 0.25, -0.5]
@@ -23,6 +24,6 @@ def regime_boundaries(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.Arra
 
 
 def slip_limit(b_bar: FloatArray, phi: npt.ArrayLike) -> FloatArray:
-    """Least n0_bar of a contact that never slips nor opens: (ell_1 + ell_2) / 2 of (25)."""
+    """Least n0_bar at which a contact neither slips nor opens: (ell_1 + ell_2) / 2 of (25)."""
     limit: FloatArray = b_bar + np.maximum(-regime_boundaries(b_bar, b_bar, phi)[2], 0.0)
     return limit

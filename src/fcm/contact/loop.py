@@ -80,8 +80,8 @@ def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:
 
     Notes
     -----
-    Sequences: figure 7 of the paper, with E (no slip), EPEN (slip without separation) and S (fully open).
-    Their common limit is SE at phi = 0, b_bar > 1. Transition angles: (A2) to (A13).
+    Sequences: figure 7 of the paper, and E (no slip), EPEN (slip without separation) and S (fully open). The
+    limit of all of them is SE at phi = 0, b_bar > 1. Transition angles: (A2) to (A13).
 
     Examples
     --------

@@ -6,15 +6,15 @@ from fcm.frozen import Frozen
 
 
 class ClosedFormOptions(Frozen):
-    """The coefficients in closed form; motion and load are relative to the amplitude a and to k_u a.
+    """Options on the coefficients in closed form; motion and load are relative to a and to k_u a.
 
     Attributes
     ----------
     min_change : float
-        Change of w in a slip, and [rad] length of a stick, up to which there is none: float64 cannot tell.
+        Change of w in a slip, and length [rad] of a stick, up to which they are rounding.
     light_load : float
-        Value of max(|n0_bar|, b_bar) below which the force is integrated: this keeps the relative error of
-        the arguments, however small it is. Above it u - w is integrated, which is faster.
+        Value of max(|n0_bar|, b_bar) below which the force is integrated, so that the result has the relative
+        error of the arguments however small these are. Above it u - w is integrated, which is faster.
     """
 
     min_change: float = 1e-15
@@ -22,20 +22,20 @@ class ClosedFormOptions(Frozen):
 
 
 class PeriodicOptions(Frozen):
-    """The events of a contact on a line under any periodic motion.
+    """Options on the events of a contact on a line under any periodic motion.
 
     Attributes
     ----------
     nodes_per_harmonic : int
-        Number of intervals of a cycle at first, relative to the highest harmonic. Those in which a zero is
-        not ruled out are halved.
+        Number of intervals of a cycle at first, relative to the highest harmonic. An interval in which a zero
+        is not excluded is halved.
     max_halvings : int
-        Most halvings of one interval; at half of these rounding has long been reached.
+        Greatest number of halvings of one interval; half of them reach rounding.
     min_interval : float
         [rad] Length of an interval below which it is not halved further.
     min_state_length : float
-        [rad] Length of a state in a loop, and way of a slip relative to its greatest extent, up to which it
-        is rounding.
+        Length [rad] of a state in a loop, and path of a slip relative to the motion, up to which they are
+        rounding.
     """
 
     nodes_per_harmonic: int = 4
@@ -50,8 +50,8 @@ class KernelOptions(Frozen):
     Attributes
     ----------
     max_kernels : int
-        Most kernels of each thread, on a line and in a plane each. The curves of a sweep ask for some eighty
-        sets of harmonics.
+        Greatest number of kernels of each thread, for contacts on a line and in a plane each. The curves of a
+        sweep use some eighty sets of harmonics.
     """
 
     max_kernels: int = 128

@@ -1,4 +1,4 @@
-"""The pieces of a loop, one for each state: which piece contains an angle, and the friction force there."""
+"""The pieces of a loop, one for each state, and the friction force in them."""
 
 from __future__ import annotations
 
@@ -49,20 +49,22 @@ class LoadedPieces(Pieces):
 
 
 def from_piece(first: int, pieces: list[Piece]) -> list[Piece]:
-    """The pieces (state, first angle, place of the slider) of a cycle in their order, from a given one on."""
+    """The pieces (state, first angle, place of the slider) of a cycle in order, from a given one on."""
     turned = [(state, begin + 2.0 * np.pi, place) for state, begin, place in pieces[:first]]
     return pieces[first:] + turned
 
 
 def transitions_of(pieces: list[Piece]) -> tuple[str, FloatArray, FloatArray]:
-    """The sequence of states, the angles [rad] at which they begin, and these less the first; of one none."""
+    """The sequence of states, and the angles [rad] where they begin: in [0, 2 pi), and relative to the first.
+
+    There are no angles if there is one piece only."""
     sequence, begin = "".join(state for state, _, _ in pieces), np.array([begin for _, begin, _ in pieces])
     since = begin[: 0 if len(pieces) == 1 else None] - begin[0]
     return sequence, within_turn(begin[0] + since), since
 
 
 def within_turn(angle: FloatArray) -> FloatArray:
-    """Angles [rad] in [0, 2 pi)."""
+    """Angles [rad] reduced to [0, 2 pi)."""
     found = np.mod(angle, 2.0 * np.pi)
     found[found >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
     return found
@@ -77,5 +79,5 @@ def waves_at(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
 
 def friction(state: npt.NDArray[np.str_], stick: FloatArray, limit: FloatArray) -> FloatArray:
     """Friction force of the states: `stick` while sticking, plus or minus the limit while slipping."""
-    held = np.clip(stick, -limit, limit)  # at an event, a rounding error may put it past the limit
+    held = np.clip(stick, -limit, limit)  # at an event, rounding may put it beyond the limit
     return np.select([state == "E", state == "P", state == "N"], [held, limit, -limit], 0.0)

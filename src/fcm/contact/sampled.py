@@ -13,9 +13,9 @@ from fcm.frozen import Frozen
 class Part(Frozen):
     """One state of the cycle from its beginning to its end.
 
-    Of a `Loop` displacements are divided by a and forces by k_u a; of a `PeriodicLoop` they have units.
+    For a `Loop`, displacements are relative to a and forces to k_u a; for a `PeriodicLoop` they have units.
 
-    Angles run on from where the state begins, in [0, 2 pi), and may pass 2 pi.
+    Angles increase from where the state begins, in [0, 2 pi), and may exceed 2 pi.
     """
 
     state: str  # E stick, P positive slip, N negative slip, S separation
@@ -26,16 +26,16 @@ class Part(Frozen):
 
 
 class LoopTransition(Frozen):
-    """Where one state of the cycle ends and the next begins."""
+    """A point where one state of the cycle ends and the next begins."""
 
-    states: str  # both letters, the one that ends first
+    states: str  # both letters, the ending state first
     theta: float  # in [0, 2 pi] [rad]
     displacement: float
     force: float
 
 
 def parts(loop: Loop | PeriodicLoop, steps: int = 720) -> list[Part]:
-    """The states of a cycle in order, sampled; `steps` are those of a whole cycle.
+    """The states of a cycle in order, sampled; `steps` is the number of steps in a whole cycle.
 
     >>> from fcm.contact.loop import hysteresis_loop
     >>> [(part.state, round(float(part.theta[0]), 3)) for part in parts(hysteresis_loop(0.5, 0.0, 0.0))]
@@ -57,7 +57,7 @@ def _part(loop: Loop | PeriodicLoop, state: str, begin: float, length: float, st
 
 
 def shown_degrees(theta: float, from_greatest: bool = False) -> float:
-    """An angle [rad] in degrees in [0, 360), counted from the greatest displacement if that is asked for.
+    """An angle [rad] in degrees in [0, 360); from_greatest: counted from the greatest displacement.
 
     >>> shown_degrees(0.5 * np.pi), shown_degrees(0.5 * np.pi, from_greatest=True)
     (90.0, 0.0)

@@ -12,10 +12,10 @@ from fcm.contact.loop import sequences
 from fcm.frozen import Frozen
 
 COEFFICIENTS = ("F_b", "F_s", "F_c")
-N0_RANGE, B_RANGE = (-2.0, 3.0), (0.0, 2.0)  # what is shown unless asked otherwise
+N0_RANGE, B_RANGE = (-2.0, 3.0), (0.0, 2.0)  # the default ranges
 STEPS = (400, 160)  # along n0_bar and b_bar; of equal length, so that n0_bar = +-b_bar are diagonals of cells
-CELLS = (400, 162)  # of unequal length, so that their middles are not on these lines
-FINE_CELLS = (800, 324)  # whose edges are seen as a line
+CELLS = (400, 162)  # of unequal length, so that the cells' midpoints are not on these lines
+FINE_CELLS = (800, 324)  # their edges look like a line
 
 Law = Callable[[FloatArray, FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
 
@@ -65,9 +65,9 @@ def surface(
 
 
 def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
-    """Boundary values n0_bar between the regimes, for each b_bar.
+    """Boundary values of n0_bar between the regimes, for each b_bar.
 
-    Below ``open`` the contact never closes, below ``separation`` it opens within the cycle, above ``slip``,
+    Below ``open`` the contact never closes; below ``separation`` it opens within the cycle; above ``slip``,
     equation (25), it never slips.
 
     >>> {name: n0.tolist() for name, n0 in boundaries(np.array([0.0, 0.5]), 0.0).items()}
@@ -90,7 +90,7 @@ def edges(plane: ParameterPlane) -> Edges:
 
 
 class Regions(Frozen):
-    """Masks of where in a plane each sequence of states occurs."""
+    """Masks that show where in a plane each sequence of states occurs."""
 
     n0_bar: FloatArray  # (i,) [-]
     b_bar: FloatArray  # (j,) [-]
@@ -100,7 +100,7 @@ class Regions(Frozen):
 
 
 def regions(plane: ParameterPlane, steps: tuple[int, int] = FINE_CELLS) -> Regions:
-    """Regions of the sequences of `hysteresis_loop` over a plane, evaluated in the middle of each cell."""
+    """Regions of the sequences of `hysteresis_loop` over a plane, evaluated at the midpoint of each cell."""
     n0, b = plane.centres(steps)
     found = sequences(n0[None, :], b[:, None], plane.phi)
     where = {str(name): (found == name).astype(np.float64) for name in np.unique(found)}

@@ -1,4 +1,4 @@
-"""All branches of a problem that hold some known solutions, each traced once."""
+"""Trace all branches that contain given solutions of a problem, each branch once."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Follow = Callable[..., Path]  # as `follow`
 
 
 class Following(Frozen):
-    """Options, progress and function with which each branch is followed.
+    """Options and function with which each branch is followed.
 
     Attributes
     ----------
@@ -35,20 +35,23 @@ class Following(Frozen):
 
 
 class Branches(Frozen):
-    """Separate paths; each solution that was given lies on one of them, or is in lost."""
+    """Separate paths; each given solution lies on one of them or is in `lost`."""
 
     paths: tuple[Path, ...]
-    lost: tuple[FloatArray, ...] = ()  # solutions from which nothing could be followed
+    lost: tuple[FloatArray, ...] = ()  # solutions from which no curve could be followed
 
     @property
     def status(self) -> Status:
-        """COMPLETE if every branch ended as a whole branch does, else how the first that did not ended."""
+        """COMPLETE if every path is a whole branch; otherwise the status of the first that is not.
+
+        STALLED if only solutions are lost.
+        """
         broken = [path.status for path in self.paths if not path.status.is_whole]
         return broken[0] if broken else Status.STALLED if self.lost else Status.COMPLETE
 
 
 class BranchesInterrupted(KeyboardInterrupt):
-    """Following branches was interrupted; branches: those up to there, the last as far as it had come."""
+    """Following branches was interrupted; `branches` holds those found so far, the last one incomplete."""
 
     def __init__(self, branches: Branches) -> None:
         super().__init__()
@@ -66,26 +69,26 @@ def all_branches(
     known: Sequence[Path] = (),
     user_values: Sequence[float] | None = None,
 ) -> Branches:
-    """Follow every solution that no branch followed before contains.
+    """Follow a branch through every solution that lies on no branch followed before.
 
     Parameters
     ----------
     new_problem : callable
-        Makes the problem anew; what it made before is not used any more.
+        Makes a new problem; problems that it made before are not used any more.
     solutions : iterable of (n + 1,)
-        In the order in which they are to be followed; those at an end of the span lead inwards, those inside
-        it both ways.
+        In the order in which they are followed. From a solution at an end of the span the branch is followed
+        inwards, from one inside the span both ways.
     following : Following
         How each is followed.
     known : sequence of Path
-        Branches that were followed before, which are the first of those returned.
+        Branches followed before; they are returned first.
     user_values : sequence of float, optional
-        Parameters of all solutions, where these are found in turn.
+        Parameters of all solutions; needed if the iterable finds its solutions one by one.
 
     Raises
     ------
     BranchesInterrupted
-        With the branches up to there, where a `KeyboardInterrupt` comes.
+        On a `KeyboardInterrupt`, with the branches up to there.
     """
     if user_values is None:
         solutions = list(solutions)
@@ -112,9 +115,10 @@ def all_branches(
 def _joined(
     paths: Sequence[Path], span: tuple[float, float], new_problem: Callable[[], Problem]
 ) -> list[Path]:
-    """The paths, of which those from ends of the span that ended too early are joined with others.
+    """Join the paths from ends of the span that ended too early with other paths.
 
-    One whose ends lie on a whole branch is part of that, and two that overlap are one branch.
+    A path whose two ends lie on a whole branch is part of that branch, and is dropped. Two paths that overlap
+    are one branch.
     """
     broken = [path for path in paths if not path.status.is_whole and path.z.shape[0] > 1]
     broken = [path for path in broken if path.parameter[0] in span]
@@ -132,17 +136,17 @@ def _joined(
 
 
 def _overlapping(one: Path, other: Path, passed: int) -> Path:
-    """The branch of two paths of which the other comes by the end of the one behind a point, as `passed`."""
-    before = other.part(np.arange(passed + 2))  # `then` takes the point beyond the end for it
+    """Join two overlapping paths: `other` passes the end of `one` behind its point number `passed`."""
+    before = other.part(np.arange(passed + 2))  # `then` drops the first point of the second path
     same_end = one.parameter[0] == other.parameter[0]
     whole = replace(one.then(before.backwards()), status=Status.RETURNED if same_end else Status.COMPLETE)
     return whole.backwards() if whole.parameter[0] > whole.parameter[-1] else whole
 
 
 def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
-    """Whether a path has the ends of one followed before: rounding may hide that its start is on that.
+    """Whether the ends of a complete path lie on a path followed before.
 
-    So it does where a preload is so large that displacements are not known as well as
+    Rounding may hide that its start lies there: a large preload makes displacements less accurate than
     `PathOptions.solution_tolerance`.
     """
     return path.status is Status.COMPLETE and _has_ends_on(paths, path, problem)
@@ -161,11 +165,11 @@ def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
 
 
 def point_before(path: Path, z: FloatArray, problem: Problem) -> int | None:
-    """The point of a path before a solution z (n + 1,) on it, -1 if that is the first; None if it is not.
+    """Number of the point of a path just before a solution z (n + 1,) on it; None if z is not on the path.
 
-    It does where it is a point of that. Between the points no distance tells, as branches come close to each
-    other. There Newton's method starts from the nearest chord of the path, in the plane through the solution
-    across that chord.
+    -1 if z is the first point. A solution at a point lies on the path. Between points, distance does not
+    decide, as branches come close to each other: Newton's method starts from the nearest chords, in the plane
+    through z normal to the chord, and has to come to z.
     """
     problem.evaluate_scale(z)
     scale = np.array(problem.scale)
@@ -187,7 +191,7 @@ def point_before(path: Path, z: FloatArray, problem: Problem) -> int | None:
 
 
 def _nearest_chords(points: FloatArray) -> list[tuple[int, float]]:
-    """The chords between points next to which the origin lies, the nearest first, and where on them."""
+    """The chords nearest to the origin, the nearest first, each with the part of it at the nearest place."""
     length, part, off = distances_from_chords(points)
     near = np.argsort(off)[: PATH.nearest_chords].tolist()
     return [
@@ -198,12 +202,11 @@ def _nearest_chords(points: FloatArray) -> list[tuple[int, float]]:
 
 
 def distances_from_chords(points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Length of each chord (point - 1,) between points, its place next to the origin, and the distance of
-    that.
+    """Length, nearest place and distance from the origin of each chord (point - 1,) between points.
 
-    The place is a part of the chord, from 0 to 1; the distance is from the origin."""
+    The nearest place is a part of the chord, from 0 to 1."""
     chord = np.diff(points, axis=0)
-    square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
+    square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # tiny: for two equal points
     part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
     off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
     return np.sqrt(square), part, off
@@ -216,7 +219,7 @@ def branch_through(
     events: Events,
     following: Following,
 ) -> Path:
-    """The whole branch through a solution, from its lower end where it has one; see `follow`."""
+    """The whole branch through a solution, beginning at its lower end if it has one; see `follow`."""
     along, options = following.follow, following.options
     if z[-1] == span[0] or z[-1] == span[1]:
         path = along(new_problem(), z, span, events, options, forward=z[-1] == span[0])

@@ -1,4 +1,4 @@
-"""Checkpoints: the state of a curve that is followed, enough to go on from there to the same points."""
+"""Checkpoints: the state of a curve while it is followed, from which following resumes identically."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ class Checkpoint(NamedTuple):
     """The points kept so far, and the state of the stepper."""
 
     kept: Stored
-    z: FloatArray  # (n + 1,) of the stepper
+    z: FloatArray  # (n + 1,) the stepper's point
     scale: FloatArray  # (n + 1,)
     tangent: FloatArray  # (n + 1,) in units of the scale
     curvature: FloatArray  # (n + 1,)
-    offset: FloatArray  # (n + 1,) of the next point, beyond a corner
-    cubic: tuple[FloatArray, FloatArray, bool, bool]  # second and third derivative; known, taken
+    offset: FloatArray  # (n + 1,) of the guess of the next point, beyond a corner
+    cubic: tuple[FloatArray, FloatArray, bool, bool]  # second, third, has_cubic, cubic of `Predictor`
     margin: FloatArray
     output: FloatArray
     growth: FloatArray
     orientation: float
-    step: float  # the next one
+    step: float  # length of the next step
     greatest: FloatArray  # of each output so far
     size: float  # of the solution at the start
-    first: FloatArray  # (n + 1,)
-    initial_direction: FloatArray  # (n + 1,) the direction there
+    first: FloatArray  # (n + 1,) the start
+    initial_direction: FloatArray  # (n + 1,) direction at the start
     interior: bool  # whether the start is inside the span
     evaluations: int
 
@@ -63,7 +63,7 @@ def stepper_state(stepper: Stepper) -> dict[str, Any]:
 
 
 def restore_stepper(stepper: Stepper, checkpoint: Checkpoint) -> None:
-    """Bring the stepper to the state of a checkpoint."""
+    """Restore the state of the stepper from a checkpoint."""
     for name in _POINT_FIELDS:
         np.asarray(getattr(stepper.here, name))[:] = getattr(checkpoint, name)
     stepper.here.orientation = checkpoint.orientation

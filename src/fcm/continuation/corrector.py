@@ -1,12 +1,12 @@
 """Newton's method for a point of a curve: the corrector, and the bordered system that it solves.
 
-The n equations for the n + 1 numbers z and the row make a square matrix, the bordered one, in coordinates
-made dimensionless by the problem's scale. Its solutions are the step of Newton's method and the direction of
-the curve; the sign of its determinant is the curve's orientation.
+The n equations for the n + 1 numbers z and one row make the square bordered matrix, in coordinates scaled by
+the problem's scale. The system yields the Newton step and the tangent of the curve. The sign of the
+determinant is the orientation of the curve.
 
-The point is sought in the plane through the guess whose normal is the row that closes the equations. A row
-along the curve gives the next point; a row along the parameter holds that. One step across a path tells how
-far it is from the curve of a problem nearby: `distances`.
+The row is the normal of the plane through the guess in which the corrector seeks the point. A row along the
+curve gives the next point; a row along the parameter holds the parameter. `distances` takes one Newton step
+across a path at each point, which tells how far the path is from the curve of a nearby problem.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ INFINITY = cython.declare(cython.double, float("inf"))
 
 @cython.cclass
 class BorderedSystem:
-    """Fill z, scale, row and guess; `factor` makes the matrix at z, the others solve with it.
+    """Bordered system: fill z, scale, row and guess; `factor` factors it at z, the other functions solve it.
 
-    z, guess, scale, row, tangent: (n + 1,), the parameter last; row and tangent in scaled coordinates. The
-    tangent is a unit vector on the side of the row. delta holds a right side, then its solution.
+    z, guess, scale, row and tangent are (n + 1,), the parameter last; row and tangent in scaled coordinates.
+    The tangent is a unit vector on the side of the row. delta holds a right side, then its solution.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -43,13 +43,12 @@ class BorderedSystem:
         self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
         self.orientation, self.sign, self.moved = 0.0, 0.0, 0.0
         self.evaluations = 0
-        self.poll: Any = None  # called before each evaluation of a costly problem, which it may interrupt
+        self.poll: Any = None  # called before each evaluation of a costly problem; may interrupt it
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def factor(self) -> cython.bint:
-        """Evaluate the problem at z and factor its equations, closed by the row; false if they are
-        singular."""
+        """Evaluate the problem at z and factor its bordered matrix; false if it is singular."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
@@ -74,7 +73,7 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def solve(self) -> cython.int:
-        """Replace delta, a right side, by the solution of the system as it is factored."""
+        """Replace the right side delta by the solution of the factored system."""
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
         if not self.problem.rank:
@@ -89,7 +88,7 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def step(self) -> cython.double:
-        """Compute the Newton step, which is left in delta, and return its scaled length."""
+        """Compute the Newton step into delta, and return its scaled length."""
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
         total: cython.double = 0.0
@@ -107,7 +106,7 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def compute_tangent(self) -> cython.bint:
-        """Compute tangent and orientation from the system as it is factored, and how far z was moved."""
+        """Compute tangent and orientation from the factored system, and the distance of z from the guess."""
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.problem.unknowns + 1
         total: cython.double = 0.0
@@ -130,11 +129,10 @@ class BorderedSystem:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def is_solved(self, errors: cython.double) -> cython.bint:
-        """Whether no equation is off by more than what so many relative errors of EPS in every number make.
+        """Whether the backward error of each equation is at most `errors` times EPS (Oettli, Prager, 1964).
 
-        That is the backward error of each (Oettli, Prager, 1964). Next to the onset of a root a step may be
-        no longer than that of rounding elsewhere, and the equation is off by far more. A number that is 0
-        comes of others as large as its unit.
+        Near the onset of a root, a step may be as short as rounding makes it elsewhere, while the residual is
+        far larger. The relative error of a number refers to its unit if the number is smaller.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -151,28 +149,29 @@ class BorderedSystem:
 
 @cython.cclass
 class Newton(BorderedSystem):
-    """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation.
+    """The corrector: fill z, scale and row; `correct` moves z to the curve, with tangent and orientation.
 
-    tolerance: the error that a point may have, estimated from the convergence.
+    tolerance: the admissible error of a point, estimated from the convergence.
     """
 
     def __init__(self, problem: Problem, options: NewtonOptions = NEWTON) -> None:
         BorderedSystem.__init__(self, problem)
         self.options = options
         self.tolerance = self.options.tolerance
-        self.rounding_step = 0.0  # length of the last step of `correct`, if rounding made it
+        self.rounding_step = 0.0  # length of the last step of `correct` if that step is rounding
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def correct(self, reach: cython.double, most: cython.double = INFINITY) -> cython.bint:
-        """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
+        """Move z to the curve and compute its tangent and orientation there; return whether that converges.
 
-        reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
-        than the most, or the second neither slight nor much shorter, it is given up; moved is then the first.
-        A point counts as converged by the order 1.5, that of a force whose slope changes as a root.
+        `moved` is then the distance from the guess. reach is the scaled length that stands for a step before
+        the first. `correct` gives up if the first step is longer than `most`, or if the second is neither
+        slight nor much shorter; `moved` is then the length of the first step. The convergence test assumes
+        the order 1.5, that of a force whose slope changes as a root.
         """
         i: cython.Py_ssize_t
-        for i in range(self.z.shape[0]):  # a copy of all at once takes ten times as long
+        for i in range(self.z.shape[0]):  # copying the whole array at once takes ten times as long
             self.guess[i] = self.z[i]
         if self.converges(reach, most):
             return True
@@ -181,7 +180,7 @@ class Newton(BorderedSystem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def single_step(self) -> cython.bint:
-        """Take one Newton step from z; false if there is none."""
+        """Take one Newton step from z; false if there is none or it is too long."""
         self.guess[:] = self.z
         if not self.factor() or not self.step() < self.options.max_step:
             return False
@@ -191,12 +190,12 @@ class Newton(BorderedSystem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def correct_by_half_steps(self, reach: cython.double) -> cython.bint:
-        """Correct z from the guess once more, by half steps first; false also where these grow.
+        """Correct z from the guess once more, by half steps first; false also if the half steps grow.
 
-        Where the equations begin as the root of a distance d > 0, as where a circle begins to slip, a whole
-        step leads from d to 2 sqrt(d d0) - d. That is beyond the corner if d > 4 d0. Half a step leads to
-        sqrt(d d0). So half steps approach d0 from any distance, and the whole ones converge from less than 4
-        d0.
+        Some equations begin as the root of a distance d > 0, for example where a circle begins to slip. A
+        whole step then leads from d to 2 sqrt(d d0) - d, which is beyond the corner if d > 4 d0. Half a step
+        leads to sqrt(d d0). So half steps approach d0 from any distance, and whole steps converge from less
+        than 4 d0.
         """
         count: cython.int
         i: cython.Py_ssize_t
@@ -217,7 +216,7 @@ class Newton(BorderedSystem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def converges(self, reach: cython.double, most: cython.double) -> cython.bint:
-        """Correct z by whole Newton steps; whether they converge. See `correct`."""
+        """Correct z by whole Newton steps; return whether they converge. See `correct`."""
         count: cython.int
         step: cython.double
         ratio: cython.double
@@ -242,7 +241,8 @@ class Newton(BorderedSystem):
                 return self.compute_tangent()
             _move(self)
             ratio = step / before
-            # the first step says nothing of the convergence yet; that to a corner that is not seen never
+            # the first step does not show the convergence yet; steps to a corner that no margin shows never
+            # do
             if self.problem.labelled:
                 if count > 0 and step * ratio < self.options.chord_step and self.chord_steps(step):
                     return self.compute_tangent()
@@ -262,11 +262,11 @@ class Newton(BorderedSystem):
     def too_far(
         self, step: cython.double, before: cython.double, most: cython.double, count: cython.int
     ) -> cython.bint:
-        """Whether the first step is longer than the most, or the second neither slight nor much shorter."""
+        """Whether the first step is longer than `most`, or the second neither slight nor much shorter."""
         if count == 0:
             self.moved = step
             return not step < most
-        if count == 1:  # of short steps the first may be rounding, in a stiff direction
+        if count == 1:  # short steps: the first may be rounding in a stiff direction
             slight: cython.double = self.options.small_second_step * most
             return not step < max(self.options.max_second_ratio * before, slight)
         return not step < self.options.max_step
@@ -274,11 +274,11 @@ class Newton(BorderedSystem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def is_rounding(self, step: cython.double, count: cython.int) -> cython.bint:
-        """Whether a step that has not shrunk is one that rounding makes.
+        """Whether a step that has not shrunk is due to rounding.
 
-        Equations may lose digits to cancellation within them, of which their derivatives know nothing: a step
-        that stalls is rounding, too, but where they begin as a root. Of those that are condensed the
-        derivatives are not known, and the length of the step tells.
+        Cancellation within the equations loses digits, which the derivatives do not show. So a step that
+        stalls is rounding as well, unless the equations begin as a root. The derivatives of a condensed
+        system are not known; there the length of the step decides.
         """
         if self.problem.labelled:
             return False
@@ -293,9 +293,9 @@ class Newton(BorderedSystem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def at_rounding(self, step: cython.double, ratio: cython.double, count: cython.int) -> cython.bint:
-        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be.
+        """Whether z, before the step is taken, is as near to the curve as rounding permits.
 
-        Of the steps that rounding makes the next one may be longer.
+        Among steps that are rounding, the next one may be longer.
         """
         if step < self.options.negligible_step and ratio < 1.0:
             return True
@@ -308,13 +308,13 @@ class Newton(BorderedSystem):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def chord_steps(self, before: cython.double) -> cython.bint:
-        """Take Newton steps with the same Jacobian from the end of a step; whether they come to the curve."""
+        """Take Newton steps with the same Jacobian from the end of a step; return whether they converge."""
         return _chord_steps(self, before, self.options.max_chord_steps, self.options.chord_contraction)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def take_tangent(self) -> cython.bint:
-        """Compute tangent and orientation at z as it stands; false if they are not determined there."""
+        """Compute tangent and orientation at the present z; false if they are not determined there."""
         self.guess[:] = self.z
         return self.factor() and self.compute_tangent()
 
@@ -322,10 +322,10 @@ class Newton(BorderedSystem):
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def _last_chord_step(newton: Newton, before: cython.double) -> cython.bint:
-    """Take a last Newton step with the same Jacobian, if it leads to the curve; whether it does.
+    """Take a last Newton step with the same Jacobian if it converges; return whether it does.
 
-    before: the length of the step before. What the last one leaves is less by as much again; one that does
-    not lead to the curve is not taken.
+    before: the length of the step before. The error after the last step is smaller by the same ratio. A step
+    that does not converge is not taken.
     """
     newton.problem.evaluate_residual(newton.z)
     step: cython.double = newton.step()
@@ -336,9 +336,9 @@ def _last_chord_step(newton: Newton, before: cython.double) -> cython.bint:
 
 
 def correct_with_kept_jacobian(newton: Newton, most: float) -> bool:
-    """Correct newton's z where the direction does not matter: whether it came to the curve.
+    """Correct newton's z where the tangent does not matter; return whether that converges.
 
-    As `Newton.correct` from a length of 1; a Jacobian is kept as long as steps with it shrink.
+    As `Newton.correct` with reach 1, but a Jacobian is kept as long as steps with it shrink.
     """
     count: cython.int
     step: cython.double
@@ -364,9 +364,10 @@ def correct_with_kept_jacobian(newton: Newton, most: float) -> bool:
 def _chord_steps(
     newton: Newton, before: cython.double, most: cython.int, ratio: cython.double
 ) -> cython.bint:
-    """Whether at most so many steps with the same Jacobian lead from z, the end of a step, to the curve.
+    """Take at most `most` Newton steps with the same Jacobian from z, the end of a step, until they converge.
 
-    Each has to be shorter than the one before by a ratio."""
+    Each has to be shorter than `ratio` times the one before. Return whether they converge.
+    """
     count: cython.int
     step: cython.double
     for count in range(most):  # noqa: B007
@@ -391,9 +392,9 @@ def _move(newton: Newton) -> cython.void:
 
 
 def distances(newton: Newton, z: FloatArray, direction: FloatArray) -> FloatArray:
-    """Scaled lengths (point,) of the Newton steps from points z (point, n + 1) to the curve, else NaN.
+    """Scaled lengths (point,) of Newton steps from points z (point, n + 1) to the curve; NaN without a step.
 
-    Each step is taken across a direction at its point, (point, n + 1).
+    direction (point, n + 1) is the normal of the plane in which each step is taken.
     """
     found = np.full(len(z), np.nan)
     _fill(newton, z, direction, found)

@@ -1,14 +1,14 @@
 """One dense linear system: factored once, solved for several right-hand sides.
 
-Small systems are eliminated without leaving compiled code; large ones by LAPACK, whose import takes as
-long as thousands of these.
+Compiled code eliminates small systems itself. LAPACK solves large ones; its import takes as long as thousands
+of small systems.
 
-The elimination is that of Gauss with pivots along rows, which suits stiff contacts. A matrix (n, n) becomes
-its lower and its unit upper triangle, in place. From a row those above it are taken four at a time: a number
-is then loaded and stored once for all. Of many rows four are treated together, by what C compiles for
-registers of any width, see the .pxd; every number is the same either way.
+The elimination is Gaussian with pivots along rows, which suits stiff contacts. It replaces a matrix (n, n) in
+place by its lower and its unit upper triangle. From a row, the rows above are subtracted four at a time, so
+that each number is loaded and stored once for all four. Of a large matrix four rows are eliminated together,
+by code that C compiles for registers of any width (see the .pxd); the numbers are the same either way.
 
-Of more rows than pivots, and more columns, the elimination leaves the others condensed, see `condense`.
+If there are more rows and columns than pivots, the elimination condenses the others; see `condense`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Solver:
 
     Fill `matrix`, `factor`, fill `right`, `solve`: right is then x.
 
-    orientation is the sign of the determinant. Neither array may be replaced.
+    orientation is the sign of the determinant. Do not replace either array by another one.
     """
 
     def __init__(self, size: cython.int, options: SolverOptions = SOLVER) -> None:
@@ -37,7 +37,7 @@ class Solver:
         self.right = np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
         self.orientation = 0.0
-        self.factors = (np.empty(0), np.empty(0))  # of LAPACK
+        self.factors = (np.empty(0), np.empty(0))  # LAPACK's
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -75,11 +75,10 @@ class Solver:
 @cython.cfunc
 @cython.exceptval(check=False)
 def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.double:
-    """Factor the matrix a in place; the sign of its determinant, 0 if it is singular or not finite.
+    """Factor the matrix a in place; return the sign of its determinant, 0 if it is singular or not finite.
 
-    swapped (n,): the columns that were exchanged.
-
-    Of a with further rows and columns only the first n have pivots.
+    swapped (n,): number of the column that was exchanged with each. If a has more rows and columns, only the
+    first n have pivots.
     """
     n: cython.Py_ssize_t = swapped.shape[0]
     rows: cython.Py_ssize_t = a.shape[0]
@@ -136,9 +135,9 @@ def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.doub
 @cython.cfunc
 @cython.exceptval(check=False)
 def condense(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.bint:
-    """Replace the rows [M R], with M (n, n), and [L D] below: R becomes M^-1 R, and D becomes D - L M^-1 R.
+    """Replace the rows [M R] with M (n, n), and [L D] below: R by M^-1 R, and D by D - L M^-1 R.
 
-    False if M is singular or not finite; swapped (n,).
+    swapped (n,). False if M is singular or not finite.
     """
     n: cython.Py_ssize_t = swapped.shape[0]
     if not cython.compiled:
@@ -172,7 +171,7 @@ def condense(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.bint:
 def _less_below(
     a: cython.double[:, ::1], i: cython.Py_ssize_t, first: cython.Py_ssize_t, n: cython.Py_ssize_t
 ) -> cython.void:
-    """Subtract from the right sides of row i those of rows first to n, each times its entry of a."""
+    """Subtract from the right sides of row i those of rows first to n - 1, each times its entry in row i."""
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for k in range(first, n):
@@ -201,7 +200,7 @@ def _four_less_below(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.P
 @cython.cfunc
 @cython.exceptval(check=False)
 def substitute(a: cython.double[:, ::1], swapped: cython.int[::1], x: cython.double[::1]) -> cython.void:
-    """Replace x (n,), a right side, by the solution."""
+    """Replace the right side x (n,) by the solution."""
     n: cython.Py_ssize_t = a.shape[0]
     i: cython.Py_ssize_t = 0
     j: cython.Py_ssize_t
@@ -223,7 +222,7 @@ def substitute(a: cython.double[:, ::1], swapped: cython.int[::1], x: cython.dou
 def _triangle(
     a: cython.double[:, ::1], x: cython.double[::1], first: cython.Py_ssize_t, way: cython.Py_ssize_t
 ) -> cython.void:
-    """Solve by the lower triangle (way 1), or by the upper one (-1), from a row on."""
+    """Solve with the lower triangle (way 1) or the upper triangle (-1), beginning at row `first`."""
     count: cython.Py_ssize_t = a.shape[0] - first if way > 0 else first + 1
     m: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -251,9 +250,9 @@ def _four(
     way: cython.Py_ssize_t,
     known: cython.Py_ssize_t,
 ) -> cython.void:
-    """Subtract the known numbers of x from the next four right sides, whose sums do not wait for one another.
+    """Subtract the known numbers of x from the next four right sides, in four independent sums.
 
-    known: how many there are, from the first on.
+    known: how many numbers are known, counted from `first`.
     """
     i: cython.Py_ssize_t = first + way * known
     j: cython.Py_ssize_t = first
@@ -275,7 +274,7 @@ def _four(
 @cython.inline
 @cython.exceptval(check=False)
 def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t, count: cython.Py_ssize_t) -> cython.void:
-    """Subtract the first rows, a multiple of four, from row i and the next three; where it is compiled."""
+    """Subtract the first `count` rows, a multiple of four, from rows i to i + 3; for compiled code only."""
     columns: cython.Py_ssize_t = a.shape[1]
     k: cython.Py_ssize_t
     for k in range(0, count, 4):
@@ -287,9 +286,9 @@ def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t, count: cython.Py_
 @cython.inline
 @cython.exceptval(check=False)
 def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.double:
-    """Greatest size in a row up to n, from the diagonal on: four at a time, that do not wait for one another.
+    """Greatest absolute value in row i from the diagonal up to column n, by four independent maxima.
 
-    What is no number is passed over here, and makes its column none in all rows below: the last has 0.
+    A NaN is passed over here. It spreads over its column in all rows below, so that the last row has 0.
     """
     j: cython.Py_ssize_t = i
     p: cython.double = 0.0

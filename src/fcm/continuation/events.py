@@ -1,10 +1,10 @@
 """Events within a step: roots of functions along it, each found on the curve itself.
 
-Between two points that enclose a sign change it is found by the secant through the last two points
-(`SignChange`); halfway between the sides where that leads out of them, or three looks have not halved their
-distance. So it is too where the function jumps, if it may: between sides that are much nearer than they were
-a smooth function differs by much less. Values of the parameter are landed on where a curve may have a peak
-that no point away from them tells of (`Landing`).
+A sign change between two points is located by the secant through the last two points (`SignChange`). It is
+located by bisection if the secant leaves the bracket, or if three evaluations have not halved the bracket.
+Bisection also locates a jump of a function that may jump: in a much narrower bracket a smooth function
+differs by much less. Steps end at values of the parameter where the curve may have a narrow peak that no
+point elsewhere shows (`Landing`).
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ else:
 
 @cython.cclass
 class SignChange:
-    """A bracket of a change of sign, low to high, which evaluations at `at` make narrower.
+    """A bracket, low to high, of a sign change; evaluations at `at` make it narrower.
 
-    width: the distance of its sides; secant: where the secant leads.
+    width: that of the bracket; secant: the point to which the secant leads.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class SignChange:
         self.low, self.high, self.may_jump = low, high, may_jump
         self.jump_width, self.jump_difference = options.jump_width, options.jump_difference
         self.halving_interval = options.halving_interval
-        self.before, self.after = before, after  # the values there
+        self.before, self.after = before, after  # the values at low and high
         # the last two points and their values
         self.last, self.last_value, self.now, self.now_value = low, before, high, after
         self.first_width, self.first_difference = high - low, fabs(after - before)
@@ -58,7 +58,7 @@ class SignChange:
     @cython.cfunc
     @cython.exceptval(check=False)
     def choose_next(self) -> cython.void:
-        """Choose the point `at` of the next evaluation, by the secant or by halves."""
+        """Choose the point `at` of the next evaluation, by the secant or by bisection."""
         self.width, self.secant = self.high - self.low, self.low
         if self.now_value != self.last_value:
             rise: cython.double = self.now_value - self.last_value
@@ -81,9 +81,9 @@ class SignChange:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def converged(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
-        """Whether another evaluation would move the secant by no more than `fine`; or the one after next.
+        """Whether the next evaluation, or the one after_next, would move the secant by at most `fine`.
 
-        That is shorter than the next by at least as much as the next is than the last.
+        The step after next is shorter than the next by at least the ratio of the next to the last.
         """
         way: cython.double = fabs(self.secant - self.now)
         if way <= fine or self.width <= fine:
@@ -93,7 +93,7 @@ class SignChange:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def update(self, at: cython.double, value: cython.double) -> cython.int:
-        """Take the function's value at `at` for one side of the bracket."""
+        """Replace one side of the bracket by `at`, where the function has the given value."""
         if self.evaluations % self.halving_interval == self.halving_interval - 1:
             self.width_in_turn = self.width
         self.evaluations += 1
@@ -108,7 +108,7 @@ class SignChange:
 
 @cython.cclass
 class Landing:
-    """Values of the parameter, with widths, at which steps are to end.
+    """Values of the parameter, with widths, at which steps end.
 
     `value` (k, 2): each value and its width; `shortened`: whether the step was cut to end at one.
     """
@@ -119,7 +119,7 @@ class Landing:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def limit_step(self, stepper: Stepper, step: cython.double) -> cython.double:
-        """The step, or the length at which the curve's tangent comes to the first value."""
+        """The step, or the length at which the tangent reaches the first value."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = stepper.problem.unknowns
         way: cython.double
@@ -138,7 +138,7 @@ class Landing:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def first_crossed(self, stepper: Stepper, step: cython.double) -> cython.double:
-        """Length at which a step comes to the first value that it leads across; 0 if there is none."""
+        """Length at which the step crosses its first value; 0 if it crosses none."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = stepper.problem.unknowns
         way: cython.double
@@ -159,7 +159,7 @@ class Landing:
 class End(NamedTuple):
     """A function of z (n + 1,) that ends the curve where it becomes negative.
 
-    It may jump. The curve ends there, or before that by no more than the length `within`.
+    It may jump. The curve ends at the zero, or before it by no more than the length `within`.
     """
 
     value: Callable[[FloatArray], float]
@@ -179,7 +179,7 @@ class Events(Frozen):
     ends : sequence of End
         The curve ends at the first of these, with the status EVENT.
     last : int
-        Of `Mark`: the curve ends at the first event that has one of these, with the status EVENT.
+        Bits of `Mark`: the curve ends at the first event with any of them, with the status EVENT.
     """
 
     values: Sequence[float] = ()
@@ -188,13 +188,13 @@ class Events(Frozen):
     last: int = 0
 
     def within(self, length: float) -> list[tuple[float, float]]:
-        """The values with a width that are narrower than a length."""
+        """The values of `narrow` whose width is less than a length."""
         return [one for one in self.narrow if one[1] < length]
 
 
-NO_EVENTS = Events()  # than those of every curve
-NOT_FOUND = cython.declare(cython.double, -1.0)  # a root that is none
-MARGIN = cython.declare(cython.int, 0)  # the functions along a step
+NO_EVENTS = Events()  # no events besides those of every curve
+NOT_FOUND = cython.declare(cython.double, -1.0)  # stands for a root that was not found
+MARGIN = cython.declare(cython.int, 0)  # the kinds of `TestFunction`
 FOLD = cython.declare(cython.int, 1)
 PEAK = cython.declare(cython.int, 2)
 USER_POINT = cython.declare(cython.int, 3)
@@ -230,7 +230,7 @@ def value(stepper: Stepper, point: Point, function: TestFunction) -> cython.doub
 
 @cython.cfunc
 def root_within(stepper: Stepper, function: TestFunction) -> cython.double:
-    """Length at which a function changes sign between here and there."""
+    """Length at which a test function changes sign between here and there."""
     before: cython.double = value(stepper, stepper.here, function)
     return root(stepper, function, 0.0, stepper.step, before, value(stepper, stepper.there, function))
 
@@ -244,10 +244,11 @@ def root(
     before: cython.double,
     after: cython.double,
 ) -> cython.double:
-    """Length at which a function changes sign between two lengths, before and after which it is known.
+    """Length at which a test function changes sign between the lengths low and high.
 
-    Where the curve cannot be found, that length is the root of a growth. Of a margin it is NOT_FOUND: what is
-    there may be another part of a curve that goes back in the corner. So it is of a fold: `bracketed_fold`.
+    before, after: its values there. If the curve cannot be found in between, the root of a PEAK is the upper
+    end of the bracket; any other root is NOT_FOUND. A margin may then belong to another part of a curve that
+    goes back in the corner. For a fold see `bracketed_fold`.
     """
     at: cython.double
     now: cython.double
@@ -282,21 +283,22 @@ class Event(NamedTuple):
 
 
 def event_at_point(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
-    """The event at a point of the stepper, a length from here, with a mark."""
+    """The event with a mark at a point of the stepper, at a length from here."""
     direction = np.asarray(stepper.newton.scale) * np.asarray(point.tangent)
     return Event(length, mark, np.array(point.z), direction, point.orientation)
 
 
 def event_at_sample(stepper: Stepper, poll: Sample, mark: int) -> Event:
-    """The event at a sample of an extremum search, with a mark."""
+    """The event with a mark at a sample of an extremum search."""
     scale = np.asarray(stepper.newton.scale)
     return Event(poll.at, mark, scale * poll.z, scale * poll.tangent, poll.orientation)
 
 
 def first_margin(stepper: Stepper) -> float:
-    """Length within the step at which a margin first changes sign; NOT_FOUND if the curve is not found there.
+    """Length at which a margin first changes sign within the step; NOT_FOUND if the curve is not found there.
 
-    Of many that change theirs most have not yet done so where another does: their roots are not looked for.
+    If many margins change sign, most have not done so yet where another one does; their roots are not
+    computed.
     """
     last, first = stepper.there, stepper.step
     for k in _changing(stepper):
@@ -309,7 +311,7 @@ def first_margin(stepper: Stepper) -> float:
 
 
 def _changing(stepper: Stepper) -> list[int]:
-    """Margins that change sign within the step, those first that seem to be the first."""
+    """Margins that change sign within the step, ordered by the place that linear interpolation gives."""
     places = {}
     for k in range(stepper.problem.margins):
         before, after = stepper.here.margin[k], stepper.here.margin_at(k, stepper.there)
@@ -321,7 +323,7 @@ def _changing(stepper: Stepper) -> list[int]:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def without_events(stepper: Stepper, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
-    """Whether the step has no fold, no peak that matters, and no passing of a value of the parameter."""
+    """Whether the step has no fold, no peak that matters, and crosses no given value of the parameter."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
     here: Point = stepper.here
@@ -342,7 +344,7 @@ def without_events(stepper: Stepper, values: cython.double[::1], greatest: cytho
 def has_peak(
     here: Point, there: Point, k: cython.Py_ssize_t, greatest: cython.double, options: EventOptions
 ) -> cython.bint:
-    """Whether an output has a peak that matters between two places."""
+    """Whether an output has a peak that matters between two points."""
     size: cython.double = max(here.output[k], there.output[k])
     least: cython.double = options.min_growth * size
     if not (here.growth[k] > least and there.growth[k] < -least):
@@ -353,10 +355,10 @@ def has_peak(
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def may_exceed(stepper: Stepper, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
-    """Whether a peak of an output within the step may be the greatest so far, by the slopes at its ends.
+    """Whether a peak of an output within the step may exceed the greatest so far, by the slopes at its ends.
 
-    Each point is costly where a problem is labelled or has many unknowns; on a curve with many loops most
-    peaks are lower than an earlier one.
+    Points are costly if a problem is labelled or has many unknowns. On a curve with many loops most peaks are
+    lower than an earlier one.
     """
     here: Point = stepper.here
     there: Point = stepper.there
@@ -367,7 +369,7 @@ def may_exceed(stepper: Stepper, k: cython.Py_ssize_t, greatest: cython.double) 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def closes_curve(stepper: Stepper, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
-    """Whether the step passes the point where the curve began, in the direction that it had there."""
+    """Whether the step passes the point where the curve began, in the direction of the curve there."""
     i: cython.Py_ssize_t
     before: cython.double = 0.0
     after: cython.double = 0.0
@@ -386,7 +388,7 @@ def closes_curve(stepper: Stepper, first: cython.double[::1], head: cython.doubl
 
 
 def events_within(stepper: Stepper, limit: float, values: list[float], greatest: FloatArray) -> list[Event]:
-    """Folds, peaks and values of the parameter before a limit, a length of the step, in order."""
+    """Folds, peaks and given values of the parameter up to a length `limit` of the step, in order."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
     most: cython.double[::1] = greatest
@@ -416,7 +418,7 @@ def events_within(stepper: Stepper, limit: float, values: list[float], greatest:
 def located_root(
     stepper: Stepper, kind: int, k: int, limit: float, mark: int, looks: ExtremumSearch | None
 ) -> list[Event]:
-    """The root of a function along the step, as a list of one point, or none if the curve is not found."""
+    """The event at the root of a function along the step, as a list; empty without one up to `limit`."""
     if looks is not None:
         poll = looks.extreme(None if kind == FOLD else k)
         return [event_at_sample(stepper, poll, mark)] if poll.at <= limit else []
@@ -430,7 +432,7 @@ def located_root(
 
 
 class _Side(NamedTuple):
-    """A point beside a fold: length from the beginning of the step, z and tangent, both scaled."""
+    """A point beside a fold: length from the beginning of the step, scaled z and tangent."""
 
     at: float
     z: FloatArray
@@ -438,8 +440,9 @@ class _Side(NamedTuple):
 
 
 def bracketed_fold(stepper: Stepper) -> Event:
-    """A fold that is no regular point of the curve, between points on both sides, up to the cube of their
-    distance."""
+    """A fold that is not a regular point of the curve, interpolated between points on both sides.
+
+    The error is of the third power of their distance."""
     scale = np.array(stepper.newton.scale)
     low, high = (
         _Side(at, np.array(point.z) / scale, np.array(point.tangent))
@@ -469,10 +472,10 @@ def bracketed_fold(stepper: Stepper) -> Event:
 
 
 def user_point_crossings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
-    """Events where the parameter passes a value: once on the way, or on either side of a fold.
+    """Events where the parameter crosses a value: one, or one on either side of a fold.
 
-    At a value next to a fold the equations have two solutions close together. Newton's method may find
-    either, or none, so there the point is looked for along the step.
+    Next to a fold the equations have two solutions with this value close together. Newton's method may find
+    either or none, so there the crossing is located along the step.
     """
     n: cython.Py_ssize_t = stepper.problem.unknowns
     begin: float = stepper.here.z[n] - value
@@ -494,9 +497,9 @@ def user_point_crossings(stepper: Stepper, value: float, fold: Event | None) -> 
 def user_point_crossing(
     stepper: Stepper, value: float, low: float, high: float, before: float, after: float
 ) -> list[Event]:
-    """The event where the parameter passes a value between two lengths; none if it does not.
+    """The event where the parameter crosses a value between the lengths low and high, as a list or empty.
 
-    before, after: by how much the parameter exceeds the value at the lengths low and high.
+    before, after: the parameter minus the value at low and high.
     """
     if not before * after < 0.0:
         return []
@@ -508,9 +511,9 @@ def user_point_crossing(
 
 
 def first_end(stepper: Stepper, ends: Sequence[End]) -> tuple[int, float] | None:
-    """The end function that becomes negative first within the step, and at which length; None if none does.
+    """The first end function that becomes negative within the step, and the length there; None if none does.
 
-    There the least of them is not negative yet; one that is NaN counts as negative.
+    At that length no end function is negative yet; NaN counts as negative.
     """
 
     def least(point: Point) -> float:

@@ -1,8 +1,8 @@
-"""Roots of functions along a step of a problem whose points are costly: folds and peaks.
+"""Folds and peaks within a step of a problem whose points are costly.
 
-A fold or a peak is the extreme of a value whose slope is known too. So the cubic with the values and slopes
-at both ends of its interval gives its place far better than the slopes alone. At a corner of the curve the
-slope jumps, and no polynomial holds; but both sides are nearly straight close to it, and they meet there.
+A fold or a peak is the extremum of a value whose slope is known too. The cubic with the values and slopes at
+both ends of a bracket locates it far better than the slopes alone. At a corner of the curve the slope jumps,
+and no polynomial fits. But close to the corner both sides are nearly straight, and they meet in it.
 """
 
 from __future__ import annotations
@@ -20,25 +20,24 @@ from fcm.frozen import Frozen
 
 
 class ExtremumOptions(Frozen):
-    """Options on how exactly an extremum is known, and when a polynomial leads to it.
+    """Options on how accurately an extremum is located, and when a polynomial predicts it.
 
     Attributes
     ----------
     fold_tolerance, corner_tolerance : float
         Relative error of the parameter at a fold, and at a fold in a corner.
     min_reduction : float
-        Slope at a new point, relative to the one that it replaces, from which on no cubic is used for the
-        next.
+        Slope at a new point, relative to the slope that it replaces, from which on the next point does not
+        use a cubic.
     corner_curvature : float
-        Bend of the interval relative to that of the step, above which there is a corner in it.
+        Change of slope in the bracket, relative to that in the step, above which the bracket has a corner.
     corner_offset : float
-        Distance of the next points from a corner which they are to enclose, relative to the squared interval
-        over the step.
+        Distance of the next points from a corner that they bracket, relative to the squared bracket over the
+        step.
     min_length : float
-        Length of an interval up to which only the slopes at its ends are used: values are too nearly the
-        same.
+        Length of a bracket up to which only the slopes at its ends are used: the values are too nearly equal.
     min_cosine : float
-        Cosine of a turn below which a length is no measure of the way.
+        Cosine of a turn below which a length does not measure the way along the curve.
     """
 
     fold_tolerance: float = 1e-15
@@ -50,7 +49,7 @@ class ExtremumOptions(Frozen):
     min_cosine: float = 0.1
 
 
-EXTREMUM = ExtremumOptions()  # where nothing else is said
+EXTREMUM = ExtremumOptions()  # the defaults
 
 
 class Sample(NamedTuple):
@@ -59,14 +58,14 @@ class Sample(NamedTuple):
     at: float  # length from the beginning of the step
     z: FloatArray  # scaled
     tangent: FloatArray
-    slope: FloatArray  # of z by that length
+    slope: FloatArray  # of z with respect to that length
     output: FloatArray
-    growth: FloatArray  # by that length
+    growth: FloatArray  # slope of the outputs with respect to that length
     orientation: float
 
 
 class ExtremumSearch:
-    """The points that are known of a step: every root is sought between the nearest of them."""
+    """The known points of a step: every root is sought between the nearest of them."""
 
     def __init__(self, stepper: Stepper, options: ExtremumOptions = EXTREMUM) -> None:
         self.options = options
@@ -76,7 +75,7 @@ class ExtremumSearch:
             if stepper.problem.outputs >= events.many_outputs
             else events.peak_tolerance
         )
-        # where only values of the parameter matter, points are known to no more than that
+        # where only values of the parameter matter, points are known only to that tolerance
         known = stepper.options.newton.preliminary_tolerance if stepper.options.user_points_only else 0.0
         self.fold_tolerance = max(options.fold_tolerance, known)
         self.corner_tolerance = max(options.corner_tolerance, known)
@@ -84,7 +83,7 @@ class ExtremumSearch:
         self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 
     def extreme(self, output: int | None) -> Sample:
-        """The sample at the extremum of an output, or of the parameter without one, as near as found."""
+        """The sample at the extremum of an output, or of the parameter if output is None."""
         low, high = self._between(output)
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True
@@ -112,7 +111,7 @@ class ExtremumSearch:
         return high
 
     def _between(self, output: int | None) -> tuple[Sample, Sample]:
-        """The first neighbours whose slopes have different signs."""
+        """The first neighbours whose slopes differ in sign."""
         for low, high in zip(self.known, self.known[1:], strict=False):
             if self._slope(low, output) * self._slope(high, output) <= 0.0:
                 return low, high
@@ -123,7 +122,7 @@ class ExtremumSearch:
         return float(sample.slope[-1] if output is None else sample.growth[output])
 
     def _is_root(self, sample: Sample, low: Sample, high: Sample, output: int | None) -> bool:
-        """Whether the extreme is higher than this by no more than rounding."""
+        """Whether the extremum exceeds the value at this sample by no more than the tolerance."""
         now, size = abs(self._slope(sample, output)), abs(float(sample.z[-1]))
         smooth, corner = self.fold_tolerance, self.corner_tolerance
         if output is not None:
@@ -137,9 +136,9 @@ class ExtremumSearch:
         return abs(self._slope(high, output) - self._slope(low, output)) / (high.at - low.at)
 
     def _corner(self, low: Sample, high: Sample, upper: bool, again: int) -> tuple[float, FloatArray]:
-        """A point close to where the tangents at both ends meet, on the side that was not looked at last.
+        """Length and guess of a point near where the tangents at both ends meet, on the side not taken last.
 
-        The further beyond the more often it was not on that side.
+        Its distance from there grows tenfold with each attempt that did not bracket the corner.
         """
         width, bend = high.at - low.at, low.slope - high.slope
         meet = low.at + float((high.z - high.slope * width - low.z) @ bend) / max(float(bend @ bend), 1e-300)
@@ -152,7 +151,7 @@ class ExtremumSearch:
         return at, near.z + near.slope * (at - near.at)
 
     def _put(self, at: float, guess: FloatArray) -> Sample | None:
-        """The point at a length, found from a guess; it is known from now on."""
+        """Find and keep the point at a length, from a guess; None if it is not found."""
         stepper = self.stepper
         if not stepper.find_from_guess(at, self.scale * guess):
             return None
@@ -171,9 +170,9 @@ class ExtremumSearch:
 
 
 def _cubic(low: Sample, high: Sample, output: int | None, coarse: float) -> tuple[float, FloatArray]:
-    """Place of the extremum of the interpolating cubic between two samples, and z on the cubic there.
+    """Length at the extremum of the interpolating cubic between two samples, and z on the cubic there.
 
-    Ends no further apart than coarse are interpolated by their slopes alone.
+    A bracket no wider than coarse is interpolated by its slopes alone.
     """
     width = high.at - low.at
     if output is None:

@@ -2,7 +2,7 @@ r"""Follow a curve by steps along its arc; everything that happens on it is a po
 
 A step is predicted by a parabola and corrected in the plane normal to the tangent. It is accepted if the
 curve turned gently and was where it was predicted. An event within an accepted step is the root of a function
-along it (`events`): a fold, a peak of a reported quantity, or a value of the parameter that was asked for.
+along it (`events`): a fold, a peak of an output, or a given value of the parameter.
 
 Where a margin of the problem changes sign the curve may have a corner. It is not approached by shorter and
 shorter steps. As the margins are known functions, the step ends just beyond where the prediction crosses one,
@@ -81,7 +81,7 @@ class Follower:
     nonsmooth: NonsmoothPoints
     step: cython.double
     size: cython.double  # of the solution at the start
-    approach_distance: cython.double  # a corner no further away is gone to at once
+    approach_distance: cython.double  # a corner at most so far away is approached at once
     attempts: int  # to go back from where no step leads on
     labelled: LabelledSwitching | None
     progress: Progress | None
@@ -109,7 +109,7 @@ class Follower:
         self.labelled = LabelledSwitching(self.stepper, self.recorder.store) if problem.labelled else None
 
     def begin(self, start: FloatArray, forward: bool, direction: FloatArray | None = None) -> bool:
-        """Go to the curve at the start; whether there is one."""
+        """Correct the start to the curve; return whether there is a curve."""
         row, n = np.zeros(self.problem.unknowns + 1), self.problem.unknowns
         if direction is not None and start[n] in self.recorder.values:
             forward, direction = bool(direction[n] > 0.0), None
@@ -126,13 +126,13 @@ class Follower:
         return True
 
     def resume(self, checkpoint: Checkpoint) -> None:
-        """Go on from a checkpoint of the curve."""
+        """Continue from a checkpoint of the curve."""
         restore_stepper(self.stepper, checkpoint)
         self.recorder.restore(checkpoint)
         self.step, self.size = checkpoint.step, checkpoint.size
 
     def checkpoint(self) -> Checkpoint:
-        """The state from which the curve can go on after an interruption."""
+        """The state from which following the curve can resume."""
         return Checkpoint(
             step=self.step, size=self.size, **self.recorder.state(), **stepper_state(self.stepper)
         )
@@ -152,11 +152,11 @@ class Follower:
         return self.path(Status.TOO_LONG)
 
     def path(self, status: Status) -> Path:
-        """The points kept so far, as a path with a status."""
+        """The points kept so far, as a `Path` with the given status."""
         return self.recorder.path(status)
 
     def retreat(self) -> bool:
-        """Whether the curve can be gone on with from an earlier point, by other steps."""
+        """Go back to an earlier point to continue by other steps; return whether that is possible."""
         if self.labelled is not None or self.attempts == len(self.options.step.retreats):
             return False
         self.attempts += 1
@@ -165,7 +165,7 @@ class Follower:
 
     @cython.cfunc
     def advance(self) -> object:
-        """Take one step along the curve; returns a status where the curve ends, else None."""
+        """Take one step along the curve; return a status if the curve ends, else None."""
         stepper: Stepper = self.stepper
         control: StepOptions = self.options.step
         switching: SwitchingOptions = self.options.switching
@@ -191,7 +191,7 @@ class Follower:
             if corner < min(step, reached):
                 stepper.move_short(corner)
                 return self.leave_corner(stepper.here, 0.0)
-            # curves bend more and more towards a corner, and may hide a pair of folds there
+            # a curve bends more and more towards a corner, and may hide a pair of folds there
             if (
                 self.approach_distance < corner < step
                 and smooth_step(stepper, switching.approach_fraction * corner)
@@ -203,7 +203,7 @@ class Follower:
             ):
                 if changes_sign(stepper) and not known:
                     if stepper.known_length > 0.0 and before_corner(stepper) < stepper.known_length:
-                        step = stepper.known_length  # to the value of the parameter that is nearer
+                        step = stepper.known_length  # on to the value of the parameter, which is nearer
                         continue
                     status = self.reach_corner() if stepper.miss < 1.0 else Status.STALLED
                     if status is not Status.STALLED:
@@ -218,11 +218,11 @@ class Follower:
                 status = self.pass_straight_corner(step, corner)
                 if status is not Status.STALLED:
                     return status
-            # the curve may turn back in a corner, so that nothing is to be found beyond
+            # the curve may turn back in the corner, so that there is no point beyond it
             if corner < step and smooth_step(stepper, corner * (1.0 - switching.overshoot)):
                 return self.accept_step()
             if corner < min(step, switching.turning_distance) and not self.is_at_corner():
-                stepper.move_short(corner)  # it turns by more than a right angle: no plane ahead has it
+                stepper.move_short(corner)  # it turns by more than a right angle: no plane ahead meets it
                 return self.leave_corner(stepper.here, 0.0)
             step = 0.25 * min(step, corner)
         return Status.STALLED
@@ -230,17 +230,17 @@ class Follower:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def is_at_corner(self) -> cython.bint:
-        """Whether the point that was kept last is a corner, and here: nothing was found beyond."""
+        """Whether here is the last point kept, and a corner: no point was found beyond it."""
         store: PointStore = self.recorder.store
         return store.ends_at(self.stepper.here) and (store.mark[store.count - 1] & CORNER) != 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def steps_over_corners(self, step: cython.double) -> cython.bint:
-        """Whether a step goes on past all margins as if there were none, and is a good one.
+        """Whether a step across all margins, taken as if there were none, is acceptable.
 
-        Where margins are many, most corners are slight. It is refused if a corner may hide a pair of folds,
-        which a hasty curve may miss.
+        If there are many margins, most corners are slight. The step is refused if a corner may hide a pair of
+        folds, unless only values of the parameter matter.
         """
         stepper: Stepper = self.stepper
         if (
@@ -255,9 +255,9 @@ class Follower:
 
     @cython.cfunc
     def pass_straight_corner(self, step: cython.double, corner: cython.double) -> object:
-        """Go on from the corner where a margin vanishes that goes on as it does here.
+        """Continue from the corner where a margin vanishes, extrapolated from its value and slope here.
 
-        STALLED if none does, or that is where the prediction comes to it, too.
+        STALLED if no margin approaches zero, or if the prediction meets the corner at the same place.
         """
         stepper: Stepper = self.stepper
         switching: SwitchingOptions = self.options.switching
@@ -280,22 +280,22 @@ class Follower:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def hidden_event(self) -> cython.double:
-        """Length at which the step passes by something that both its ends tell of; 0 if they do not."""
+        """Length at which the step hides a sign change or a reversal, by its two ends; 0 if it hides none."""
         self.stepper.differentiate_margins()
         at: cython.double = hidden_sign_change(self.stepper)
         return at if at > 0.0 else hidden_reversal(self.stepper, self.recorder.most)
 
     def acceptable(self) -> bool:
-        """Whether the curve was where it was predicted, and went on as it did."""
+        """Whether the curve was where it was predicted, and continued smoothly."""
         return bool(acceptable(self.stepper))
 
     def fold_pair(self) -> float:
-        """Length at which the step passes by two folds that its ends tell of; 0 if they do not."""
+        """Length at which the step hides a pair of folds, by its two ends; 0 if it hides none."""
         return float(parameter_reversal(self.stepper) * self.stepper.step)
 
     @cython.ccall
     def accept_step(self) -> object:
-        """Go on to the end of the step and choose the next step; a status where the curve ends."""
+        """Go to the end of the step and choose the next step; return a status if the curve ends."""
         stepper: Stepper = self.stepper
         count: cython.int = self.recorder.store.count
         if self.ends:
@@ -305,7 +305,7 @@ class Follower:
         if self.recorder.keep_events(stepper.step):
             return self.recorder.end_status()
         if not self.recorder.inside():
-            self.recorder.store.cut(count)  # beyond an end that was not landed on
+            self.recorder.store.cut(count)  # beyond an end of the span, which the step did not hit
             self.step = 0.25 * stepper.step
             return Status.STALLED if self.step < self.options.step.step_after_corner else None
         if self.recorder.closed():
@@ -316,7 +316,7 @@ class Follower:
         self.step = next_step(stepper)
         if (
             self.landing.shortened and self.step >= stepper.step
-        ):  # nothing was there: on with the steps before
+        ):  # nothing was at the value: return to the longer steps
             self.step = max(self.step, wanted)
         stepper.accept(stepper.there, stepper.step)
         self.recorder.update_greatest()
@@ -324,12 +324,12 @@ class Follower:
 
     @cython.cfunc
     def reach_corner(self) -> object:
-        """Go on from the first corner of the step; STALLED where the curve is not found up to there."""
+        """Continue from the first corner of the step; STALLED if the curve is not found up to it."""
         stepper: Stepper = self.stepper
         at: cython.double = before_corner(stepper)
         if at < 0.0:
             return Status.STALLED
-        # a corner may be here: on the way to it nothing happens
+        # here may be a corner itself, with no event on the way to the next one
         if self.recorder.keep_events(stepper.step):
             return self.recorder.end_status()
         point: Point = stepper.between if stepper.find_between(at, True, True) else stepper.there
@@ -337,7 +337,7 @@ class Follower:
 
     @cython.ccall
     def leave_corner(self, point: Point, at: cython.double, past: cython.double = 0.0) -> object:
-        """Go on from a corner, a point at a length from here; past: where to look if it is labelled."""
+        """Leave a corner, a point at a length from here; past: where to look beyond a change of label."""
         if self.nonsmooth.pass_corner(point, at, past or self.options.switching.departure_length):
             return self.recorder.end_status()
         if self.labelled is None and self.recorder.revisits_corner():
@@ -350,7 +350,7 @@ class Follower:
         return None
 
     def limit_step(self, step: float, longer: bool) -> None:
-        """Make the next step no longer, or no shorter, than a length."""
+        """Make the next step at most (longer: at least) as long as a step."""
         self.step = min(max(self.step, step), self.options.max_step) if longer else min(self.step, step)
 
 
@@ -379,23 +379,23 @@ def follow(
     span : (low, high)
         Of the parameter; the start may lie within.
     events : Events
-        Points that the curve is to have besides those at its own events: folds, corners, peaks of outputs,
-        branch points and the ends of the span; see `Mark`.
+        Values of the parameter and other points that the curve is to have. Folds, corners, peaks of outputs,
+        branch points and the ends of the span are always points of it; see `Mark`.
     options : FollowOptions
         All tolerances, and the longest step.
     forward : bool
         Whether the parameter rises at first.
     direction : (n + 1,), optional
-        About that of the curve at the start, in the units of z. The start is then corrected across it,
-        unless its parameter is one that the curve is to have a point at.
+        Approximate direction of the curve at the start, in the units of z. The start is then corrected in the
+        plane normal to it, unless the start's parameter is a value or an end at which the curve has a point.
     progress : callable, optional
-        Called now and then.
+        Called every 16 steps with the fraction of the span covered.
     watch : callable, optional
-        Is given the checkpoint before every step of a problem with labels.
+        Called with the checkpoint before each step of a labelled problem.
     checkpoint : Checkpoint, optional
-        Of the same curve of such a problem, to which it had come when it was interrupted.
+        State of an interrupted curve of the same labelled problem, at which following resumes.
     stepper : Stepper, optional
-        Of the same problem, that has followed another curve to its end.
+        A stepper of the same problem that has finished another curve.
 
     Returns
     -------
@@ -407,7 +407,7 @@ def follow(
     ValueError
         If the start has another shape, or the span ends below where it begins.
     PathInterrupted
-        With the points up to there, where a `KeyboardInterrupt` comes.
+        On a `KeyboardInterrupt`, with the points up to there.
 
     Examples
     --------

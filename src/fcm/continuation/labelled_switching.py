@@ -1,11 +1,11 @@
-"""Steps along a curve whose margins are labels, which tell no distance to their change.
+"""Steps along a curve whose margins are labels, which do not tell how far away they change.
 
 A label is what hybrid systems call the discrete state: the number of the regime in which a contact moves.
 
-The length of a step is chosen by how far from its prediction the curve is, in the curve's own size: what is
-smaller than that is passed. A step that is good has no corner in it, whatever its labels are. One that is
-short and still not good has. Then the change of label is approached until it is met. The next step follows
-the tangent of the equations beyond it.
+The step length follows from the scaled distance between prediction and curve; events smaller than that are
+stepped over. A step is acceptable whatever its labels are. If even a short step is not acceptable, there is a
+corner in it. The change of label is then bracketed until it is met, and the next step follows the tangent of
+the equations beyond it.
 """
 
 from __future__ import annotations
@@ -26,44 +26,44 @@ if TYPE_CHECKING:
 
 
 def step_factor(options: LabelOptions, error: float, cubic: bool) -> float:
-    """Ratio of the next step to one whose prediction missed the curve by an error, for the miss aimed at.
+    """Ratio of the next step to the last, so that the error of the prediction becomes the target error.
 
-    The prediction is a parabola, and what it misses grows as the third power; or a cubic: as the fourth.
+    The error grows as the third power of the step for the parabola, as the fourth for the cubic.
     """
     ratio = options.target_error / max(error, options.min_error)
     return float(options.safety * ratio ** (1.0 / 4.0 if cubic else 1.0 / 3.0))
 
 
 def clipped(value: float, low: float, high: float) -> float:
-    """The value, or the nearest limit if it lies outside of both."""
+    """The value, limited to the interval from low to high."""
     return min(max(value, low), high)
 
 
 class LabelledSwitching:
-    """Steps of a curve with labels: how they are chosen, and how corners are left.
+    """Step control of a curve with labels: it chooses steps and leaves corners.
 
-    It counts how often a corner has been tried that is not left yet.
+    It counts the attempts to leave a corner.
     """
 
     def __init__(self, stepper: Stepper, store: PointStore) -> None:
         self.stepper, self.store, self.options = stepper, store, stepper.options.labels
         self.control, self.switching = stepper.options.step, stepper.options.switching
-        self.departures = 0  # corners at one point
-        self.departure = 0.0  # length beyond the last of them at which the direction was found
-        self.incoming: FloatArray = np.zeros(0)  # direction in which the curve came there,
-        self.incoming_label: FloatArray = np.zeros(0)  # and its labels before
+        self.departures = 0  # attempts to leave the present corner
+        self.departure = 0.0  # length beyond the corner at which the direction was found
+        self.incoming: FloatArray = np.zeros(0)  # direction in which the curve came to the corner
+        self.incoming_label: FloatArray = np.zeros(0)  # labels before the corner
 
     def advance(self, follower: Follower, step: float) -> object:
-        """Take one step along the curve; a status where the curve ends, else None.
+        """Take one step along the curve; return a status if the curve ends, else None.
 
-        Close to a change of label there may be no curve to be found.
+        Close to a change of label the curve may not be found.
         """
         stepper = self.stepper
-        # what led to a corner may have been shorter
+        # the step that led to a corner may have been shorter
         step = asked = max(
             step, self.control.step_after_corner, self.options.departure_factor * self.departure
         )
-        # a step that ends short of there is in the corner yet
+        # a step that ends before that length is still in the corner
         while step > max(self.control.min_step, self.departure):
             if stepper.try_step(step) and self.acceptable(follower):
                 at = follower.fold_pair() if step > self.control.any_turn_step else 0.0
@@ -97,7 +97,7 @@ class LabelledSwitching:
         )
 
     def acceptable(self, follower: Follower) -> bool:
-        """Whether the step is good, and does not go back: no margin tells a reversal from a corner."""
+        """Whether the step is good and does not go back; no margin distinguishes a reversal from a corner."""
         stepper = self.stepper
         same = stepper.there.orientation == stepper.here.orientation
         near = stepper.miss * stepper.step < self.options.max_error_ratio * self.options.target_error
@@ -117,42 +117,42 @@ class LabelledSwitching:
         return follower.acceptable() or (same and near and gently)
 
     def stays_on_branch(self) -> bool:
-        """Whether a short step led no further aside than its turn explains, and so not to another branch."""
+        """Whether a short step went no further aside than its turn explains, and so not to another branch."""
         return bool(
             np.linalg.norm(self.step_vector()) * self.stepper.cosine
             < self.options.max_length_ratio * self.stepper.step
         )
 
     def turned_at_corner(self) -> bool:
-        """Whether the step turned at a corner ahead, which is no fold, and went in the new direction."""
+        """Whether the step turned at a corner ahead that is no fold, and continued in the new direction."""
         way, here, there = self.step_vector(), self.stepper.here, np.asarray(self.stepper.there.tangent)
         straight = way @ there > self.options.straight_cosine * np.linalg.norm(way)
         return bool(here.tangent[-1] * there[-1] > 0.0 and straight)
 
     def step_vector(self) -> FloatArray:
-        """The step from here to there in the size of the curve itself."""
+        """The step from here to there in scaled coordinates."""
         return np.array((np.array(self.stepper.there.z) - self.stepper.here.z) / self.stepper.newton.scale)
 
     def goes_straight(self) -> bool:
-        """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
+        """Whether a step went straight on: its turn and its miss are within `straight_cosine`."""
         allowed_miss = (
             2.0 * (1.0 - self.options.straight_cosine)
-        ) ** 0.5  # by which a step that turns as much misses it
+        ) ** 0.5  # miss of a step that turns by that angle
         return self.stepper.cosine > self.options.straight_cosine and self.stepper.miss < allowed_miss
 
     def hides_fold_pair(self) -> bool:
-        """Whether the parameter went against the direction at both ends: there are two folds between."""
+        """Whether the parameter changed against its direction at both ends: two folds lie between."""
         here, there = self.stepper.here, self.stepper.there
         went = there.z[-1] - here.z[-1]
         return bool(went * here.tangent[-1] < 0.0 and went * there.tangent[-1] < 0.0)
 
     def misses_parameter(self) -> bool:
-        """Whether the parameter was missed by much of what it changes along the step."""
+        """Whether the error of the predicted parameter is too large for its change along the step."""
         rise = max(abs(self.stepper.here.tangent[-1]), abs(self.stepper.there.tangent[-1]))
         return bool(self.stepper.parameter_miss > self.options.max_parameter_miss * rise)
 
     def accept_step(self, follower: Follower, longer: float) -> object:
-        """Go on to the point there; the next step may be so many times as long."""
+        """Go to the end of the step; the next one may be longer by at most the factor `longer`."""
         count = self.store.count
         step, cubic = self.stepper.step, self.stepper.predictor.cubic
         error = self.stepper.miss * step
@@ -168,8 +168,8 @@ class LabelledSwitching:
         return status
 
     def repeats_fold(self, count: int) -> bool:
-        """Whether a fold beyond the first so many points is an old one: a step has led to a closed curve."""
-        if self.store.count < count + 2:  # nothing within the step
+        """Whether a fold after the first `count` points is an old one: a step went to a closed curve."""
+        if self.store.count < count + 2:  # no event within the step
             return False
         kept = self.store.points()
         folds = np.flatnonzero(kept.mark & Mark.FOLD)
@@ -181,7 +181,7 @@ class LabelledSwitching:
         return bool((np.abs(away).max(axis=1, initial=0.0) < self.options.fold_tolerance).any())
 
     def search_beyond(self, follower: Follower, corner: float) -> object:
-        """Leave a corner, a change of label this near; if nothing new leads on, look further beyond it."""
+        """Leave a corner close ahead, a change of label; look ever further beyond for a new direction."""
         stepper = self.stepper
         if self.departures > self.options.max_departures:
             return Status.STALLED
@@ -205,19 +205,19 @@ class LabelledSwitching:
             turned = cosine < self.options.straight_cosine
             if self.is_new_direction(cosine) and (turned or self.departures == self.options.max_departures):
                 self.departure = past if turned else 0.0
-                if cosine > self.options.reversal_cosine:  # it is found from here
+                if cosine > self.options.reversal_cosine:  # the next point is then predicted from here
                     np.asarray(stepper.offset)[:] = 0.0
                 return None
         np.asarray(stepper.offset)[:] = 0.0
         return None if self.search_around(follower) else Status.STALLED
 
     def is_new_direction(self, cosine: float) -> bool:
-        """Whether a direction at that angle to the old one is another, the problem being bound on the way."""
+        """Whether a direction with that cosine to the incoming one is new, by the margins evaluated last."""
         new = not np.array_equal(np.asarray(self.stepper.problem.margin), self.incoming_label)
         return cosine > (self.options.spike_cosine if new else self.options.reversal_cosine)
 
     def search_around(self, follower: Follower) -> bool:
-        """Whether the curve leaves a corner by any way that is tried around it: then it is left there."""
+        """Leave the corner by any way found around it; return whether there is one."""
         stepper = self.stepper
         if self.departures > self.options.max_departures:
             return False
@@ -235,24 +235,24 @@ class LabelledSwitching:
 
 
 class DirectionBeyond(NamedTuple):
-    """A way from a corner to a point of the curve at about a length from it."""
+    """A way from a corner to a point of the curve at about a given length from it."""
 
     length: float
-    direction: FloatArray  # (unknown + 1,) scaled, that of the piece in which it is
-    offset: FloatArray  # (unknown + 1,) scaled, from where that direction leads to the point's guess
+    direction: FloatArray  # (unknown + 1,) scaled tangent in the smooth piece of the point
+    offset: FloatArray  # (unknown + 1,) scaled, from the corner to where the direction begins
 
 
 def direction_beyond(
     stepper: Stepper, incoming: FloatArray, is_new_direction: Callable[[float], bool]
 ) -> DirectionBeyond | None:
-    """The first way on that is found from the corner at `here`; None without any.
+    """The first way that leads on from the corner at `here`; None if there is none.
 
     Parameters
     ----------
     incoming : (unknown + 1,)
         Direction in which the curve came to the corner.
     is_new_direction : callable
-        Whether a direction at an angle of that cosine to it is another; the problem is bound there.
+        Whether a direction with that cosine to the incoming one is new; uses the margins evaluated last.
     """
     for length in stepper.options.labels.departure_lengths:
         for probe, offset in _guesses(stepper.options.labels, length, incoming):
@@ -267,7 +267,7 @@ def direction_beyond(
 def _guesses(
     options: LabelOptions, length: float, incoming: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Places near a corner, relative to it: where a tangent is taken, and where that leads from."""
+    """Offsets from a corner: where the tangent is computed, and from where it is followed to a guess."""
     for probe, offset in product(options.departure_fractions, options.departure_fractions):
         yield probe * length * incoming, offset * length * incoming
     around = np.random.default_rng(0).normal(size=(options.random_directions, incoming.size))
@@ -276,7 +276,7 @@ def _guesses(
 
 
 def _direction(stepper: Stepper, probe: FloatArray) -> FloatArray | None:
-    """The tangent of the equations at a place near the corner, with the orientation of here."""
+    """The tangent at an offset from the corner, with the orientation of here; None if it is undetermined."""
     newton = stepper.newton
     np.asarray(newton.row)[:] = probe / np.linalg.norm(probe)
     np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * probe
@@ -291,7 +291,7 @@ def _found(
     departure: DirectionBeyond,
     is_new_direction: Callable[[float], bool],
 ) -> bool:
-    """Whether a way leads to a point at which the curve goes on from here; the problem is bound there."""
+    """Whether a way leads to a point from which the curve continues; evaluates the margins there."""
     newton, here, scale = stepper.newton, np.asarray(stepper.here.z), np.asarray(stepper.newton.scale)
     np.asarray(newton.row)[:] = departure.direction
     np.asarray(newton.z)[:] = here + scale * (departure.length * departure.direction + departure.offset)

@@ -9,10 +9,10 @@ from fcm.continuation.path import FloatArray
 
 
 def begin_near(newton: Newton, z: FloatArray, normal: FloatArray | None = None) -> None:
-    """Place Newton's method at a guess z (n + 1,), with the units of length there.
+    """Place Newton's method at a guess z (n + 1,), with the scale there.
 
-    normal: direction (n + 1,) to which the plane is normal in which it looks, in these units; by default the
-    parameter's, which is then held.
+    normal: direction (n + 1,), in the units of z, normal to the plane in which the solution is sought; by
+    default the parameter's, which is then held.
     """
     newton.problem.evaluate_scale(z)
     scale = np.array(newton.problem.scale)
@@ -25,9 +25,9 @@ def begin_near(newton: Newton, z: FloatArray, normal: FloatArray | None = None) 
 def solution_near(
     newton: Newton, z: FloatArray, normal: FloatArray | None = None, reach: float = 1.0
 ) -> FloatArray | None:
-    """The solution (n + 1,) that Newton's method finds from a guess; None where it does not converge.
+    """The solution (n + 1,) that Newton's method finds from a guess; None if it does not converge.
 
-    normal is that of `begin_near`, reach the length that `Newton.correct` takes as the step before.
+    normal: as for `begin_near`; reach: as for `Newton.correct`.
     """
     begin_near(newton, z, normal)
     return np.array(newton.z) if newton.correct(reach) else None

@@ -1,6 +1,6 @@
 """The tolerances of continuation: frozen, and documented field by field.
 
-Lengths are those of the scaled unknowns, in which a curve is about 1 long; a part is of the quantity named.
+Lengths refer to the scaled unknowns, in which a curve is about 1 long.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class Options:
         return type(self), self._values()
 
 
-class SolverOptions(Frozen):  # taken by a kernel when it is made
+class SolverOptions(Frozen):  # a kernel takes them when it is made
     """Options on how a dense system is solved; see `dense_solver`.
 
-    They decide how fast, not what comes out.
+    They affect the speed, not the results.
 
     Attributes
     ----------
@@ -59,21 +59,20 @@ class SolverOptions(Frozen):  # taken by a kernel when it is made
     blocked_rows: int = 40
 
 
-class ProblemOptions(Frozen):  # taken by a kernel when it is made
+class ProblemOptions(Frozen):  # a kernel takes them when it is made
     """Options of any problem that is followed; see `Problem`.
 
     Attributes
     ----------
     costly_size : int
-        Number of unknowns from which on a problem counts as costly: most of the work is then to solve for
-        them.
+        Number of unknowns from which on a problem counts as costly: solving for them is most of the work.
     unbounded : float
         Growth of the solution, relative to its size at the start, beyond which the curve ends as unbounded; a
         problem may set another.
     difference_length : float
-        Scaled length of the difference quotients from which margins get their slopes.
+        Scaled length of the difference quotients that give the slopes of margins.
     max_angle : float
-        [rad] Largest difference of angle between two margins that are taken for the same one.
+        [rad] Largest difference of angle between two margins that are taken to be the same.
     """
 
     costly_size: int = 100
@@ -85,18 +84,18 @@ class ProblemOptions(Frozen):  # taken by a kernel when it is made
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class NewtonOptions(Options):
-    """Options on when Newton's method has come to the curve, and when it is given up; see `corrector`.
+    """Options on when Newton's method has converged, and when it gives up; see `corrector`.
 
     Attributes
     ----------
     max_iterations : int
-        Number of whole Newton steps after which a guess is given up as too far away.
+        Number of whole Newton steps after which Newton's method gives up.
     max_step : float
         Scaled length of a Newton step from which on the iteration counts as divergent.
     tolerance : float
         Scaled error of a point, estimated from the convergence, below which it counts as on the curve.
     preliminary_tolerance : float
-        The tolerance of the points at which steps end, where only values of the parameter are asked for.
+        The tolerance of the points at which steps end, if only values of the parameter matter.
     final_step : float
         Scaled length of a Newton step below which it is the last: the point has converged.
     negligible_step : float
@@ -115,8 +114,8 @@ class NewtonOptions(Options):
         Most Newton steps in a row with the same Jacobian. The second number holds where solving takes far
         less work than factoring.
     chord_contraction, cheap_chord_contraction : float
-        Length of such a step, relative to the one before, from which on the Jacobian is computed anew; the
-        second where the second number holds.
+        Length of such a step, relative to the one before, from which on the Jacobian is computed anew. The
+        second holds where `max_cheap_chord_steps` does.
     last_chord_step : float
         Scaled length of a Newton step below which a last one with the same Jacobian is tried.
     max_growth, divergence_ratio : float
@@ -125,11 +124,11 @@ class NewtonOptions(Options):
     rounding_ratio : float
         Length of a Newton step, relative to the one before, above which rounding may have made it.
     max_second_ratio : float
-        Length of the second Newton step, relative to the first, from which on the iteration has failed, where
-        the first is limited.
+        Length of the second Newton step, relative to the first, from which on the iteration has failed, if
+        the length of the first step is limited.
     small_second_step : float
-        Length of the second Newton step, relative to the greatest first one, below which it is no sign of
-        failure even if it does not shrink.
+        Length of the second Newton step, relative to the limit of the first, below which it never counts as
+        failed.
     max_rounding : float
         Scaled length of a Newton step beyond which it is never taken for rounding.
     rounding_multiple : float
@@ -164,13 +163,13 @@ class NewtonOptions(Options):
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class StepOptions(Options):
-    """Options on which step is accepted, and how long the next one is; see `step_control`.
+    """Options on which steps are accepted, and how long the next step is; see `step_control`.
 
     Attributes
     ----------
     initial_step, min_step : float
-        Scaled lengths of the first and of the shortest step. The curve ends as stalled where the shortest is
-        still too long.
+        Scaled lengths of the first and of the shortest step. The curve ends as stalled if the shortest is
+        rejected.
     max_steps : int
         Most steps of a curve, after which it ends as too long.
     min_cosine : float
@@ -178,36 +177,36 @@ class StepOptions(Options):
     min_cubic_cosine : float
         Cosine of the turn in a step, below which no cubic predictor is made from the points of that step.
     any_turn_step : float
-        Scaled length up to which a step may turn by any angle below a right angle: a corner that no margin
-        shows.
+        Scaled length up to which a step may turn by any angle below a right angle, as at a corner that no
+        margin shows.
     max_branch_distance : float
-        Scaled distance up to which two branches are taken to meet: there a step may change the orientation of
-        the curve. From 6e-8 to 4e-7 the tests tell no difference; with less, rounding beside a branch point
-        hides it.
+        Scaled distance up to which two branches are taken to meet, so that a step may change the orientation
+        of the curve. Values from 6e-8 to 4e-7 give the same results in the tests; below that, rounding near
+        a branch point hides it.
     max_miss : float
         Distance of a point from its prediction, relative to the step, beyond which the step is rejected.
     target_turn : float
-        [rad] The turn that a step aims at.
+        [rad] Turn of the curve in a step for which the step length is chosen.
     target_miss : float
-        Distance of a point from its prediction, relative to the step, at which a step aims.
+        Distance of a point from its prediction, relative to the step, for which the step length is chosen.
     target_output_error : float
-        Change of an output that its slope did not predict, relative to the output, at which a step aims.
+        Change of an output that its slope did not predict, relative to the output, for which the step length
+        is chosen.
     max_output_error_ratio : float
         Change of an output that its slope did not predict, relative to `target_output_error`, beyond which a
         step is rejected.
     min_factor, max_factor, max_factor_hasty : float
-        Least and greatest length of the next step, relative to the step before it; the third is the greatest
-        where only values of the parameter are asked for.
+        Least and greatest length of the next step, relative to the last. The third is the greatest if only
+        values of the parameter matter.
     safety : float
-        Factor on the length of the next step that all targets allow.
+        Factor on the step length that meets all targets.
     step_after_corner, resumed_fraction : float
         Scaled length of the first step beyond a corner, and for a costly problem its length relative to the
         step before the corner; the longer of the two is taken.
     retry_fraction : float
-        Length of the second attempt to step over all corners, relative to the first, where a problem is
-        costly.
+        Length of the second attempt to step over all corners, relative to the first, for a costly problem.
     retreats : tuple of int
-        Number of points by which the curve is taken back where no step leads on; one entry for each attempt.
+        Numbers of points by which the curve is taken back if no step leads on, one for each attempt.
     """
 
     initial_step: cython.double = 1e-3
@@ -244,45 +243,42 @@ class EventOptions(Options):
     tolerance : float
         Length, relative to the step, to which the place of an event is found.
     fold_bracket : float
-        Scaled distance of two points about a fold that is no regular point of the curve: its bracket shrinks
-        to no less.
+        Scaled width to which the bracket of a fold shrinks that is not a regular point of the curve.
     min_growth : float
         Slope of an output by scaled length, relative to the output, below which it counts as rounding.
     peak_threshold : float
-        Size of an output, relative to the greatest so far, below which no peak of it is looked for.
+        Size of an output, relative to the greatest so far, below which its peaks are ignored.
     max_slope_change : float
         Change of the parameter's slope over a step, relative to the lesser slope at its ends, below which the
-        parameter goes on evenly, without a hidden pair of folds.
+        step hides no pair of folds.
     doubtful_slope : float
         Slope of the cubic within a step, relative to the lesser slope at its ends, below which the step may
         hide a reversal and is shortened.
     min_reversal : float
         Reversal of an output within a step, relative to the greatest of all outputs so far, below which it is
-        ignored; the corrector leaves a tenth of that.
+        ignored. The error of the corrector is a tenth of it.
     rounding_step : float
-        Scaled length of a step up to which no reversal is looked for in it: its ends would show rounding.
+        Scaled length of a step up to which it is not searched for reversals: its ends would show rounding.
     peak_tolerance, peak_tolerance_of_many : float
-        Error of a peak, relative to the output: where there are few outputs, and where there are
-        `many_outputs`. An output smaller than the first times the greatest output is rounding and has no
-        peak.
+        Error of a peak relative to the output, for few outputs and for `many_outputs`. An output smaller
+        than the first times the greatest output is rounding and has no peak.
     many_outputs : int
         Number of outputs from which on `peak_tolerance_of_many` holds.
     point_tolerance : float
         Distance of two points, relative to the greatest unknown, below which they are the same.
     far_tolerance : float
         Distance from a corner, relative to the greatest unknown, beyond which the curve has left it; a later
-        return to it is a second visit.
+        return is a second visit.
     repeat_tolerance : float
-        Distance of two corners, relative to the greatest unknown, below which they are the very same.
+        Distance of two corners, relative to the greatest unknown, below which they are identical.
     around_cosine : float
-        Cosine between the directions of two visits to a corner, beyond which the curve came to it in the same
-        way: it is closed.
+        Cosine between the directions of two visits to a corner, above which the curve came in the same
+        direction: it is closed.
     closing_cosine : float
-        Cosine between the directions at the first point, beyond which a curve closes there; below it the
+        Cosine between the directions at the first point, above which the curve closes there; below it the
         curve crosses itself.
     landing_tolerance : float
-        Distance from a value of the parameter to be landed on, relative to its width, up to which a step may
-        end beside it.
+        Distance from a value of `Events.narrow`, relative to its width, up to which a step may end beside it.
     """
 
     max_evaluations: cython.int = 40
@@ -308,59 +304,56 @@ class EventOptions(Options):
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class SwitchingOptions(Options):
-    """Options on how corners, where a switching function changes sign, are reached; see `NonsmoothPoints`.
+    """Options on how corners, where a margin changes sign, are reached and left; see `NonsmoothPoints`.
 
     Attributes
     ----------
     max_predictions : int
         Most predictions that are evaluated to find the distance of the next corner.
     distance_tolerance, label_tolerance : float
-        Relative error of the distance to the next corner; the second where a label changes, and no sign.
+        Relative error of the distance to the next corner; the second for a change of label.
     overshoot : float
-        Length beyond a corner, relative to the distance to it, of a step that is to end just past it.
+        Length by which a step passes a corner, relative to the distance to it.
     crossing_factor : float
-        Length of a step across the zero of a margin extrapolated linearly, relative to the distance to that
-        zero.
+        Length of a step across the extrapolated zero of a margin, relative to the distance to that zero.
     root_fraction : float
-        Distance at which the prediction meets a corner, relative to the distance of the extrapolated zero,
-        above which the margin is no root; a root gives one half.
+        Distance at which the prediction meets a corner, relative to that of the extrapolated zero, above
+        which the margin is not a root; for a root it is one half.
     smooth_fraction : float
-        Distance before a corner, relative to the length of the way to it, at which the last smooth point
-        lies.
+        Distance of the last smooth point before a corner, relative to the way to the corner.
     reached_distance : float
-        Scaled distance up to which a corner counts as reached: it is less than `departure_length`.
+        Scaled distance up to which a corner counts as reached; less than `departure_length`.
     turning_distance : float
-        Scaled distance up to which a corner is gone to along the prediction, if no step leads up to it, nor
-        across: the curve turns there by more than a right angle.
+        Scaled distance up to which the curve goes to a corner along the prediction, if no step leads to it or
+        across it: the curve turns there by more than a right angle.
     reached_distance_root : float
-        Scaled distance up to which a corner counts as reached where the margin is the root of the distance,
-        which rounding hides.
+        Scaled distance up to which a corner counts as reached where the margin is a root, which rounding
+        hides.
     root_distance : float
-        Scaled distance from its surface within which a corner where the equations begin as a root is met; the
-        curve is then sought as far on the other side; see `root_corner`.
+        Scaled distance from its surface within which a root corner is met. The curve is then sought at the
+        same distance on the other side; see `root_corner`.
     root_difference : float
-        Length of the difference quotients, relative to the scale, for the slopes of the square of such a
-        root.
+        Length of the difference quotients, relative to the scale, for the slopes of the squared margin.
     root_separation : float
-        Distance of the nearest of several such corners, relative to the second, below which the nearest is
+        Distance of the nearest of several root corners, relative to the second, below which the nearest is
         left first.
     max_root_margin : float
-        Size of a margin above which its point does not lie at the corner of a root.
+        Size of a margin above which its point is not at a root corner.
     approach_distance, approach_fraction : float
-        Scaled distance of a corner beyond which it is approached by steps, and the length of each of them
-        relative to the distance that is left.
+        Scaled distance of a corner beyond which steps approach it, and the length of each such step relative
+        to the remaining distance.
     departure_length : float
-        Scaled length past a corner at which the curve's new direction is looked for first.
+        Scaled length past a corner at which the new direction of the curve is computed first.
     departure_tries : int
-        Most lengths past a corner at which that is done, each ten times the last; corners within the length
-        are passed as one.
+        Number of lengths past a corner that are tried, each ten times the last; corners within the length are
+        passed as one.
     max_pieces : int
-        Most smooth pieces meeting in a corner whose directions are tried at each of these lengths.
+        Number of smooth pieces meeting in a corner whose directions are tried at each of these lengths.
     max_deviation : float
         Distance of a point beyond a corner from its prediction, relative to that length, from which on it is
         not accepted.
     many_unknowns : int
-        Number of unknowns from which on slight corners are stepped over where the parameter goes on evenly.
+        Number of unknowns from which on slight corners are stepped over if the parameter changes evenly.
     """
 
     max_predictions: cython.int = 50
@@ -386,18 +379,18 @@ class SwitchingOptions(Options):
     many_unknowns: cython.int = 64
 
 
-class SignChangeOptions(Frozen):  # taken by a kernel when it begins
-    """Options on how a change of sign of an event is bracketed; see `events`.
+class SignChangeOptions(Frozen):  # a kernel takes them when it is made
+    """Options on how the sign change of an event is bracketed; see `events`.
 
     Attributes
     ----------
     jump_width : float
         Width of the bracket, relative to its first one, below which a jump of the function is recognised.
     jump_difference : float
-        Difference of the function between the sides of such a narrow bracket, relative to the first
-        difference, above which it jumps.
+        Difference of the function across such a narrow bracket, relative to the first bracket, above which it
+        jumps.
     halving_interval : int
-        Number of evaluations within which the bracket is to be halved: otherwise the next one bisects it.
+        Number of evaluations within which the bracket has to halve; otherwise the next one bisects it.
     """
 
     jump_width: float = 0.25
@@ -408,61 +401,61 @@ class SignChangeOptions(Frozen):  # taken by a kernel when it begins
 SIGN_CHANGE = SignChangeOptions()
 
 
-class LabelOptions(Frozen):  # of no kernel
-    """Steps where switching functions are labels, which tell no distance; see `labelled_switching`.
+class LabelOptions(Frozen):  # not used by a kernel
+    """Options on steps of problems whose margins are labels; see `labelled_switching`.
 
     Attributes
     ----------
     target_error, max_error_ratio : float
-        Scaled distance of a point from its prediction at which a step aims, and the largest accepted distance
-        relative to it.
+        Scaled distance between point and prediction for which the step length is chosen, and the largest
+        accepted distance relative to it.
     max_parameter_miss : float
         Error of the predicted parameter, relative to its change along the step, beyond which the step is
-        rejected: it may be the way past two folds.
+        rejected: it may have skipped two folds.
     min_cosine : float
         Cosine of the turn of the curve in a step, below which the step is rejected.
     max_miss, max_newton_step : float
         Distance of a point from its prediction, and length of the first Newton step, both relative to the
         step, beyond which the step is rejected.
     min_factor, rejection_factors, max_factor, max_factor_after_rejection : float, the second two of them
-        Lengths relative to the step before: the least after an accepted step; the least and the greatest
-        after a rejected one; the greatest after an accepted step; the same after one that had been shortened.
+        Lengths of the next step relative to the last: least after an accepted step; least and greatest after
+        a rejected one; greatest after an accepted step; greatest after an accepted step that was shortened.
     straight_cosine : float
-        Cosine of the turn beyond which a change of orientation is a branch point, and no way back.
+        Cosine of the turn above which a change of orientation is a branch point and not a reversal.
     max_length_ratio : float
         Distance between the ends of a short step times the cosine of its turn, relative to the step, beyond
         which it has led to another branch.
     margin_fraction : float
-        Distance before the change of a label, relative to the way to it, at which a step ends.
+        Distance from a change of label at which a step ends, relative to the way to it.
     reached_distance : float
-        Scaled distance up to which a change of label counts as reached where no curve is found up to it.
+        Scaled distance up to which a change of label counts as reached if the curve is not found up to it.
     max_departures : int
-        Most points that are looked for beyond one corner, each ten times as far.
+        Number of lengths beyond a corner that are tried, each ten times the last.
     departure_factor : float
-        Least length of the first step beyond a corner, relative to that at which the direction was found.
+        Least length of the first step beyond a corner, relative to the length at which the direction was
+        found.
     reversal_cosine, spike_cosine : float
-        Cosine of the turn at a corner, below which the curve would go back on its own way; the second where
-        the label beyond is new.
+        Cosine of the turn at a corner, below which the curve would go back on itself; the second if the label
+        beyond is new.
     fold_tolerance : float
         Greatest scaled difference of an unknown between two folds that are taken for the same one.
     min_loop_points : int
-        Least number of points between two such folds, from which on the curve is closed.
+        Number of points between two such folds from which on the curve is closed.
     departure_lengths : tuple of float
-        Scaled lengths beyond a corner at which the curve is looked for in all directions, in turn.
+        Scaled lengths beyond a corner at which the curve is sought in all directions, in turn.
     departure_fractions : tuple of float
         Distances relative to these lengths at which the tangent is taken, and by which the guess is moved
         along the incoming direction.
     random_directions : int
-        Number of random directions in which other smooth pieces are looked for.
+        Number of random directions in which other smooth pieces are sought.
     safety : float
-        Factor on the step with which the prediction is expected to miss the curve by the error aimed at.
+        Factor on the step for which the expected error is the target error.
     min_error : float
-        Scaled distance of a point from its prediction that stands for any smaller one.
+        Scaled distance of a point from its prediction that replaces any smaller one.
     retreat : float
-        Length of a step, relative to the way to a change of label or to the step before, after no curve was
-        found.
+        Length of a step after a failure, relative to the way to the change of label or to the failed step.
     min_way_cosine : float
-        Cosine between the curve's direction beyond a corner and the way there, below which it goes back.
+        Cosine between the direction beyond a corner and the way there, below which the curve goes back.
     """
 
     target_error: float = 5e-4
@@ -504,8 +497,8 @@ class FollowOptions(Options):
     max_step : float
         Scaled length of the longest step.
     user_points_only : bool
-        Whether only the points at given values of the parameter matter. Corners are then reached, and left,
-        by longer steps.
+        Whether only the points at given values of the parameter matter. Steps to and from corners are then
+        longer.
     newton, step, events, switching, labels : NewtonOptions, StepOptions, EventOptions, SwitchingOptions,\
  LabelOptions
         Options of the corrector, of the step control, of events, of corners, and of problems with labels.
@@ -526,21 +519,21 @@ class FollowOptions(Options):
     labels: LabelOptions = field(default_factory=LabelOptions)
 
 
-class PathOptions(Frozen):  # of no kernel
-    """Options on when a solution lies on a path that was already followed; see `all_branches` and `segment`.
+class PathOptions(Frozen):  # not used by a kernel
+    """Options on when a solution lies on a path; see `all_branches` and `segment`.
 
     Attributes
     ----------
     solution_tolerance : float
-        Distance in the problem's scale below which two solutions are the same.
+        Scaled distance below which two solutions are the same.
     max_distance_ratio : float
-        Distance of a solution from a chord of a path, relative to the chord, beyond which it does not lie on
-        that part.
+        Distance of a solution from a chord of a path, relative to the chord, beyond which it does not lie
+        near that chord.
     nearest_chords : int
-        Number of chords, the nearest ones, on which a solution is looked for.
+        Number of nearest chords on which a solution is sought.
     min_cosine : float
-        Cosine between the path and the normal of a plane, below which a length across that plane is no
-        measure of the way along the path.
+        Cosine between the path and the normal of a plane, below which a length along that normal does not
+        measure the way along the path.
     """
 
     solution_tolerance: float = 1e-5

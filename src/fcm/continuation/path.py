@@ -30,12 +30,12 @@ class Status(Enum):
 
     @property
     def is_whole(self) -> bool:
-        """Whether a curve ends so where nothing of it is left to be followed."""
+        """Whether the curve ended so that none of it is left to follow."""
         return self in (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
 
 
 class PathInterrupted(KeyboardInterrupt):
-    """Following was interrupted; path: as far as it had come."""
+    """Following was interrupted; `path` is the curve up to there."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -43,14 +43,14 @@ class PathInterrupted(KeyboardInterrupt):
 
 
 class Mark:
-    """Bits that tell what is special at a point of a curve; plain, as arrays take them fastest."""
+    """Bits that tell what is special at a point of a curve; plain integers, which arrays take fastest."""
 
     NONE = 0
     END = 1  # of the range
     FOLD = 2  # the parameter turns back
     CORNER = 4  # a margin changes sign
-    PEAK = 8  # something reported is greatest there, or at a corner
-    USER_POINT = 16  # the parameter has a value that was asked for, as of AUTO's UZ
+    PEAK = 8  # an output is greatest there, or at a corner
+    USER_POINT = 16  # the parameter has a given value, as at AUTO's UZ
     BRANCH = 32  # the orientation changes without a fold
     CROSSING = 64  # stability changes between folds
 
@@ -63,11 +63,11 @@ class Path(Frozen):
 
     z: FloatArray  # (point, unknown + 1), the parameter last
     direction: FloatArray  # (point, unknown + 1) along the curve, in the units of z
-    mark: npt.NDArray[np.int64]  # (point,) of `Mark`, joined
+    mark: npt.NDArray[np.int64]  # (point,) bits of `Mark`
     orientation: FloatArray  # (point,) sign of the determinant of the equations closed by the direction
     status: Status
     evaluations: int  # of the equations, to follow it
-    ended_by: int = -1  # which of the functions that were to end it did
+    ended_by: int = -1  # number of the end function that ended it
 
     def __repr__(self) -> str:
         """Number of points, range of the parameter, number of folds and status, without the arrays.
@@ -88,17 +88,18 @@ class Path(Frozen):
 
     @property
     def parity(self) -> FloatArray:
-        """Sign (point,) of det dr/dx, of the equations r by the unknowns x alone: 0 where the path is normal
-        to the parameter."""
+        """Sign (point,) of det dr/dx, the derivative of the equations r by the unknowns x alone.
+
+        0 where the path is normal to the parameter."""
         sign: FloatArray = self.orientation * np.sign(self.direction[:, -1])
         return sign
 
     def where(self, mark: int) -> npt.NDArray[np.intp]:
-        """The points that have a mark."""
+        """Numbers of the points that have any bit of a mark."""
         return np.flatnonzero(self.mark & mark)
 
     def representative(self, most: int) -> npt.NDArray[np.intp]:
-        """Indices of about `most` points evenly spread by number, and of all special points."""
+        """Numbers of about `most` points evenly spread by number, and of all special points."""
         count = len(self.z)
         even = np.linspace(0, count - 1, min(max(most, 2), count)).round().astype(np.intp)
         return distinct_values(even, self.where(SPECIAL))

@@ -1,8 +1,8 @@
-"""Predictor of the next point of a curve: along its tangent, with the bend seen on the way so far.
+"""Predictor of the next point of a curve: a parabola or a cubic.
 
-The predictor is a parabola, with the tangent here and the curvature over the last step. Where a problem is
-labelled, and so every point expensive, there is another one: the cubic through the last point and here with
-both tangents. That one is taken which would have predicted the last step better.
+The parabola has the tangent here and the curvature over the last step. For a labelled problem, whose points
+are expensive, there is also the cubic through the last point and here with both tangents. The predictor that
+would have predicted the last step better is used.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ class Predictor:
     """Predicts the point at a length from here.
 
     curvature (n + 1,) is the second derivative of the parabola; second and third (n + 1,) are the second and
-    third of the cubic, in scaled coordinates. has_cubic says whether there is one, cubic whether it is taken.
+    third derivatives of the cubic, all in scaled coordinates. has_cubic: whether there is a cubic; cubic:
+    whether it is used.
     """
 
     def __init__(self, size: cython.Py_ssize_t, min_cosine: cython.double) -> None:
-        self.min_cosine = min_cosine  # of a turn, below which a step is no cubic any more
+        self.min_cosine = min_cosine  # cosine of a turn below which no cubic is fitted to the step
         self.curvature, self.second, self.third = np.zeros(size), np.zeros(size), np.zeros(size)
         self.direction = np.zeros(size)
         self.has_cubic, self.cubic = False, False
@@ -31,7 +32,7 @@ class Predictor:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def reset(self) -> cython.int:
-        """Predict by the tangent alone: nothing is known of the way here."""
+        """Forget the way here, and predict by the tangent alone."""
         self.curvature[:] = 0.0
         self.has_cubic, self.cubic = False, False
         return 0
@@ -41,7 +42,7 @@ class Predictor:
     def predict(
         self, here: Point, scale: cython.double[::1], step: cython.double, guess: cython.double[::1]
     ) -> cython.void:
-        """Fill a guess of the point that is a step from here."""
+        """Fill the guess of the point at a step from here."""
         i: cython.Py_ssize_t
         second: cython.double
         third: cython.double
@@ -62,9 +63,9 @@ class Predictor:
         new: cython.double[::1],
         length: cython.double,
     ) -> cython.double:
-        """Take the tangent of a point at a length from here, and the bend on the way there, to a new scale.
+        """Convert the tangent of a point at a length from here, and the curvature up to it, to a new scale.
 
-        Returned is the unit of length in it.
+        Returns the unit of length in the new scale.
         """
         i: cython.Py_ssize_t
         unit: cython.double
@@ -91,7 +92,7 @@ class Predictor:
         new: cython.double[::1],
         length: cython.double,
     ) -> cython.void:
-        """Note which prediction of a point at a length was the better one, and fit the next cubic."""
+        """Choose the predictor that was better for a point at a length from here, and fit the next cubic."""
         i: cython.Py_ssize_t
         off: cython.double
         parabola: cython.double = 0.0
@@ -112,7 +113,7 @@ class Predictor:
     def fit_cubic(
         self, here: Point, point: Point, scale: cython.double[::1], new: cython.double[::1]
     ) -> cython.void:
-        """Fit the derivatives of the cubic back from a point through here, by its tangent, in a new scale."""
+        """Fit the cubic from a point back through here: its derivatives along the tangent, in a new scale."""
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.curvature.shape[0]
         back: cython.double = 0.0

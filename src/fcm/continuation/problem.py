@@ -1,9 +1,9 @@
-"""Problems that are followed: n equations residual(z) = 0 for n unknowns and a parameter, the last of z.
+"""Problems to be followed: n equations residual(z) = 0 for n unknowns and a parameter, the last of z.
 
-A problem knows nothing of the curve, and the follower nothing of what the unknowns mean. A problem writes
-what it is asked for into arrays of its own, so that a step of the follower makes no new ones. It is smooth
-while none of its margins changes sign. A `Point` of its curve holds what the problem says there; a
-`PointStore` keeps many.
+A problem knows nothing of the curve, and the follower nothing of the meaning of the unknowns. A problem
+writes its results into its own arrays, so that a step of the follower allocates none. It is smooth while none
+of its margins changes sign. A `Point` of its curve holds the problem's results there; a `PointStore` keeps
+many points.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cython.cimports.libc.math import fabs
 from fcm.continuation.options import PROBLEM, ProblemOptions
 from fcm.continuation.path import FloatArray, Path, Status
 
-NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
+NONE = cython.declare(cython.int, -1)  # kind of an absent margin
 PI = cython.declare(cython.double, 3.141592653589793)
 NAN = cython.declare(cython.double, float("nan"))
 RENAMED = {
@@ -27,27 +27,28 @@ RENAMED = {
     "bound": "evaluate_margins",
     "report": "evaluate_outputs",
     "square": "squared_margin",
-}  # functions of a problem by their old names, by which they are not called
-ROOM = 256  # points of a store for which there is room at first
+}  # old names of a problem's functions, which are not called any more
+ROOM = 256  # initial capacity of a store, in points
 
 
 @cython.cclass
 class Problem:
-    """Equations of a curve; see the methods for what each array holds.
+    """Equations of a curve; the methods say what each array holds.
 
-    residual (n,), jacobian (n, n + 1): by `evaluate`, the derivative by the parameter in the last column; by
-    `evaluate_residual` the residual alone.
+    residual (n,), jacobian (n, n + 1): filled by `evaluate`, the derivative by the parameter in the last
+    column; `evaluate_residual` fills the residual alone.
     scale (n + 1,): by `evaluate_scale`. margin, kind, angle (margins,): by `evaluate_margins`. output, growth
     (outputs,): by `evaluate_outputs`.
-    rank: 0; or the size of a smaller system to which that of Newton's method is condensed, by the problem
-    itself. Then jacobian is (n, 1), the derivative by the parameter alone; see `factor` and `solve`.
-    group: margins of so many in a row belong together; one is never the same as one of another group.
-    unbounded: growth of the solution, in units of its size at the start, that only an undamped resonance has.
-    costly: whether there are so many unknowns that every point counts: slight corners are stepped over,
-    peaks and folds sought between all points of a step that are known.
+    rank: 0; or the size of a smaller system to which the problem itself condenses that of Newton's method.
+    Then jacobian is (n, 1), the derivative by the parameter alone; see `factor` and `solve`.
+    group: number of successive margins that belong together; margins of different groups never match.
+    unbounded: growth of the solution, relative to its size at the start, that only an undamped resonance has.
+    costly: whether there are so many unknowns that every point counts. Slight corners are then stepped over,
+    and peaks and folds are sought between all known points of a step.
     has_root_margins: whether a margin may begin as a root of the distance from a corner, so that `Newton`
     halves steps.
-    labelled: whether the margins are labels: while they stay the problem is smooth; else it may not be.
+    labelled: whether the margins are labels. The problem is smooth while they stay the same; it need not be
+    where one changes.
     """
 
     def __init__(
@@ -85,30 +86,32 @@ class Problem:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_residual(self, z: cython.double[::1]) -> cython.int:
-        """Fill the residual alone at z, where that costs less."""
+        """Fill the residual alone at z, if that costs less."""
         return self.evaluate(z)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_scale(self, z: cython.double[::1]) -> cython.int:
-        """Fill the units of length along the curve at z: of each unknown, and of the parameter."""
+        """Fill the units of length along the curve at z, of each unknown and of the parameter."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate_margins(self, z: cython.double[::1]) -> cython.int:
-        """Fill the margins: functions of z of which each changes sign where the problem is not smooth.
+        """Fill the margins: functions of z that change sign where the problem is not smooth.
 
-        Which function each is its kind says, and of those of one kind the angle [rad], which varies with z;
-        NONE where there is none. Margins may come and go, and stand in any order.
+        kind says which function a margin is. angle [rad], which varies with z, distinguishes margins of one
+        kind. The kind is NONE where there is no margin. Margins may appear, vanish and change places.
         """
         return 0
 
     @cython.ccall
     @cython.exceptval(-1.0, check=True)
     def squared_margin(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
-        """The function of z, smooth and of the sign of the margin of a kind, whose root that margin is, and
-        the equations have; NaN if it is no root."""
+        """The squared margin of a kind at z; NaN if the margin is not a root.
+
+        It is a smooth function of z with the sign of the margin. The margin is its root, and so are the
+        equations."""
         return NAN
 
     @cython.ccall
@@ -120,26 +123,28 @@ class Problem:
     @cython.ccall
     @cython.exceptval(-2.0, check=False)
     def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
-        """Factor the equations, as evaluated last and closed by a row (n + 1,), in units of scale (n + 1,);
-        the sign of the determinant, 0 if they are singular."""
+        """Factor the equations evaluated last, closed by a row (n + 1,), in units of scale (n + 1,).
+
+        Returns the sign of the determinant, 0 if they are singular."""
         return 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def solve(self, right: cython.double[::1]) -> cython.int:
-        """Replace a right side (n + 1,) of the equations factored last by the solution, in their units."""
+        """Replace a right side (n + 1,) by the solution of the equations factored last, in their units."""
         return 0
 
     @cython.ccall
     @cython.exceptval(-2.0, check=False)
     def solved_sign(self) -> cython.double:
-        """The sign of the determinant of the equations, where a direction of their curve was solved for last:
-        what was factored may be near to them only."""
+        """The sign of the determinant of the equations for which a tangent was solved last.
+
+        The factored equations may only be near to these."""
         return 0.0
 
 
 def _refuse_old_names(kind: type[Problem]) -> None:
-    """Raise TypeError for a class that has a function of a problem by its old name alone."""
+    """Raise TypeError for a class that defines a problem's function only under its old name."""
     for old, new in RENAMED.items():
         if hasattr(kind, old) and getattr(kind, new) is getattr(Problem, new):
             raise TypeError(
@@ -150,22 +155,21 @@ def _refuse_old_names(kind: type[Problem]) -> None:
 
 @cython.cclass
 class Point:
-    """A point of the curve with what the problem says of it; the tangent in scaled coordinates, a unit
-    vector."""
+    """A point of the curve with the problem's results there; the tangent is a unit vector, scaled."""
 
     def __init__(self, problem: Problem) -> None:
         self.z, self.tangent = np.zeros(problem.unknowns + 1), np.zeros(problem.unknowns + 1)
         self.margin, self.angle = np.zeros(problem.margins), np.zeros(problem.margins)
         self.kind = np.zeros(problem.margins, dtype=np.intc)
-        self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
+        self.slope = np.zeros(problem.margins)  # of the margins with respect to scaled length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
         self.orientation, self.group, self.max_angle = 0.0, problem.group, problem.max_angle
-        self.has_margin_slopes = False  # whether the slopes are those there
+        self.has_margin_slopes = False  # whether slope is computed for this point
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def set_margins(self, problem: Problem) -> cython.int:
-        """Take the margins that a problem was last asked for."""
+        """Take the margins that the problem evaluated last."""
         k: cython.Py_ssize_t
         for k in range(problem.margins):
             self.margin[k], self.kind[k], self.angle[k] = problem.margin[k], problem.kind[k], problem.angle[k]
@@ -174,7 +178,7 @@ class Point:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def copy_from(self, other: Point, unit: cython.double) -> cython.int:
-        """Take everything from another point, whose unit of length is so many of the new."""
+        """Copy another point; unit: its unit of length in units of the new one."""
         i: cython.Py_ssize_t
         self.orientation, self.has_margin_slopes = other.orientation, other.has_margin_slopes
         for i in range(other.z.shape[0]):
@@ -191,9 +195,9 @@ class Point:
     def matching_margin(
         self, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
     ) -> cython.Py_ssize_t:
-        """Index of the margin at another point that matches margin k of this one; -1 if none does.
+        """Number of the margin at another point that matches margin k of this one; -1 if none does.
 
-        It is that of its group and kind nearest to it, if it is also nearest to that.
+        It is of the same group and kind. Each of the two has to be the nearest to the other.
         """
         i: cython.Py_ssize_t
         first: cython.Py_ssize_t = k - k % self.group
@@ -214,9 +218,9 @@ class Point:
         angle: cython.double[::1],
         first: cython.Py_ssize_t,
     ) -> cython.Py_ssize_t:
-        """Index, in the group from first on, of the margin of a kind whose angle is nearest to a given one.
+        """Number of the margin of a kind with the angle nearest to `at`, in the group beginning at `first`.
 
-        -1 if there is none near it.
+        -1 if none is within `max_angle`.
         """
         i: cython.Py_ssize_t
         best: cython.Py_ssize_t = -1
@@ -239,7 +243,7 @@ class Point:
     @cython.cfunc
     @cython.exceptval(-1e300, check=False)
     def margin_of_problem(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
-        """The margin, of those a problem was last asked for, that matches margin k here; 0 if none does."""
+        """The margin evaluated last by the problem that matches margin k here; 0 if none does."""
         i: cython.Py_ssize_t = self.matching_margin(k, problem.kind, problem.angle)
         return problem.margin[i] if i >= 0 else 0.0
 
@@ -248,7 +252,7 @@ class Point:
     def differentiate_margins(
         self, problem: Problem, scale: cython.double[::1], probe: cython.double[::1]
     ) -> cython.int:
-        """Compute the slopes of the margins along the tangent, from differences to a point beside."""
+        """Compute the slopes of the margins along the tangent by difference quotients."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         self.has_margin_slopes = True
@@ -276,20 +280,20 @@ class Points(NamedTuple):
 
 
 class Stored(NamedTuple):
-    """The points of a store: those before the last do not change any more, and are not copied."""
+    """The points of a store: all before the last are final, and are not copied."""
 
     before: Points
-    last: tuple[FloatArray, FloatArray, int, float]  # to be put again
+    last: tuple[FloatArray, FloatArray, int, float]  # copies, for `PointStore.put`
 
     @property
     def number(self) -> int:
-        """Number of the points."""
+        """Number of points."""
         return len(self.before.mark) + 1
 
 
 @cython.cclass
 class PointStore:
-    """count points: z, direction (point, unknown + 1), mark, orientation (point,), as of a `Path`."""
+    """The points of a curve, `count` of them, in arrays as those of a `Path`; `size` is n + 1."""
 
     def __init__(self, size: cython.int) -> None:
         self.count, self.size = 0, size
@@ -299,7 +303,7 @@ class PointStore:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def add(self, point: Point, scale: cython.double[::1], mark: cython.long) -> cython.int:
-        """Keep a point, with lengths in units of scale."""
+        """Add a point with a mark; scale converts its tangent to a direction."""
         i: cython.Py_ssize_t
         self.widen()
         for i in range(self.size):
@@ -319,7 +323,7 @@ class PointStore:
         mark: cython.long,
         orientation: cython.double,
     ) -> cython.int:
-        """Keep a point with its direction, mark and orientation."""
+        """Add a point with its direction, mark and orientation."""
         self.widen()
         self.z[self.count, :], self.direction[self.count, :] = z, direction
         self.mark[self.count] = mark
@@ -342,14 +346,14 @@ class PointStore:
         return np.array(self.z[self.count - 1])
 
     def tail(self) -> tuple[FloatArray, FloatArray, int, float]:
-        """A copy of the last point, to be put again."""
+        """A copy of the last point, for `put`."""
         k = self.count - 1
         return self.last(), np.array(self.direction[k]), int(self.mark[k]), float(self.orientation[k])
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def ends_at(self, point: Point) -> cython.bint:
-        """Whether the last point of the store is this point, number by number."""
+        """Whether the last point of the store has exactly the z of a point."""
         i: cython.Py_ssize_t
         for i in range(self.size):  # noqa: SIM110 - a loop in C
             if self.z[self.count - 1, i] != point.z[i]:
@@ -359,7 +363,7 @@ class PointStore:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def same(self, i: cython.Py_ssize_t, k: cython.Py_ssize_t, part: cython.double) -> cython.bint:
-        """Whether two points differ by less than a part of the greatest unknown of the second."""
+        """Whether points i and k differ by less than a part of the greatest unknown of point k."""
         j: cython.Py_ssize_t
         off: cython.double = fabs(self.z[i, self.size - 1] - self.z[k, self.size - 1])
         size: cython.double = 0.0
@@ -376,21 +380,21 @@ class PointStore:
         return 0
 
     def cut(self, count: int) -> None:
-        """Forget all but so many points."""
+        """Drop all but the first count points."""
         self.count = count
 
     def drop(self) -> int:
-        """Forget the last point; its mark."""
+        """Drop the last point; return its mark."""
         self.count -= 1
         return int(self.mark[self.count])
 
     def close(self) -> None:
-        """Close the curve: put its first point again, as the last."""
+        """Close the curve: add its first point again at the end."""
         first = np.array(self.z[0]), np.array(self.direction[0])
         self.put(*first, self.mark[0], self.orientation[0])
 
     def points(self) -> Points:
-        """Views of the points that are kept now."""
+        """Views of the points."""
         return self._first(self.count)
 
     def _first(self, count: int) -> Points:
@@ -398,18 +402,18 @@ class PointStore:
         return Points(z, direction, np.asarray(self.mark)[:count], np.asarray(self.orientation)[:count])
 
     def state(self) -> Stored:
-        """The points as they will be kept, whatever comes after."""
+        """The points in a form that stays valid when more are added."""
         return Stored(self._first(self.count - 1), self.tail())
 
     def restore(self, kept: Stored) -> None:
-        """Replaces all points by kept ones."""
+        """Replace all points by stored ones."""
         self.count = 0
         for z, direction, mark, orientation in zip(*kept.before, strict=True):
             self.put(np.array(z), np.array(direction), mark, orientation)
         self.put(*kept.last)
 
     def path(self, status: Status, evaluations: int) -> Path:
-        """A path with copies of the points that are kept now."""
+        """A path with copies of the points."""
         z, direction, mark, orientation = self.points()
         return Path(
             z=np.array(z),
@@ -422,6 +426,6 @@ class PointStore:
 
 
 def _twice(kept: object) -> Any:
-    """An array with as much room again."""
+    """Copy an array into one with twice as many rows."""
     array = np.asarray(kept)
     return np.concatenate((array, np.empty_like(array)))

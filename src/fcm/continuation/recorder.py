@@ -1,9 +1,8 @@
-"""Records the points of a curve on its way through the range of its parameter, and where it ends.
+"""Record the points of a curve within the range of its parameter, and how it ends.
 
-Corners are where a switching function changes its sign: found in a step, kept, left in the direction beyond.
-
-A piecewise smooth curve keeps its orientation across them (Allgower and Georg, "Introduction to Numerical
-Continuation Methods", SIAM 2003, on piecewise linear and piecewise smooth maps).
+A corner is where a margin changes sign. It is located within a step, kept, and left along the tangent beyond
+it. A piecewise smooth curve keeps its orientation across corners (Allgower and Georg, "Introduction to
+Numerical Continuation Methods", SIAM 2003, on piecewise linear and piecewise smooth maps).
 """
 
 from __future__ import annotations
@@ -42,10 +41,10 @@ PEAK = cython.declare(cython.long, int(Mark.PEAK))
 
 @cython.cclass
 class Recorder:
-    """Points are kept in `store`; `first` is where the curve began, `initial_direction` its direction there.
+    """Keeps points in `store`; `first` is the start of the curve, `initial_direction` its tangent there.
 
-    `values`, the same as `stops`, are those of the parameter that are landed on: user values, then the ends
-    of the range. `greatest`, the same as `most`, are the outputs so far.
+    `values` (as an array `stops`): parameters at which the curve has points, user values and the ends of the
+    range. `greatest` (also `most`): the greatest of each output so far.
     """
 
     def __init__(self, stepper: Stepper, span: tuple[float, float], wanted: Events) -> None:
@@ -63,15 +62,15 @@ class Recorder:
             np.zeros(self.n + 1),
             np.zeros(self.n + 1),
         )
-        self.far = stepper.options.events.far_tolerance  # and these two are not
+        self.far = stepper.options.events.far_tolerance  # relative distance of points elsewhere
         self.interior = self.came_around = self.stopped = False
         self.last, self.ended_by = wanted.last, -1
         self.same = (
             stepper.options.events.point_tolerance
-        )  # of the greatest unknown: points closer than this are one
+        )  # points closer than this, relative to the greatest unknown, are one
 
     def start(self, parameter: float) -> None:
-        """Begin where the stepper is, which is to be that value of the parameter."""
+        """Begin at the point of the stepper, whose parameter is set to a value."""
         here: Point = self.stepper.here
         here.z[self.n] = parameter
         self.interior = self.low < parameter < self.high
@@ -79,7 +78,7 @@ class Recorder:
         self.store.add(here, self.stepper.newton.scale, 0 if self.interior else END)
 
     def restore(self, checkpoint: Checkpoint) -> None:
-        """Have the points that were kept, and no others."""
+        """Replace the points by those of a checkpoint."""
         self.store.restore(checkpoint.kept)
         self.interior, self.greatest[:] = checkpoint.interior, checkpoint.greatest
         self.first, self.initial_direction = checkpoint.first.copy(), checkpoint.initial_direction.copy()
@@ -97,8 +96,10 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keep_events(self, limit: cython.double) -> cython.bint:
-        """Keep what happens within the step up to a limit; true if the curve leaves its range there, or comes
-        around to where it was though it did not begin there."""
+        """Keep the events of the step up to a limit; true if the curve ends at one of them.
+
+        It ends at an end of its range, at an event of `Events.last`, or where it comes around to an earlier
+        point."""
         if without_events(self.stepper, self.stops, self.most):
             return False
         for event in events.events_within(self.stepper, limit, self.values, self.greatest):
@@ -114,7 +115,7 @@ class Recorder:
         return False
 
     def stop_at(self, length: float, number: int) -> Status:
-        """Keep the point at a length of the step, where a function that is to end the curve does."""
+        """Keep the events and the point at a length of the step, where the end function `number` is 0."""
         stepper = self.stepper
         if self.keep_events(length):
             return self.end_status()
@@ -127,15 +128,15 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def revisits_user_point(self) -> cython.bint:
-        """Whether the last point, a user point, was passed before in its direction, or the curve began there.
+        """Whether the last point, a user point, is an earlier user point or the start, in the same direction.
 
-        A fold has to be in between, and a point elsewhere. A step that ends at the point may keep it, and the
-        next one once more, and a curve may turn twice next to it.
+        There has to be a fold between the visits, and a point elsewhere. Otherwise two successive steps may
+        have kept the same point, or the curve may have turned twice next to it.
         """
         store: PointStore = self.store
         n: cython.Py_ssize_t = self.n
         last: cython.Py_ssize_t = store.count - 1
-        fold: cython.Py_ssize_t = last - 1  # the last point that another direction led to
+        fold: cython.Py_ssize_t = last - 1  # the last point before it with the opposite direction
         elsewhere: cython.bint = False
         i: cython.Py_ssize_t
         rise: cython.double = store.direction[last, n]
@@ -154,10 +155,10 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def revisits_corner(self) -> cython.bint:
-        """Whether the last point, a corner, was passed before in its direction, and the curve was elsewhere
-        in between: it then goes around for ever.
+        """Whether the last point is an earlier corner in the same direction: the curve comes around.
 
-        So it does where it comes to the very same point again from another corner, however near that is.
+        The curve has to have been elsewhere in between; or it comes to the identical point again from another
+        corner, however near that one is.
         """
         store: PointStore = self.store
         repeated: cython.double = self.stepper.options.events.repeat_tolerance
@@ -171,7 +172,7 @@ class Recorder:
             if not store.mark[i] & CORNER:
                 continue
             again: cython.bint = store.same(i, last, self.same if elsewhere else repeated)
-            again = again and self.along(i, last)  # and does not cross itself there
+            again = again and self.along(i, last)  # otherwise the curve crosses itself there
             if again and (elsewhere or turned):
                 return True
             turned = turned or not again
@@ -180,7 +181,7 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def along(self, i: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
-        """Whether the curve has the same direction at two points that are kept."""
+        """Whether the curve has the same direction at two points of the store."""
         j: cython.Py_ssize_t
         both: cython.double = 0.0
         one: cython.double = 0.0
@@ -195,13 +196,13 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def add(self, mark: cython.long) -> cython.int:
-        """Keep the end of the step, the point `there`, with a mark."""
+        """Keep the end of the step, `there`, with a mark."""
         return self.store.add(self.stepper.there, self.stepper.newton.scale, mark)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def add_corner(self, point: Point) -> cython.int:
-        """Keep a point as a corner; the step before may have come to it already."""
+        """Keep a point as a corner; if it is the last point already, only mark it."""
         mark: cython.long = CORNER
         if self.store.ends_at(point):
             mark |= self.store.drop()
@@ -210,9 +211,9 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(check=False)
     def update_greatest(self) -> cython.void:
-        """Update the greatest outputs so far, each at least what is rounding of the greatest of all.
+        """Update the greatest outputs so far, each at least at the rounding of the greatest of all.
 
-        On a plane of symmetry an output is 0 but for rounding, which turns back all the time.
+        On a plane of symmetry an output is 0 but for rounding, which oscillates.
         """
         k: cython.Py_ssize_t
         least: cython.double = 0.0
@@ -225,8 +226,8 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def closed(self) -> cython.bint:
-        """Whether the step comes to where the curve began; the curve is kept as a closed one then."""
-        if self.store.count < 2 or not self.interior:  # the first step leaves where it began
+        """Whether the step returns to the start of the curve, which is then closed."""
+        if self.store.count < 2 or not self.interior:  # the first step begins there
             return False
         if not closes_curve(self.stepper, self.first, self.initial_direction):
             return False
@@ -236,15 +237,15 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(check=False)
     def inside(self) -> cython.bint:
-        """Whether the point there is in the range."""
+        """Whether `there` is in the range."""
         return self.low <= self.stepper.there.z[self.n] <= self.high
 
     def covered(self) -> float:
-        """Fraction of the range between where the curve began and here."""
+        """Distance of here from the start, as a fraction of the range."""
         return float(abs(self.stepper.here.z[self.n] - self.first[self.n]) / (self.high - self.low))
 
     def end_status(self) -> Status:
-        """The status of a curve that has left its range, or comes around."""
+        """The status of a curve that has left its range, was stopped, or comes around."""
         if self.stopped:
             return Status.EVENT
         if self.came_around and self.interior and self.store.same(0, self.store.count - 1, self.same):
@@ -257,13 +258,13 @@ class Recorder:
         return Status.RETURNED if back else Status.COMPLETE
 
     def path(self, status: Status) -> Path:
-        """The points kept so far, as a path with a status."""
+        """The points kept so far, as a `Path` with the given status."""
         path = self.store.path(status, self.stepper.newton.evaluations)
         return replace(path, ended_by=self.ended_by) if self.ended_by >= 0 else path
 
 
 def step_back(stepper: Stepper, store: PointStore, points: int) -> bool:
-    """Whether there is a plain point so many points back or more: the curve then ends there."""
+    """Go back to the last unmarked point that is at least `points` back; return whether there is one."""
     kept = store.points()
     plain = np.flatnonzero(kept.mark[: max(store.count - points, 0)] == 0)
     if not plain.size:
@@ -282,13 +283,11 @@ def step_back(stepper: Stepper, store: PointStore, points: int) -> bool:
 @cython.cfunc
 @cython.exceptval(-1, check=True)
 def before_corner(stepper: Stepper) -> cython.double:
-    """Length to the first corner of the step, which is shortened to end just before; negative if it is none.
+    """Length to the first corner of the step, which is shortened to end just before it; negative if it fails.
 
-    That is where the curve is not found up to there, or not where it was predicted.
+    It fails if the curve is not found up to there, or not where it was predicted.
     """
-    if not keeps_orientation(
-        stepper
-    ):  # what is there is another part of a curve that goes back in the corner
+    if not keeps_orientation(stepper):  # `there` is on another part of a curve that goes back in the corner
         return -1.0
     at: cython.double = events.first_margin(stepper)
     if at < 0.0 or not stepper.shorten((1.0 - stepper.options.switching.smooth_fraction) * at):
@@ -300,7 +299,7 @@ def before_corner(stepper: Stepper) -> cython.double:
 
 @cython.cclass
 class NonsmoothPoints:
-    """Passes corners of the curve of a `recorder`; `labelled` where a change of label tells of them."""
+    """Passes the corners of a recorder's curve; `labelled`: whether changes of label show them."""
 
     def __init__(self, recorder: Recorder, labelled: bool) -> None:
         self.recorder, self.labelled = recorder, labelled
@@ -309,10 +308,9 @@ class NonsmoothPoints:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def pass_corner(self, point: Point, length: cython.double, past: cython.double) -> cython.bint:
-        """Keep the corner, a point at a length from here, and take the direction beyond it; whether the curve
-        ends there.
+        """Keep the corner, a point at a length from here, and turn beyond it; return whether the curve ends.
 
-        past: the length at which that is looked for where the corner is a change of label.
+        past: the length beyond a change of label at which the new direction is computed.
         """
         recorder: Recorder = self.recorder
         stepper: Stepper = recorder.stepper
@@ -343,7 +341,7 @@ class NonsmoothPoints:
     @cython.cfunc
     @cython.exceptval(check=False)
     def is_peak(self) -> cython.bint:
-        """Whether an output grew before the corner that is here, and falls beyond it."""
+        """Whether an output grew before the corner at here, and falls beyond it."""
         k: cython.Py_ssize_t
         growth: cython.double[::1] = self.recorder.stepper.here.growth
         for k in range(self.growth_before.shape[0]):
@@ -355,8 +353,8 @@ class NonsmoothPoints:
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def go_to_corner(stepper: Stepper, point: Point, at: cython.double) -> cython.int:
-    """Go to a corner, a point at a length from here, as from before it."""
-    point.tangent[:] = stepper.there.tangent  # that before the corner, on whichever side it was put
+    """Go to a corner, a point at a length from here, keeping the tangent and growth before it."""
+    point.tangent[:] = stepper.there.tangent  # those before the corner, whichever side the point lies on
     point.growth[:] = stepper.there.growth
     point.orientation = stepper.there.orientation
     stepper.accept(point, at)
@@ -366,7 +364,7 @@ def go_to_corner(stepper: Stepper, point: Point, at: cython.double) -> cython.in
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def turn_beyond(stepper: Stepper, length: cython.double) -> cython.int:
-    """Make where the corrector is, a length beyond the corner that is here, a step in the direction there."""
+    """Make the corrector's point, a length beyond the corner at here, the end of a step with its tangent."""
     there: Point = stepper.there
     stepper.record(there, True, True)
     there.differentiate_margins(stepper.problem, stepper.newton.scale, stepper.guess)
@@ -379,16 +377,15 @@ def turn_beyond(stepper: Stepper, length: cython.double) -> cython.int:
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def cross_corner(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
-    """Go on, from a corner that is here, to the nearest point that the curve is found to have beyond.
+    """Continue from a corner at here to the nearest point found beyond it; return whether that succeeds.
 
-    Several margins may be zero here or very near, so that more than two smooth pieces meet; all that is
-    nearer is one corner, as is what the curve comes to at once beyond it. Where no point is found, or a value
-    of the parameter is passed that is to be landed on, only the direction of the curve is taken and here
-    remains.
+    Several margins may vanish here or very near, so that more than two smooth pieces meet. All corners nearer
+    than the point found count as one, as does a corner met immediately beyond it. If no point is found, or a
+    value of the parameter lies on the way, only the new direction is taken and here remains.
     """
     count: cython.int
     length: cython.double = stepper.options.switching.departure_length
-    first: cython.double = 0.0  # the nearest, though another corner is as near
+    first: cython.double = 0.0  # the nearest length with a point, though another corner follows at once
     for count in range(stepper.options.switching.departure_tries):  # noqa: B007
         if point_beyond(stepper, length):
             if not stepper.problem.has_root_margins or without_sign_change(stepper, 10.0 * length):
@@ -409,11 +406,11 @@ def cross_corner(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def point_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
-    """Whether the corrector comes to a point of the curve that is a length past the corner that is here.
+    """Whether the corrector finds a point of the curve at a length past the corner at here.
 
-    It is looked for in the direction of the piece into which the curve comes, then in that of the piece into
-    which this direction leads, and so on. A point beyond has the orientation of here in the direction in
-    which it was looked for; one on the way to the corner has the other.
+    The direction is that of the piece into which the curve comes, then that of the piece into which this
+    direction leads, and so on. A point beyond the corner has the orientation of here; a point on the way to
+    the corner has the opposite one.
     """
     count: cython.int
     predict_past_label(stepper, length)
@@ -431,7 +428,8 @@ def point_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
         ):
             return True
         stepper.newton.z[:] = stepper.between.z
-        # along the edge of a piece, as where a circle ceases to slip, only the equations lead across it
+        # along the edge of a piece, as where a circle stops slipping, only a Newton step leads across the
+        # edge
         if stepper.problem.has_root_margins and not stepper.newton.single_step():
             return False
     return False
@@ -440,7 +438,7 @@ def point_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(check=False)
 def close_to_prediction(stepper: Stepper, length: cython.double) -> cython.bint:
-    """Whether the corrector has come to a point beyond a corner that is where it was looked for."""
+    """Whether the corrector's point is near its prediction and has the orientation of here."""
     if not stepper.newton.moved < stepper.options.switching.max_deviation * length:
         return False
     return stepper.newton.orientation == stepper.here.orientation
@@ -449,10 +447,10 @@ def close_to_prediction(stepper: Stepper, length: cython.double) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def without_sign_change(stepper: Stepper, length: cython.double) -> cython.bint:
-    """Whether no margin changes its sign within a length from where the corrector is.
+    """Whether no margin changes sign within a length from the corrector's point.
 
-    A circle that starts to slip leaves its limit as the square of the length. So the point that is found
-    first may be off by rounding, on the side from where the curve comes.
+    A circle that starts to slip leaves its limit as the square of the length. So rounding may put the point
+    found first on the side from which the curve comes.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -470,9 +468,9 @@ def without_sign_change(stepper: Stepper, length: cython.double) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def predict_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
-    """Put the corrector a length along the direction that the curve has in the piece where it is now.
+    """Put the corrector at a length along the tangent of the piece where it is now; whether there is one.
 
-    With the orientation that it has here, which is the same in all pieces of a piecewise smooth curve.
+    The tangent has the orientation of here, which is the same in all pieces of a piecewise smooth curve.
     """
     i: cython.Py_ssize_t
     if not stepper.newton.take_tangent():
@@ -490,7 +488,7 @@ def predict_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(check=False)
 def passes_user_point(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
-    """Whether a value of the parameter lies between here and where the corrector is."""
+    """Whether a value of the parameter lies between here and the corrector's point."""
     n: cython.Py_ssize_t = stepper.here.z.shape[0] - 1
     k: cython.Py_ssize_t
     for k in range(stops.shape[0]):
@@ -502,7 +500,7 @@ def passes_user_point(stepper: Stepper, stops: cython.double[::1]) -> cython.bin
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def accept_beyond(stepper: Stepper, length: cython.double, go: cython.bint) -> cython.int:
-    """Go to where the corrector is, a length from here, or take only the direction and the margins there."""
+    """Go to the corrector's point, a length from here, or (go false) take only its tangent and margins."""
     there: Point = stepper.between
     stepper.record(there, True, True)
     there.differentiate_margins(stepper.problem, stepper.newton.scale, stepper.guess)
@@ -517,10 +515,10 @@ def accept_beyond(stepper: Stepper, length: cython.double, go: cython.bint) -> c
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def cross_label(stepper: Stepper, past: cython.double) -> cython.bint:
-    """Turn, where a label changes, into the direction that the curve has a length past it.
+    """Turn, at a change of label, into the tangent of the curve at a length past it.
 
-    The labels are those beyond, even if no curve is found. The next point is looked for from as far beyond:
-    a curve that nearly goes back is else found on the side that it came from.
+    The labels beyond are taken even if no curve is found. The next point is predicted from that length
+    beyond. Otherwise a curve that nearly goes back would be found on the side that it came from.
     """
     i: cython.Py_ssize_t
     predict_past_label(stepper, past)
@@ -543,7 +541,7 @@ def cross_label(stepper: Stepper, past: cython.double) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(check=False)
 def predict_past_label(stepper: Stepper, past: cython.double) -> cython.void:
-    """Put the corrector a length along the tangent of here."""
+    """Put the corrector at a length along the tangent of here."""
     i: cython.Py_ssize_t
     for i in range(stepper.here.z.shape[0]):
         stepper.newton.row[i] = stepper.here.tangent[i]

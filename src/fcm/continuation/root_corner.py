@@ -1,14 +1,14 @@
-"""Corners where the equations begin as the root of a smooth function of the unknowns, its `squared_margin`.
+"""Corners at which the equations begin as the root of a smooth function, the `squared_margin`.
 
-Where discs that hold a slider come to have no place in common, their common places shrink to a point as the
-root of what is left. The forces do likewise: their derivatives have no limit, and the direction of the
-curve lies in the surface where the square vanishes. On either side there is one curve. It may leave in the
-direction that it came from, a cusp, so that nothing is found ahead. Where the square keeps a small value of
-the other sign its root hardly changes, and there Newton's method finds the curve from the corner itself.
+For example, the common area of discs that hold a slider shrinks to a point as the root of what is left. The
+forces do likewise: their derivatives have no limit, and the tangent of the curve lies in the surface where
+the square vanishes. There is one curve on either side. It may leave in the direction that it came from, a
+cusp, so that nothing is found ahead. If the square is held at a small value of the other sign, its root
+hardly changes, and Newton's method finds the curve from the corner itself.
 
-Contacts that mirror one another come to their corners at once. Four parts of curves may meet there: two on
-which both do the same, two on which they do not. They are joined as if the corners were a little apart: one
-surface is crossed, the same by all of them, and the orientation is kept. So no curve comes back as another.
+Symmetric contacts reach their corners together. Four parts of curves may meet there: two with the same states
+of both contacts, two with different ones. They are joined as if the corners were slightly apart: all cross
+the same surface first, and the orientation is kept. So no curve is continued by a wrong one.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ from fcm.continuation.step_control import Stepper
 
 
 class RootCorner(NamedTuple):
-    """A surface where the square of a kind vanishes, next to a point.
+    """A surface, next to a point, where the squared margin of a kind vanishes.
 
-    Lengths are scaled; the unit normal leads to where the square is positive.
+    Lengths are scaled; the unit normal points to where the square is positive.
     """
 
     kind: int
-    side: float  # sign of the margin on the side that the curve comes from
-    off: float  # length from the surface to the point, along the normal
-    slope: float  # of the square along it
+    side: float  # sign of the margin on the side from which the curve comes
+    off: float  # signed length from the surface to the point, along the normal
+    slope: float  # of the square along the normal
     normal: FloatArray
 
 
 def is_met(stepper: Stepper) -> bool:
-    """Whether the curve has come to a corner where the equations begin as a root."""
+    """Whether the curve has come to a corner at which the equations begin as a root."""
     return any(_corners_ahead(stepper, stepper.options.switching.root_distance))
 
 
 def land(stepper: Stepper) -> None:
-    """Put here on the curve next to the surface of the corner ahead, on the side that the curve comes from.
+    """Move here along the curve to just before the surface of the corner ahead.
 
-    Where the root is steep its extrapolation stops short of the surface, by more than the length at which the
-    curve beyond is looked for; the step beyond would then begin and end on the wrong sides.
+    Where the root is steep, its extrapolation stops short of the surface by more than `root_distance`. The
+    step beyond would then begin and end on the wrong sides.
     """
     newton, options = stepper.newton, stepper.options.switching
     z, scale = np.array(stepper.here.z), np.array(newton.scale)
@@ -58,9 +58,9 @@ def land(stepper: Stepper) -> None:
 
 
 def find_beyond(stepper: Stepper, before: Point) -> float:
-    """Take the corrector to the curve beyond a corner that is here, to which `before` led; how far that is.
+    """Move the corrector to the curve beyond a corner at here, to which `before` led; return the distance.
 
-    0 where there is no such corner, or no curve with the orientation of here.
+    0 if there is no such corner, or no curve with the orientation of here beyond it.
     """
     newton, z, scale = stepper.newton, np.array(stepper.here.z), np.array(stepper.newton.scale)
     corners = list(_corners_near(stepper, before, stepper.options.switching.root_distance))
@@ -78,10 +78,10 @@ def find_beyond(stepper: Stepper, before: Point) -> float:
 
 
 def _crossings(corners: Sequence[RootCorner], options: SwitchingOptions) -> Iterator[tuple[list[int], float]]:
-    """Sets of corner surfaces, by their numbers, beyond which the curve is looked for in turn, and how far.
+    """Sets of surfaces to cross, in turn, and the length beyond them at which the curve is sought.
 
-    That which is clearly the nearest; then each alone, those of lower kinds first, as if they were a little
-    apart; then all.
+    First the nearest, if it is clearly so; then each alone, lower kinds first, as if they were slightly
+    apart; then all together.
     """
     near = sorted(range(len(corners)), key=lambda i: abs(corners[i].off))
     if len(corners) > 1:
@@ -95,12 +95,12 @@ def _crossings(corners: Sequence[RootCorner], options: SwitchingOptions) -> Iter
 
 
 def _side(stepper: Stepper, corner: RootCorner, z: FloatArray) -> float:
-    """The side of the surface of a corner on which a point lies: -1 or 1."""
+    """The side of the surface of a corner on which z lies: -1 or 1."""
     return float(np.sign(stepper.problem.squared_margin(corner.kind, z)))
 
 
 def _beside(stepper: Stepper, corners: Sequence[RootCorner], lengths: FloatArray) -> FloatArray:
-    """The point nearest to here at those lengths from the surfaces of corners."""
+    """The point nearest to here at given lengths from the surfaces of corners."""
     normals = np.array([one.normal for one in corners])
     off = np.array([one.off for one in corners])
     step = np.linalg.lstsq(normals, lengths - off, rcond=None)[0]
@@ -108,7 +108,7 @@ def _beside(stepper: Stepper, corners: Sequence[RootCorner], lengths: FloatArray
 
 
 def _solve(stepper: Stepper, corner: RootCorner, wanted: float, at: FloatArray) -> FloatArray | None:
-    """Take the corrector to the curve at a length from the surface of a corner, along its normal."""
+    """Move the corrector to the curve at a length from the surface of a corner; None if that fails."""
     newton, problem, options = stepper.newton, stepper.problem, stepper.options.newton
     scale = np.array(newton.scale)
     newton.row[:] = np.sign(wanted) * corner.normal
@@ -124,14 +124,14 @@ def _solve(stepper: Stepper, corner: RootCorner, wanted: float, at: FloatArray) 
 
 
 def _corners_ahead(stepper: Stepper, distance: float) -> Iterator[RootCorner]:
-    """The corners within a distance of here to which the curve goes, and not those that it comes from."""
+    """Corners within a distance of here to which the curve goes, without those that it leaves."""
     tangent = np.asarray(stepper.here.tangent)
     near = _corners_near(stepper, stepper.here, distance)
     return (one for one in near if one.side * float(one.normal @ tangent) < 0.0)
 
 
 def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[RootCorner]:
-    """The corners within a distance of here, the sides that of a point before them."""
+    """Corners within a distance of here; their sides are those of the point `before`."""
     options, z, scale = stepper.options.switching, np.array(stepper.here.z), np.array(stepper.newton.scale)
     margins, kinds = np.asarray(before.margin), np.asarray(before.kind)
     for k in np.flatnonzero((margins != 0.0) & (np.abs(margins) < options.max_root_margin) & (kinds >= 0)):
@@ -146,9 +146,9 @@ def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[
 
 
 def _differences(stepper: Stepper, kind: int, z: FloatArray, steps: FloatArray) -> FloatArray:
-    """Differences (n + 1,) of the square of a kind by a step ahead of z in each unknown."""
+    """Differences (n + 1,) of the squared margin of a kind for a step ahead of z in each unknown."""
     value, ahead, found = stepper.problem.squared_margin(kind, z), z.copy(), np.empty(len(z))
-    for i in range(len(z)):  # a matrix of all would be as large as that of the equations
+    for i in range(len(z)):  # all at once would need a matrix as large as the Jacobian
         ahead[i] += steps[i]
         found[i] = stepper.problem.squared_margin(kind, ahead) - value
         ahead[i] = z[i]

@@ -14,18 +14,19 @@ from fcm.cubic import curve_between
 
 
 class _Known(NamedTuple):
-    """A point on the curve, in the curve's own size."""
+    """A known point of the curve, in scaled coordinates."""
 
-    at: float  # its length along the chord
+    at: float  # length along the chord
     z: FloatArray
-    slope: FloatArray  # by that length
+    slope: FloatArray  # with respect to that length
 
 
 class Segment:
-    """The curve from a point of a path to the next; `find` finds the point at a fraction of the way.
+    """The curve between two successive points of a path; `find` finds the point at a fraction of the way.
 
-    Guesses are corrected across the chord. The first lies on the cubic through both points with their
-    directions, another as far along the chord on that through the nearest points that have been found.
+    Guesses are corrected in planes normal to the chord. The first guess lies on the cubic through both ends
+    with their tangents. Later ones lie at the same length along the chord, on the cubic through the nearest
+    points found.
     """
 
     def __init__(self, problem: Problem, path: Path, first: int) -> None:
@@ -34,14 +35,14 @@ class Segment:
         self._scale = np.array(problem.scale)
         self._ends = path.z[first : first + 2] / self._scale
         self._chord = self._ends[1] - self._ends[0]
-        self.length = float(np.linalg.norm(self._chord))  # of the chord, in the curve's own size
+        self.length = float(np.linalg.norm(self._chord))  # of the chord, scaled
         direction = path.direction[first : first + 2] / self._scale
         size = np.linalg.norm(direction, axis=1, keepdims=True)
         self._tangents = direction / np.where(size > 0.0, size, 1.0)
         self._found = list[_Known]()
 
     def find(self, part: float) -> bool:
-        """Whether there is a point at the part of the way, in [0, 1]; it is then z."""
+        """Whether there is a point at the part of the way, in [0, 1]; `z` is then that point."""
         if self.length == 0.0:
             return False
         self.newton.scale[:] = self._scale
@@ -53,7 +54,7 @@ class Segment:
         return True
 
     def _guess(self, part: float) -> FloatArray:
-        """The guess from which the point is looked for."""
+        """The guess, scaled, for the point at the part of the way."""
         (one, other), (begin, end) = self._ends, self._tangents
         first, last = self._place(one, begin), self._place(other, end)
         whole = curve_between(one, other, begin, end, self.length, part)
@@ -72,7 +73,7 @@ class Segment:
         return float((z - self._ends[0]) @ self._chord) / self.length
 
     def _place(self, z: FloatArray, tangent: FloatArray) -> _Known:
-        """A point of the curve with its slope by the length along the chord."""
+        """A point of the curve, with its slope with respect to the length along the chord."""
         cosine = float(tangent @ self._chord) / self.length
         return _Known(self._along(z), z, tangent / np.copysign(max(abs(cosine), self._flat), cosine))
 

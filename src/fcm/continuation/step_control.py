@@ -1,15 +1,15 @@
 """A step along a curve and the step rule: which step is accepted, and how long the next one is.
 
-`Stepper` says where a step begins, where it ends, and finds points between the two. The end is predicted,
-then corrected. Lengths are measured in the problem's scale at the point `here`. A point at the length s lies
-in the plane through here + s tangent whose normal is that tangent.
+`Stepper` holds where a step begins and ends, and finds points between the two. It predicts the end, then
+corrects it. Lengths are measured in the problem's scale at `here`. A point at the length s lies in the plane
+through here + s tangent normal to that tangent.
 
-A step is good if the curve was where the parabola predicted it, turned gently, kept its orientation, and if
-the reported quantities changed as predicted. The length of the next step aims at the turn, miss and
-unevenness of `StepOptions`.
+A step is good if the point was near its prediction, the curve turned gently and kept its orientation, and the
+outputs changed as predicted. The length of the next step aims at the turn, the miss and the output error of
+`StepOptions`.
 
-A switching function (margin) may change its sign twice within a step, or a parameter or output may turn back
-twice. Values and slopes at both ends show that.
+Within a step a margin may change its sign twice, or the parameter or an output may turn back twice. Values
+and slopes at both ends show that.
 """
 
 from __future__ import annotations
@@ -32,12 +32,11 @@ else:
 
 @cython.cclass
 class Stepper:
-    """A step along a curve: where it begins (`here`), where it ends (`there`), and points between the two.
+    """A step along a curve: where it begins (`here`), where it ends (`there`), and points `between` the two.
 
-    `try_step` finds the point there, at a step from here; `find_between` and others points between; `accept`
-    goes on.
+    `try_step` finds the point there; `find_between` and others find points between; `accept` goes on.
 
-    cosine: that of the angle by which the direction there differs from that here; step: the length.
+    step: its length; cosine: that of the angle between the tangents here and there.
     """
 
     def __init__(self, problem: Problem, options: FollowOptions = FOLLOW) -> None:
@@ -49,15 +48,15 @@ class Stepper:
         self.here, self.there, self.between = Point(problem), Point(problem), Point(problem)
         self.guess = np.zeros(problem.unknowns + 1)
         self.step, self.cosine, self.miss, self.parameter_miss = 0.0, 1.0, 0.0, 0.0
-        self.rounding = 0.0  # length, scaled, by which rounding may have moved the point there
-        self.next_margin = -1  # the margin of which a change of sign was found last ahead of here
-        self.reset(options)  # tolerance: of the corrector, where a step ends
-        self.known_length = 0.0  # up to here the margins beyond a corner are taken as known
-        # from the prediction to where the next point is looked for, scaled: to the far side of a corner here
+        self.rounding = 0.0  # scaled length by which rounding may have moved the point there
+        self.next_margin = -1  # the margin whose sign change ahead of here was found last
+        self.reset(options)  # sets tolerance: the corrector's at the end of a step
+        self.known_length = 0.0  # up to this length the margins beyond a corner count as known
+        # scaled, from the prediction to the guess of the next point: to the far side of a corner at here
         self.offset = np.zeros(problem.unknowns + 1)
 
     def reset(self, options: FollowOptions) -> None:
-        """Be ready for another curve, with options."""
+        """Prepare for another curve, with options."""
         self.options, self.newton.options, self.newton.evaluations = options, options.newton, 0
         self.newton.tolerance, self.max_newton_step = options.newton.tolerance, options.labels.max_newton_step
         self.predictor.min_cosine = options.step.min_cubic_cosine
@@ -68,7 +67,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def begin(self, z: cython.double[::1], row: cython.double[::1]) -> cython.int:
-        """Start from near z, moved to the curve in the plane of row; 0 if there is no curve."""
+        """Start at the point of the curve in the plane through z normal to row; 0 if none is found."""
         self.known_length = 0.0
         self.here.slope[:] = 0.0
         self.problem.evaluate_scale(z)
@@ -89,10 +88,10 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def try_step(self, step: cython.double) -> cython.bint:
-        """Find the point there at a step; `miss` and `cosine` say how well it was predicted.
+        """Find the point there at a step from here; return whether it is found.
 
-        miss is the distance of the point from its prediction, over the length of the step; parameter_miss
-        that of the parameter alone.
+        miss is the distance of the point from its prediction, relative to the step; parameter_miss is that of
+        the parameter alone. cosine is that of the turn.
         """
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
@@ -105,7 +104,7 @@ class Stepper:
             return False
         for i in range(self.guess.shape[0]):
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
-        # shorter steps would miss the curve by as much where rounding made the miss
+        # a miss due to rounding does not shrink with the step
         rounding: cython.double = self.options.newton.rounding_multiple * self.newton.rounding_step
         self.rounding = rounding
         strayed: cython.double = fabs(self.newton.z[n] - self.guess[n]) / self.newton.scale[n]
@@ -118,7 +117,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def differentiate_margins(self) -> cython.int:
-        """Give the margins here and there their slopes, if they have none yet."""
+        """Compute the slopes of the margins at here and there if they are not known yet."""
         if not self.there.has_margin_slopes:
             self.there.differentiate_margins(self.problem, self.newton.scale, self.guess)
         if not self.here.has_margin_slopes:
@@ -128,9 +127,9 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def update_tangent(self) -> cython.bint:
-        """Give the corrector the direction exactly where it is, if the problem is labelled.
+        """For a labelled problem, compute the tangent exactly at the corrector's point.
 
-        That from before its last step may be of another smooth piece, and no margin tells so.
+        The tangent from before the last Newton step may belong to another smooth piece; no margin shows that.
         """
         moved: cython.double = self.newton.moved
         if not self.problem.labelled:
@@ -142,7 +141,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_step(self, step: cython.double) -> cython.bint:
-        """Correct the prediction of the point `there`; whether that converges."""
+        """Correct the prediction of the point there; return whether that converges."""
         if self.problem.labelled and step > self.options.step.any_turn_step:
             return self.newton.correct(step, self.max_newton_step * step)
         return self.correct_to(step, self.tolerance)
@@ -150,7 +149,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def correct_to(self, step: cython.double, close: cython.double) -> cython.bint:
-        """Correct the prediction of the point `there` to a tolerance; whether that converges."""
+        """Correct the prediction of a point to a tolerance; return whether that converges."""
         self.newton.tolerance = close
         found: cython.bint = self.newton.correct(step)
         self.newton.tolerance = self.options.newton.tolerance
@@ -159,7 +158,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def accept(self, point: Point, length: cython.double) -> cython.int:
-        """Go on from a point at a length from here, 0 beyond a corner, in the scale that is right for it."""
+        """Go on from a point at a length from here, 0 beyond a corner, with the scale of that point."""
         self.problem.evaluate_scale(point.z)
         scale: cython.double[::1] = self.newton.scale
         new: cython.double[::1] = self.problem.scale
@@ -175,7 +174,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def move_short(self, step: cython.double) -> cython.int:
-        """Go on by a step so short that the point predicted is on the curve, if no nearer one is found."""
+        """Go a step so short that the prediction counts as on the curve if none is found nearer."""
         self.predictor.predict(self.here, self.newton.scale, step, self.guess)
         self.newton.z[:] = self.guess
         self.newton.row[:] = self.here.tangent
@@ -188,7 +187,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def find_between(self, at: cython.double, margins: cython.bint, outputs: cython.bint) -> cython.bint:
-        """Find the point between here and there at a length from here, with its margins, its outputs."""
+        """Find the point between here and there at a length from here; with margins and outputs if asked."""
         i: cython.Py_ssize_t
         self.interpolate(at)
         for i in range(self.guess.shape[0]):
@@ -201,8 +200,9 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def find_from_guess(self, at: cython.double, guess: cython.double[::1]) -> cython.bint:
-        """Find the point between here and there at a length, from a guess, with its outputs; its direction
-        is that exactly there."""
+        """Find the point between here and there at a length, from a guess, with its outputs.
+
+        The tangent is that exactly at the point."""
         self.newton.z[:] = guess
         self.newton.row[:] = self.here.tangent
         return self.correct_to(at, self.tolerance) and self.sharpen(False, True)
@@ -210,7 +210,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def find_at_parameter(self, parameter: cython.double) -> cython.bint:
-        """Find the point between here and there with a value of the parameter between theirs."""
+        """Find the point between here and there at a given value of the parameter."""
         n: cython.Py_ssize_t = self.problem.unknowns
         rise: cython.double = self.there.z[n] - self.here.z[n]
         self.interpolate(self.step * (parameter - self.here.z[n]) / rise)
@@ -227,9 +227,9 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def sharpen(self, margins: cython.bint, outputs: cython.bint) -> cython.bint:
-        """Give the point between here and there the direction that it has exactly there.
+        """Compute the tangent exactly at the point between here and there.
 
-        That of the corrector is from before its last step.
+        The corrector's tangent is from before its last step.
         """
         if not self.newton.take_tangent():
             return False
@@ -239,8 +239,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def shorten(self, at: cython.double) -> cython.bint:
-        """Make the point at a length from here the one there, with the direction that it has exactly
-        there."""
+        """Make the point at a length from here the end of the step, with the tangent exactly there."""
         if not self.find_between(at, False, False) or not self.sharpen(True, True):
             return False
         self.step, self.cosine = at, dot(self.here.tangent, self.between.tangent)
@@ -250,7 +249,7 @@ class Stepper:
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
     def length(self, point: Point) -> cython.double:
-        """Length from here to the plane that a point lies in."""
+        """Length from here to the plane in which a point lies."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
         for i in range(point.z.shape[0]):
@@ -260,7 +259,7 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def record(self, point: Point, margins: cython.bint, outputs: cython.bint) -> cython.int:
-        """Copy the corrector's result to a point, with its margins and its outputs if these are asked for."""
+        """Copy the corrector's result to a point, with margins and outputs if asked."""
         i: cython.Py_ssize_t
         point.orientation, point.has_margin_slopes = self.newton.orientation, False
         for i in range(point.z.shape[0]):
@@ -279,13 +278,13 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(check=False)
     def clipped_cosine(self) -> cython.double:
-        """Cosine of the turn of the step, at least that below which a length is no measure of the way."""
+        """Cosine of the turn of the step, limited from below by `min_cubic_cosine`."""
         return max(self.cosine, self.predictor.min_cosine)
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def interpolate(self, at: cython.double) -> cython.void:
-        """Fill the guess with the cubic through here and there with their tangents, at a length."""
+        """Fill the guess from the cubic through here and there with their tangents, at a length."""
         i: cython.Py_ssize_t
         x: cython.double = at / self.step
         along: cython.double = self.step / self.clipped_cosine()
@@ -303,9 +302,9 @@ class Stepper:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def hidden_sign_change(stepper: Stepper) -> cython.double:
-    """Length at which a margin of one sign here and there has the other between them; 0 if none has.
+    """Length at which a margin is beyond zero between two ends of the same sign; 0 if none is.
 
-    As far as the cubic through both ends, with their slopes, tells.
+    The cubic with the values and slopes at both ends decides.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -328,11 +327,12 @@ def hidden_sign_change(stepper: Stepper) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.double:
-    """Length at which the parameter, or an output, may go the other way than here and there; 0 if none does.
+    """Length at which the parameter or an output may go back between two ends where it goes on; 0 if none.
 
-    There are two folds, or a peak and the least value after it, between then. As far as the cubics through
-    both ends tell; of outputs those near their greatest. What rounding changes of them is none, nor what the
-    corrector leaves of one that hardly moves beside the others, as across a plane of symmetry.
+    Then there are two folds between the ends, or a peak and a minimum. The cubics with the values and slopes
+    at both ends decide; of the outputs, only those near their greatest count. A reversal within rounding does
+    not count, nor one within the corrector's error of an output that hardly moves, as across a plane of
+    symmetry.
     """
     k: cython.Py_ssize_t
     size: cython.double
@@ -361,7 +361,7 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def parameter_reversal(stepper: Stepper) -> cython.double:
-    """Part of the step at which the parameter may go the other way than here and there; 0 if nowhere."""
+    """Part of the step at which the parameter may go back between its ends; 0 if nowhere."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     unit: cython.double = stepper.step * stepper.newton.scale[n]
     return cubic_reversal(
@@ -376,11 +376,10 @@ def parameter_reversal(stepper: Stepper) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def parameter_is_even(stepper: Stepper) -> cython.bint:
-    """Whether the parameter goes on so evenly that corners within the step hide no pair of folds.
+    """Whether the parameter changes so evenly that corners within the step hide no pair of folds.
 
-    Beyond a corner its slope may change as a root, and back at the next one. Then the slopes at the ends
-    differ, or the change over the step differs from that at their mean. Either difference alone vanishes
-    somewhere.
+    Beyond a corner its slope may change as a root, and change back at the next one. Then the slopes at the
+    ends differ, or the rise differs from that with the mean slope. Each difference alone may vanish.
     """
     n: cython.Py_ssize_t = stepper.problem.unknowns
     unit: cython.double = stepper.step * stepper.newton.scale[n]
@@ -402,10 +401,10 @@ def cubic_reversal(
     least: cython.double,
     doubtful: cython.double,
 ) -> cython.double:
-    """Where in (0, 1) a cubic with slopes of one sign at 0 and 1 goes back most; 0 if nowhere.
+    """Where in (0, 1) a cubic with slopes of one sign at 0 and 1 goes back fastest; 0 if nowhere.
 
-    rise: its change from 0 to 1; begin, end: its slopes there. Also where it hardly goes on, by the doubtful
-    part of the lesser slope; not where it goes back by less than the least slope.
+    rise: its change from 0 to 1; begin, end: its slopes there. It counts as going back if its least slope is
+    below `doubtful` times the lesser end slope, minus `least`.
     """
     if not begin * end > 0.0:
         return 0.0
@@ -435,9 +434,9 @@ def changes_sign(stepper: Stepper) -> cython.bint:
 def cubic_beyond_zero(
     before: cython.double, begin: cython.double, after: cython.double, end: cython.double
 ) -> cython.double:
-    """Where in (0, 1) a cubic with values of one sign at 0 and 1 is furthest beyond 0; 0 if it is not.
+    """Where in (0, 1) a cubic with values of one sign at 0 and 1 is furthest beyond 0; 0 if nowhere.
 
-    before, after: these values; begin, end: the slopes there.
+    before, after: the values; begin, end: the slopes there.
     """
     sign: cython.double = 1.0 if before > 0.0 else -1.0
     a: cython.double = sign * begin
@@ -452,7 +451,7 @@ def cubic_beyond_zero(
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def next_corner(stepper: Stepper, step: cython.double) -> cython.double:
-    """Length at which the prediction comes to the first change of sign of a margin; else the step.
+    """Length at which the prediction meets the first sign change of a margin; the step if it meets none.
 
     `next_margin` is then the number of that margin.
     """
@@ -464,7 +463,7 @@ def next_corner(stepper: Stepper, step: cython.double) -> cython.double:
     high: cython.double = step
     width: cython.double = 2.0 * step
     known: cython.double = stepper.options.switching.distance_tolerance
-    aside: cython.double = known / 3.0  # of the root, to come to either side of it
+    aside: cython.double = known / 3.0  # distance from the root, to enclose it from either side
     if stepper.problem.labelled:
         return next_label_change(stepper, step)
     if stepper.problem.margins == 0 or step <= low or not prediction_changes_sign(stepper, step):
@@ -487,7 +486,7 @@ def next_corner(stepper: Stepper, step: cython.double) -> cython.double:
                 stepper.here.margin_of_problem(stepper.next_margin, stepper.problem),
                 -known / 3.0,
             )
-            before = before if which == stepper.next_margin else -after  # of another: by halves at first
+            before = before if which == stepper.next_margin else -after  # another margin: first bisect
         else:
             low, aside = at, known / 3.0
             before = stepper.here.margin_of_problem(which, stepper.problem) or before
@@ -497,10 +496,10 @@ def next_corner(stepper: Stepper, step: cython.double) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def next_extrapolated_root(stepper: Stepper) -> cython.double:
-    """Length at which the first margin vanishes that goes on as it does here; 0 if none approaches zero.
+    """Length at which the first margin vanishes by extrapolation from here; 0 if none approaches zero.
 
-    A margin that is the root of the distance from a corner is as straight as the curve; the prediction,
-    along which that distance is as straight, meets the corner halfway.
+    A margin that is the root of the distance from a corner is as straight as the curve. The prediction, along
+    which the distance itself is straight, meets the corner halfway.
     """
     k: cython.Py_ssize_t
     first: cython.double = 0.0
@@ -511,7 +510,7 @@ def next_extrapolated_root(stepper: Stepper) -> cython.double:
         if stepper.here.margin[k] * stepper.here.slope[k] < 0.0:
             here: cython.double = stepper.here.margin[k]
             ahead: cython.double = here + length * stepper.here.slope[k]
-            # the square of such a root falls half as fast along the tangent as it does along the curve
+            # the square of such a root falls half as fast along the tangent as along the curve
             at: cython.double = 2.0 * length * here * here / (here * here - ahead * ahead)
             if here * ahead > 0.0 and (first == 0.0 or at < first):
                 first = at
@@ -521,7 +520,7 @@ def next_extrapolated_root(stepper: Stepper) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def next_label_change(stepper: Stepper, step: cython.double) -> cython.double:
-    """Length at which a label of the prediction changes, else the step: a label has no root, but halves."""
+    """Length at which a label of the prediction changes, by bisection; the step if none changes."""
     count: cython.int
     low: cython.double = 0.0
     high: cython.double = step
@@ -542,7 +541,7 @@ def next_label_change(stepper: Stepper, step: cython.double) -> cython.double:
 def prediction_changes_sign(stepper: Stepper, step: cython.double) -> cython.bint:
     """Whether the prediction a step ahead has a margin of the other sign than here, or another label.
 
-    `next_margin` is then the number of one of those.
+    `next_margin` is then the number of such a margin.
     """
     k: cython.Py_ssize_t
     stepper.predictor.predict(stepper.here, stepper.newton.scale, step, stepper.guess)
@@ -561,18 +560,18 @@ def prediction_changes_sign(stepper: Stepper, step: cython.double) -> cython.bin
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def acceptable(stepper: Stepper) -> cython.bint:
-    """Whether a step is good: the curve was where it was predicted, and went on as it did."""
+    """Whether a step is good: the point was near its prediction, and the curve continued smoothly."""
     options: StepOptions = stepper.options.step
     if stepper.step <= options.any_turn_step:
         changed: cython.bint = not keeps_orientation(stepper)
-        # where branches only nearly meet, each turns away, and a step across leads to the other
+        # where branches only nearly meet, each turns away, and a step across leads to the other branch
         if changed and not stepper.problem.labelled and not passes_branch_point(stepper):
             return False
-        # beyond a corner that turns by more than a right angle the way back is as near
+        # beyond a corner that turns by more than a right angle, the way back is as near as the way on
         back: cython.bint = (
             stepper.problem.has_root_margins and changed and stepper.cosine < options.min_cosine
         )
-        # of labelled curves `LabelledSwitching` tells what a short step may miss
+        # for labelled curves `LabelledSwitching` decides what a short step may miss
         near: cython.bint = stepper.problem.labelled or within_turn(stepper)
         return stepper.cosine > 0.0 and not back and near
     if not (
@@ -585,11 +584,12 @@ def acceptable(stepper: Stepper) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def passes_branch_point(stepper: Stepper) -> cython.bint:
-    """Whether a short step that changes the orientation leads across a point where branches meet.
+    """Whether a short step that changes the orientation crosses a point where branches meet.
 
-    Where they only nearly meet they are hyperbolas. A step from one to the other misses it, and turns, by
-    about the square of their distance over that of its length. Where they meet the miss is by the curvature,
-    and by rounding, which grows near the branch point. At corners that nearly coincide it is by their angles.
+    Branches that only nearly meet are hyperbolas. A step from one to the other misses it, and turns, by about
+    the squared distance of the branches over the squared step. Where branches meet, the miss is due to
+    curvature and to rounding, which grows near the branch point; at corners that nearly coincide, to their
+    angles.
     """
     turned: cython.double = sqrt(max(1.0 - stepper.cosine * stepper.cosine, 0.0))
     return stepper.step * sqrt(stepper.miss + turned) <= stepper.options.step.max_branch_distance
@@ -598,10 +598,10 @@ def passes_branch_point(stepper: Stepper) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def within_turn(stepper: Stepper) -> cython.bint:
-    """Whether a short step misses the curve by no more than its turn explains: otherwise it is another part.
+    """Whether a short step misses the curve by no more than its turn explains; otherwise it left its branch.
 
-    By the tangent of the turn, where the corner is at the start; by twice that, where it bends as a root; and
-    by what is so short that corners there are not told apart.
+    The miss may be the tangent of the turn if the corner is at the start, and twice that if the curve bends
+    as a root. A miss so short that corners within it are not distinguished is always admitted.
     """
     turned: cython.double = sqrt(max(1.0 - stepper.cosine * stepper.cosine, 0.0))
     options: StepOptions = stepper.options.step
@@ -613,14 +613,14 @@ def within_turn(stepper: Stepper) -> cython.bint:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def keeps_orientation(stepper: Stepper) -> cython.bint:
-    """Whether the orientation is the same here and there: else the step may have passed a corner."""
+    """Whether the orientation is the same here and there; otherwise the step may have passed a corner."""
     return stepper.there.orientation == stepper.here.orientation
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def smooth_step(stepper: Stepper, step: cython.double) -> cython.bint:
-    """Whether there is a good step of a length before a corner, and no margin changes its sign on it."""
+    """Whether a step of a length, up to before a corner, is good and changes no margin's sign."""
     return (
         stepper.try_step(step)
         and keeps_orientation(stepper)
@@ -632,7 +632,7 @@ def smooth_step(stepper: Stepper, step: cython.double) -> cython.bint:
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def next_step(stepper: Stepper) -> cython.double:
-    """Length of the step that follows a good one."""
+    """Length of the step after a good one."""
     options: StepOptions = stepper.options.step
     growth: cython.double = options.target_turn / max(acos(min(stepper.cosine, 1.0)), 1e-9)
     growth = min(growth, sqrt(options.target_miss / max(stepper.miss, 1e-9)))
@@ -646,9 +646,9 @@ def next_step(stepper: Stepper) -> cython.double:
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def output_error(stepper: Stepper) -> cython.double:
-    """Greatest change of an output's slope over the step, as a change of the output over its size.
+    """Greatest change of an output's slope over the step, as a change of the output relative to its size.
 
-    Outputs that are rounding of the greatest are left out.
+    Outputs within the rounding of the greatest are left out.
     """
     k: cython.Py_ssize_t
     worst: cython.double = 0.0
@@ -667,7 +667,7 @@ def output_error(stepper: Stepper) -> cython.double:
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def solution_size(stepper: Stepper) -> cython.double:
-    """Greatest unit of the unknowns: the size of the solution."""
+    """Size of the solution: the greatest unit of the unknowns."""
     i: cython.Py_ssize_t
     most: cython.double = 0.0
     for i in range(stepper.problem.unknowns):

@@ -1,4 +1,4 @@
-"""Damping of modes: from a matrix, proportional to mass and stiffness, or from a loss factor."""
+"""Damping of modes: from a damping matrix, proportional to mass and stiffness, or from a loss factor."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def projected(C: Matrix, modes: Modes) -> FloatArray:
 
 
 def drag(C: Matrix, rigid: FloatArray) -> float:
-    """Greatest damping coefficient of rigid-body modes (row, mode) of mass 1; 0 where it is rounding."""
+    """Greatest damping coefficient of rigid-body modes (row, mode) of mass 1; 0 if it is rounding."""
     size = np.abs(rigid)
     terms = np.einsum("ij,ij->j", size, abs(C) @ size)
     own = np.abs(np.einsum("ij,ij->j", rigid.conj(), C @ rigid))
@@ -40,7 +40,7 @@ def drag(C: Matrix, rigid: FloatArray) -> float:
 
 
 def check_dissipates(coefficients: FloatArray) -> None:
-    """Raise StructureError where the damping of a mode is negative, beyond rounding."""
+    """Raise StructureError if the damping of a mode is negative beyond rounding."""
     least = float(coefficients.min(initial=0.0))
     if least < -DAMPING.rounding * np.abs(coefficients).max(initial=0.0):
         mode = int(coefficients.argmin()) + 1
@@ -48,22 +48,24 @@ def check_dissipates(coefficients: FloatArray) -> None:
 
 
 class DampedModes(Frozen):
-    """Modes of mass 1 with damping between them."""
+    """Modes of mass 1 with damping that couples them."""
 
     stiffness: FloatArray  # (mode,)
     damping: FloatArray  # (mode, mode) the damping matrix in modal coordinates
-    rigid: int = 0  # how many of them, the first, are rigid-body modes
+    rigid: int = 0  # number of rigid-body modes, which are the first
 
 
 def coupling_effect(
     modes: DampedModes, pushes: FloatArray, seen: FloatArray, springs: FloatArray, ends: tuple[float, float]
 ) -> float:
-    """Greatest relative change of the linear response by damping between modes and of the first, rigid ones.
+    """Greatest relative change of the linear response by damping that the uncoupled modes leave out.
 
-    The response of `seen` (mode, displacement) to each of `pushes` (mode, load) between the `ends`, the
-    lowest and highest angular frequency, with springs (load,) along the loads: the contacts' when they are
-    stuck. It is sampled at resonances, beside them and between, and once more where it is greatest; inf
-    where without that damping there is no response.
+    That is the damping between modes, and all damping of the first `rigid` modes, which are rigid-body modes.
+
+    The response of `seen` (mode, displacement) to each of `pushes` (mode, load) is compared between the
+    `ends`, the lowest and highest angular frequency. Springs (load,) act along the loads: those of the stuck
+    contacts. The response is sampled at resonances, beside and between them, and more finely where the change
+    is greatest. inf if there is no response without the damping left out.
     """
     modal, rigid = modes.damping, modes.rigid
     matrix = np.diag(modes.stiffness) + (pushes * springs) @ pushes.conj().T
@@ -73,7 +75,7 @@ def coupling_effect(
         undamped = matrix - omega**2 * np.eye(len(matrix))
         whole = _response(undamped + 1j * omega * modal, pushes, seen)
         alone = _response(undamped + 1j * omega * own, pushes, seen)
-        if whole is None:  # at the resonance of a mode without damping: no force gives a response
+        if whole is None:  # the resonance of an undamped mode: no force gives a finite response
             return 0.0
         size = float(np.abs(whole).max(initial=0.0))
         if alone is None:
@@ -88,7 +90,7 @@ def coupling_effect(
 
 
 def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> FloatArray | None:
-    """Response of the displacements `seen` to pushes; None where the dynamic stiffness is singular."""
+    """Response of the displacements `seen` to pushes; None if the dynamic stiffness is singular."""
     try:
         response: FloatArray = seen.conj().T @ np.linalg.solve(dynamic, pushes)
     except np.linalg.LinAlgError:
@@ -97,7 +99,7 @@ def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> Floa
 
 
 def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> FloatArray:
-    """Frequencies between low and high: resonances, their half-power points, and places between these."""
+    """Frequencies between low and high: resonances, their half-power points, and places in between."""
     value, turn = np.linalg.eigh(matrix)
     natural = np.sqrt(np.maximum(value, 0.0))
     width = 0.5 * np.einsum("ij,ij->j", turn.conj(), damper @ turn).real

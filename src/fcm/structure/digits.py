@@ -1,8 +1,8 @@
-"""Number of digits with which the entries of a matrix were written, and the uncertainty of its modes.
+"""Number of digits with which the entries of a matrix were written, and the resulting uncertainty of modes.
 
-A program that writes a matrix as text rounds every entry, and one of single precision does too. The terms of
-the elastic energy of a rigid-body motion cancel; with rounded entries it is a sum of these roundings instead
-of 0. They are uniform within half a unit of the last digit, and independent but for equal entries.
+A program that writes a matrix as text or in single precision rounds every entry. The terms of the elastic
+energy of a rigid-body motion cancel; with rounded entries their sum is that of the rounding errors instead of
+0. These are uniform within half a unit of the last digit, and independent except for equal entries.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SINGLE = 7  # digits of a number of single precision
 
 
 def digits_of(K: Matrix) -> int | None:
-    """Decimal digits of the entries; None where they have full precision, or few enough to be exact.
+    """Decimal digits of the entries; None for full precision, or if they are few enough to be exact.
 
     >>> import scipy.sparse
     >>> rng = np.random.default_rng(0)
@@ -53,15 +53,15 @@ def _some(K: Matrix) -> FloatArray:
 
 
 def _single(values: FloatArray) -> bool:
-    """Whether all values are numbers of single precision."""
+    """Whether all values are representable in single precision."""
     with np.errstate(over="ignore"):
         return bool((values.astype(np.float32) == values).all())
 
 
 def _most_need(values: FloatArray, digits: int) -> bool:
-    """Whether most values need at least so many digits.
+    """Whether most values need at least a number of digits.
 
-    Of values rounded to a number of digits, 0.9 need all of them.
+    Of values rounded to a number of digits, 90 percent need all of them.
     """
     return bool(np.mean(_rounded(values, digits - 1) != values) > 0.5)
 
@@ -71,7 +71,7 @@ def _rounded(values: FloatArray, digits: int) -> FloatArray:
 
 
 def energy_uncertain(K: Matrix, shapes: FloatArray) -> FloatArray:
-    """Standard deviation of phi^T K phi by the digits of K, of each shape (row, mode); 0 for full digits."""
+    """Standard deviation of phi^T K phi of each shape (row, mode) by the digits of K; 0 for full digits."""
     digits = digits_of(K)
     if digits is None:
         return np.zeros(shapes.shape[1])
@@ -80,14 +80,14 @@ def energy_uncertain(K: Matrix, shapes: FloatArray) -> FloatArray:
     unit, sign = _unit(size, digits), np.sign(entries.data)
     found = np.zeros(shapes.shape[1])
     for mode, shape in enumerate(shapes.T):
-        # what is rounded alike adds up: the two across the diagonal, and those of equal elements
+        # equal entries are rounded alike, so they add up: both sides of the diagonal, and equal elements
         alike = np.bincount(number, sign * shape[entries.row] * shape[entries.col])
         found[mode] = np.sqrt((unit**2 * alike**2).sum() / 12.0)
     return found
 
 
 def _unit(size: FloatArray, digits: int) -> FloatArray:
-    """Unit in the last digit of numbers with so many digits; 0 for a zero, which is exact."""
+    """Unit in the last digit of numbers with that many digits; 0 for a zero, which is exact."""
     unit: FloatArray
     if digits == SINGLE and _single(size):
         unit = np.spacing(size.astype(np.float32)).astype(np.float64)

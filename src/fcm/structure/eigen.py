@@ -1,17 +1,16 @@
 """Normal modes of a structure given by its stiffness and mass matrices, symmetric or Hermitian.
 
 K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s).
-Then K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes
-are the most accurate ones. Large matrices are solved by Lanczos (scipy's `eigsh`), small ones whole. Lanczos
-may miss one of several equal frequencies. So the modes found are taken out, and it is checked whether a lower
-one is left.
+Then K - s M is positive definite even with rigid-body modes, M may have rows of zeros, and the lowest modes
+are the most accurate. Lanczos (scipy's `eigsh`) solves large matrices, a dense solver small ones. Lanczos may
+miss one of several equal frequencies. So the modes found are deflated, and a search for a lower mode follows.
 
-One factorisation serves for all of it, and for static displacements: those by K - s M are corrected until
-nothing of the shift is left in them.
+One factorisation serves all this and static displacements. These are solved with K - s M, then corrected
+until the shift has no effect.
 
-Of the elastic energy of a low mode little is left: a beam of n elements sums n^4 times as much. So it is
-summed with more digits than the matrices have, where the machine has a longer number, and row by row; what
-remains is the rounding of the shapes, of second order.
+Most of the elastic energy of a low mode cancels: the terms for a beam of n elements are n^4 times as large.
+So it is summed row by row, in extended precision where the machine has it. The remaining error is that of the
+shapes, of second order.
 """
 
 from __future__ import annotations
@@ -42,16 +41,16 @@ class EigenOptions(Frozen):
     shift: float = 1e-9
     # least shift, relative to the same ratio, where a frequency of interest is given
     min_shift: float = 1e-11
-    # shift, relative to the same ratio, that is tried where K - s M is not positive definite
+    # shift, relative to the same ratio, that is tried if K - s M is not positive definite
     max_shift: float = 1e-4
     frequency_shift: float = 1e-3  # shift relative to the square of the highest frequency of interest
-    last_digits: float = 10.0  # least shift in units of the entries' last digit, where they have few digits
+    last_digits: float = 10.0  # least shift in units of the entries' last digit, if they have few digits
     # eigenvalue of the inverse problem, relative to the greatest, up to which a row is massless
     massless_tolerance: float = 1e-13
     # negative eigenvalue of the mass, scaled to a diagonal of 1, that counts as rounding
     mass_tolerance: float = 1e-9
     missed_tolerance: float = 1e-3  # relative tolerance of the search for a mode that Lanczos has missed
-    # a missed mode's w^2 must be below the highest one found by this part of it
+    # part by which the w^2 of a missed mode must be below the highest one found
     frequency_tolerance: float = 1e-6
     max_corrections: int = 12  # corrections of static displacements; a shift that needs more is replaced
 
@@ -66,7 +65,7 @@ class StructureError(ValueError):
 class Modes(Frozen):
     """Normal modes in ascending order, of modal mass 1."""
 
-    stiffness: FloatArray  # (mode,) squares of the angular frequencies; rigid-body modes within rounding of 0
+    stiffness: FloatArray  # (mode,) squares of the angular frequencies; rigid-body modes: rounding of 0
     shapes: FloatArray  # (row, mode)
 
     @property
@@ -89,7 +88,7 @@ class FactoredStructure(Frozen):
     def static(self, loads: FloatArray, beyond: float, near: float) -> FloatArray:
         """Static displacements (by K alone) under loads that push no mode with w^2 below `beyond`.
 
-        Each correction leaves at most -s / (beyond - s) of what the last one has left, down to `near`.
+        Each correction reduces the error by the factor -s / (beyond - s), down to `near`.
         """
         found = self.solve(loads)
         for _ in range(self.corrections(beyond, near)):
@@ -105,7 +104,7 @@ class FactoredStructure(Frozen):
 def factored_structure(K: Matrix, M: Matrix, top: float = 0.0) -> FactoredStructure:
     """Factorises K - s M; raises StructureError if the matrices are not those of a structure.
 
-    top is the highest angular frequency of interest, 0 where there is none.
+    top is the highest angular frequency of interest, or 0.
     """
     stiff, heavy = K.diagonal().real, M.diagonal().real
     if not (heavy > 0.0).any():
@@ -121,13 +120,13 @@ def factored_structure(K: Matrix, M: Matrix, top: float = 0.0) -> FactoredStruct
     try:
         try:
             solve = solver(K - shift * M)
-        except NotPositiveError as error:  # what is left of rigid-body modes may be more negative
+        except NotPositiveError as error:  # residuals of rigid-body modes may be more negative
             if shift <= (shift := -OPTIONS.max_shift * ratio):
                 raise
             try:
                 solve = solver(K - shift * M)
             except NotPositiveError:
-                raise error from None  # which counts those between the shifts too
+                raise error from None  # its count includes those between the shifts
     except NotPositiveError as error:
         faults.append(_said("stiffness", error.negative))
     except TooLargeError as error:
@@ -138,7 +137,7 @@ def factored_structure(K: Matrix, M: Matrix, top: float = 0.0) -> FactoredStruct
 
 
 def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
-    """Size of the shift: above the rounding of the entries, and small beside what is of interest."""
+    """Size of the shift: above the rounding of the entries, and small relative to what is of interest."""
     digits = digits_of(K)
     rounding = 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits
     if not top or K.shape[0] <= OPTIONS.dense_size:
@@ -147,10 +146,11 @@ def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
 
 
 def _faults_of_mass(M: Matrix) -> list[str]:
-    """Reasons why a mass matrix is not that of a structure; empty where it may be.
+    """Reasons why a mass matrix is not that of a structure; empty if it may be.
 
-    Its diagonal is made 1, so that the unit of a row does not matter. Large matrices are factorised: the
-    pivots have as many negative ones as the eigenvalues, and most masses couple no two directions.
+    Its diagonal is scaled to 1, so that the unit of a row does not matter. Large matrices are factorised: as
+    many pivots as eigenvalues are negative, and the factor is sparse, as most masses couple no two
+    directions.
     """
     heavy = M.diagonal().real
     unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(heavy > 0.0, heavy, heavy.max())))
@@ -179,14 +179,15 @@ def _said(what: str, negative: int | None) -> str:
 
 
 def _start(rows: int) -> FloatArray:
-    """Start vector of Lanczos: pseudo-random, and the same every time."""
+    """Start vector of Lanczos: pseudo-random, but always the same."""
     return np.random.default_rng(0).standard_normal(rows)
 
 
 def shifted(structure: FactoredStructure, shift: float) -> FactoredStructure:
-    """The structure with another negative shift, factorised again.
+    """The structure, factorised again with another negative shift.
 
-    Nearer to zero it need not be definite: digits that were not written make rigid-body modes negative.
+    With a shift nearer to zero the matrix need not be definite: rounded entries may make rigid-body modes
+    negative.
     """
     try:
         return replace(
@@ -197,7 +198,7 @@ def shifted(structure: FactoredStructure, shift: float) -> FactoredStructure:
 
 
 def modes_of(structure: FactoredStructure, count: int) -> Modes:
-    """The lowest modes of a structure; fewer where fewer rows have a mass."""
+    """The lowest modes of a structure; fewer than `count` if fewer rows have mass."""
     rows = structure.rows
     if rows <= OPTIONS.dense_size or count > rows // 3:
         shapes = _all(structure)
@@ -241,19 +242,19 @@ def _lanczos(
 
 
 def _complete(structure: FactoredStructure, shapes: FloatArray, count: int) -> FloatArray:
-    """The shapes with those of lower modes added that Lanczos has missed, as of equal frequencies."""
+    """The shapes and those of lower modes that Lanczos missed, for example at equal frequencies."""
     while True:
-        shapes = _apart(structure, shapes)  # of mass 1, and orthogonal where frequencies are close
+        shapes = _apart(structure, shapes)  # of mass 1, and orthogonal even if frequencies are close
         highest = np.sort(elastic_energy(structure.K, shapes))[count - 1]
         further = of_shapes(structure, _lanczos(structure, 1, shapes, OPTIONS.missed_tolerance))
-        # it is told higher than it is, never lower
+        # Lanczos overestimates it, never underestimates it
         if further.stiffness[0] >= highest - OPTIONS.frequency_tolerance * abs(highest):
             return shapes
         shapes = np.concatenate((shapes, _lanczos(structure, 1, shapes)), axis=1)
 
 
 def _all(structure: FactoredStructure) -> FloatArray:
-    """Shapes of all modes that have a mass, by a dense solver."""
+    """Shapes of all modes with mass, by a dense solver."""
     mass = structure.M.toarray()
     shifted = structure.K.toarray() - structure.shift * mass
     value, shapes = scipy.linalg.eigh(mass, shifted)
@@ -276,10 +277,10 @@ def _apart(structure: FactoredStructure, shapes: FloatArray) -> FloatArray:
 
 
 def polished(structure: FactoredStructure, shapes: FloatArray) -> FloatArray:
-    """Shapes of modes near zero frequency, of mass 1, after two further inverse iterations.
+    """Shapes of modes near zero frequency, of mass 1, after two more inverse iterations.
 
-    That takes other modes out of them, each by its own stiffness beside the shift: also those that the mass
-    couples to them and the stiffness does not.
+    These remove other modes from them, by the ratio of the other mode's stiffness to the shift. That includes
+    modes coupled to them by the mass and not by the stiffness.
     """
     for _ in range(2):
         shapes = structure.solve(structure.M @ shapes)
@@ -308,10 +309,11 @@ def energy_of(matrix: Matrix, shapes: FloatArray) -> FloatArray:
 def elastic_energy(K: Matrix, shapes: FloatArray, together: int = 4096) -> FloatArray:
     """Elastic energy phi^H K phi of each shape, accurate although its terms nearly cancel.
 
-    Row by row, where they cancel already: summed over all rows first, their rounding would be that of the
-    greatest sum. Some rows at a time, so that what is computed on the way stays within the cache.
+    The terms are summed row by row, where they cancel already. A sum over all rows first would have the
+    rounding of the greatest sum. `together` rows are treated at a time, so that intermediate results stay in
+    the cache.
     """
-    K = scipy.sparse.csr_array(K.conj(copy=False).T)  # which is K, without a conversion of columns to rows
+    K = scipy.sparse.csr_array(K.conj(copy=False).T)  # equals K, without a conversion of columns to rows
     long = np.result_type(K.dtype, np.longdouble)
     turned = shapes.T.astype(long)
     found = np.zeros(len(turned), dtype=long)

@@ -1,7 +1,7 @@
-"""The order in which the rows of a sparse symmetric matrix are eliminated, and the fronts of columns.
+"""Elimination order of the rows of a sparse symmetric matrix, and fronts of columns.
 
-Rows with the same entries, as those of one node of a mesh, are one vertex of a graph. METIS orders it by
-nested dissection; the elimination tree says which columns wait for which; columns that follow each other and
+Rows with the same entries, for example of one node of a mesh, are one vertex of a graph. METIS orders the
+graph by nested dissection. The elimination tree says which columns wait for which. Successive columns that
 share the rows below them are one front.
 
 Sources: G. Karypis and V. Kumar, A fast and high quality multilevel scheme for partitioning irregular
@@ -26,25 +26,25 @@ Matrix = Any  # scipy sparse array or matrix
 class FrontOptions(Frozen):
     """Options for merging fronts into fewer and larger ones, which store some zeros."""
 
-    max_zeros: float = 0.1  # share of a merged front's entries that may be zeros
-    few_columns: int = 48  # columns of a merged front up to which `max_zeros_of_few` holds instead
+    max_zeros: float = 0.1  # share of zeros in a merged front up to which it is merged
+    few_columns: int = 48  # number of columns of a merged front up to which `max_zeros_of_few` holds instead
     max_zeros_of_few: float = 0.4  # share of zeros in a merged front of few columns
 
 
 class Tree(Frozen):
-    """Elimination order of the rows, and the fronts, each after those that it waits for.
+    """Elimination order of the rows, and the fronts, each after those for which it waits.
 
     Front i has the columns begin[i] to begin[i + 1] of the ordered matrix, and the rows below[i] under them.
     """
 
     order: IntArray  # (row,)
     begin: list[int]  # (front + 1,)
-    below: list[IntArray]  # of each front, ascending
-    parent: list[int]  # the front that waits for each; -1 where there is none
+    below: list[IntArray]  # rows below each front, ascending
+    parent: list[int]  # the front that waits for each; -1 if none does
 
     @property
     def entries(self) -> int:
-        """Number of entries that a factor by these fronts stores."""
+        """Number of entries stored by a factor with these fronts."""
         columns = np.diff(self.begin)
         return int((columns * (columns + np.array([one.size for one in self.below]))).sum())
 
@@ -59,12 +59,11 @@ def nested_dissection(graph: Matrix) -> IntArray:
 
 
 def graph_of(matrix: Matrix) -> tuple[IntArray, Matrix]:
-    """Vertex of each row (row,), and the graph of the vertices: a pattern without its diagonal.
+    """Vertex of each row (row,), and the graph of the vertices: a pattern without diagonal.
 
-    Rows with the same pattern share a vertex.
-
-    Rows are told alike by a random number for each column, summed over their entries. Should two that differ
-    have the same sum, their vertex has the entries of both.
+    Rows with the same pattern share a vertex. A hash identifies the pattern: the sum, over a row's entries,
+    of a random number for each column. If two different rows had the same hash, their vertex would have the
+    entries of both.
     """
     rows = matrix.shape[0]
     pattern = scipy.sparse.csc_array(
@@ -84,7 +83,7 @@ def graph_of(matrix: Matrix) -> tuple[IntArray, Matrix]:
 
 
 def tree_of(matrix: Matrix, options: FrontOptions | None = None) -> Tree:
-    """Elimination order and fronts of a square matrix, from the pattern of both its triangles."""
+    """Elimination order and fronts of a square matrix, from the pattern of both triangles."""
     options = options or FrontOptions()
     group, graph = graph_of(matrix)
     order = nested_dissection(graph) if graph.nnz else np.arange(graph.shape[0])
@@ -117,7 +116,7 @@ def _parents(graph: Matrix) -> list[int]:
     graph = scipy.sparse.csr_array(graph)
     start, column = graph.indptr.tolist(), graph.indices.tolist()
     parent = [-1] * graph.shape[0]
-    above = [-1] * graph.shape[0]  # the highest known, so that no way is gone twice
+    above = [-1] * graph.shape[0]  # the highest known ancestor, so that no path is followed twice
     for row in range(graph.shape[0]):
         for at in column[start[row] : start[row + 1]]:
             if at >= row:
@@ -138,7 +137,7 @@ def _children(parent: list[int]) -> list[list[int]]:
 
 
 def _postorder(parent: list[int]) -> IntArray:
-    """Postorder of the columns, in which those of a branch follow each other."""
+    """Postorder of the columns, in which the columns of a branch are contiguous."""
     children = _children(parent)
     waiting = [one for one, above in enumerate(parent) if above < 0]
     found = []
@@ -149,11 +148,11 @@ def _postorder(parent: list[int]) -> IntArray:
 
 
 def _fronts(graph: Matrix, parent: list[int]) -> tuple[list[int], list[IntArray]]:
-    """Fronts of columns that share all rows below: first columns and end, and rows below each."""
+    """Fronts of columns that share all rows below: their first columns, and the end; rows below each."""
     lower = scipy.sparse.csc_array(scipy.sparse.tril(graph, -1))
     lower.sort_indices()
     children = _children(parent)
-    under: list[IntArray | None] = [None] * graph.shape[0]  # of each column, until its parent is reached
+    under: list[IntArray | None] = [None] * graph.shape[0]  # below each column, until its parent is reached
     held = np.full(graph.shape[0], -1)
     begin: list[int] = []
     below: list[IntArray] = []
@@ -167,7 +166,7 @@ def _fronts(graph: Matrix, parent: list[int]) -> tuple[list[int], list[IntArray]
         longest = parts[-1] if those else parts[0]
         held[longest] = column
         if those and all((held[part] == column).all() for part in parts[:-1]):
-            under[column] = longest  # what the column before has below it
+            under[column] = longest  # the rows below the previous column
             below[-1] = longest
         else:
             under[column] = rows = np.unique(np.concatenate(parts))
@@ -179,7 +178,7 @@ def _fronts(graph: Matrix, parent: list[int]) -> tuple[list[int], list[IntArray]
 def _taken_together(
     begin: list[int], below: list[IntArray], weight: IntArray, options: FrontOptions
 ) -> tuple[list[int], list[IntArray]]:
-    """Merges fronts with those before that they wait for, where that stores few zeros."""
+    """Merges fronts with preceding fronts for which they wait, if that stores few zeros."""
     first = np.concatenate(([0], np.cumsum(weight)))
     kept: list[tuple[int, IntArray, int]] = []  # first column, rows below, zeros
     for i, rows in enumerate(below):

@@ -1,8 +1,8 @@
 """Factors of sparse symmetric or Hermitian matrices, usually positive definite.
 
-By CHOLMOD where its package scikit-sparse is installed, else by fronts where the factor has many entries, by
-SuperLU where it has few. All give the same solutions to rounding.
-SuperLU keeps both triangles, and its pivots can be had only by a copy of them.
+CHOLMOD is used if its package scikit-sparse is installed. Otherwise a multifrontal factor is used if it has
+many entries, and SuperLU if it has few. All give the same solutions to rounding. SuperLU stores both
+triangles, and its pivots are available only from a copy of them.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ Solve = Callable[[FloatArray], FloatArray]  # loads (row,) or (row, load) to dis
 class FactorOptions(Frozen):
     """Options for choosing the factorisation of a sparse matrix."""
 
-    package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; where empty, chosen by the number of rows
+    package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; if empty, chosen by the number of rows
     superlu_size: int = 600  # rows up to which SuperLU is used: CHOLMOD's ordering gains nothing there
     dissection_size: int = 5000  # rows from which on nested dissection is used
-    # entries of a factor up to which SuperLU, and its copy, need little memory
+    # entries of a factor up to which SuperLU and the copy of its pivots need little memory
     light_entries: int = 5_000_000
-    # entries of a matrix from which on SuperLU runs in a thread that an interruption leaves
+    # entries of a matrix from which on SuperLU runs in a thread that an interruption abandons
     polled_entries: int = 200_000
-    poll_interval: float = 0.1  # [s] between looks at whether that thread is done, or the run interrupted
-    # entries of the loads solved at once by SuperLU, which no signal can interrupt
+    poll_interval: float = 0.1  # [s] between checks whether that thread is done or the run is interrupted
+    # entries of the loads in one call of SuperLU, which no signal can interrupt
     solved_entries: int = 1_000_000
     fronts: FrontOptions = field(default_factory=FrontOptions)
 
@@ -46,7 +46,7 @@ class FactorOptions(Frozen):
 class NotPositiveError(ValueError):
     """Raised for a matrix that is not positive definite, with the number of its negative eigenvalues.
 
-    The number is None where it is unknown, and 0 of a singular matrix.
+    The number is None if it is unknown, and 0 for a singular matrix.
     """
 
     def __init__(self, negative: int | None) -> None:
@@ -76,7 +76,7 @@ def has_cholmod() -> bool:
 def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None = None) -> Solve:
     """Factorises a positive definite matrix once, for any number of solutions; else raises NotPositiveError.
 
-    Where it need not be definite, only a singular one is refused.
+    If definite is false, only a singular matrix is refused.
 
     >>> solver(scipy.sparse.csc_array([[2.0, 1.0], [1.0, 2.0]]))(np.array([3.0, 3.0]))
     array([1., 1.])
@@ -101,7 +101,7 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
 
 
 def _cholmod(matrix: Matrix) -> Solve | None:
-    """Solver by CHOLMOD; None where the matrix is not positive definite.
+    """Solver by CHOLMOD; None if the matrix is not positive definite.
 
     The other packages then count its negative eigenvalues.
     """
@@ -131,7 +131,7 @@ def _superlu(
 ) -> Solve:
     """Solver by SuperLU without off-diagonal pivoting, so that its pivots have the signs of the eigenvalues.
 
-    That is Sylvester's law of inertia, where no rows were exchanged.
+    They have by Sylvester's law of inertia if no rows were exchanged.
     """
     symmetric = {"SymmetricMode": True}
     work = partial(splu, matrix, permc_spec=ordering, diag_pivot_thresh=0.0, options=symmetric)
@@ -149,7 +149,7 @@ def _superlu(
 
 
 def by_blocks(solve: Solve, most: int, loads: FloatArray) -> FloatArray:
-    """Displacements under loads (row,) or (row, load), solved in blocks of at most so many entries."""
+    """Displacements under loads (row,) or (row, load), solved in blocks of at most `most` entries."""
     if loads.ndim == 1 or loads.size <= most:
         return solve(loads)
     together = max(most // loads.shape[0], 1)
@@ -159,9 +159,9 @@ def by_blocks(solve: Solve, most: int, loads: FloatArray) -> FloatArray:
 
 
 def _left_behind(work: Callable[[], Any], poll: float) -> Any:
-    """Result of a compiled call, run in a thread of its own that an interruption leaves behind.
+    """Result of a compiled call, run in a thread that an interruption abandons.
 
-    The call lets other threads run, but itself ends no sooner for a signal.
+    The call lets other threads run, but no signal ends it.
     """
     done: list[Any] = []
     failed: list[BaseException] = []
@@ -169,13 +169,13 @@ def _left_behind(work: Callable[[], Any], poll: float) -> Any:
     def call() -> None:
         try:
             done.append(work())
-        except BaseException as error:  # is the caller's
+        except BaseException as error:  # raised again in the caller's thread
             failed.append(error)
 
     thread = Thread(target=call, daemon=True)
     thread.start()
     while thread.is_alive():
-        thread.join(poll)  # with a limit, for an interruption by another thread wakes nobody
+        thread.join(poll)  # with a timeout, as an interruption by another thread does not wake it
     if failed:
         raise failed[0]
     return done[0]

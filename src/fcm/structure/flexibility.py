@@ -1,30 +1,32 @@
-"""The flexibility of the modes left out, kept as a few modes of high frequency.
+"""The flexibility of the modes left out, represented by a few modes of high frequency.
 
-Seen through loads P and displacements P^T x, the modes left out answer P^T (K - w^2 M)^-1 P less the part of
-the kept modes. Their answer is sought in a block Krylov space. It begins with the residual attachment modes,
-the static displacements under P without the part of the kept modes (MacNeal, Rubin); the static displacements
-under the inertia of those come next, and so on. Galerkin's method on it gives modes again, of modal mass 1
-and orthogonal to the kept ones. With b blocks the first 2 b terms of the answer's series in w^2 are exact.
+Seen through loads P and displacements P^T x, the response of the modes left out is P^T (K - w^2 M)^-1 P minus
+the part of the kept modes. It is sought in a block Krylov space. The first block holds the residual
+attachment modes, the static displacements under P without the part of the kept modes (MacNeal, Rubin). The
+next block holds the static displacements under the inertia of the first, and so on. Galerkin's method in this
+space gives modes of mass 1, orthogonal to the kept ones. With b blocks the first 2 b terms of the response's
+series in w^2 are exact.
 
-How far it is off is bounded, not estimated. Below the first mode left out, lambda_h, the operator is positive
-definite on what is left out. There K - w^2 M >= (lambda_h - w^2) / (lambda_h - s) (K - s M), with the shift
-s < 0 at which the stiffness is factorised. So with the residual r of Galerkin's solution u of one load,
+The error is bounded, not estimated. Below the first mode left out, lambda_h, the operator is positive
+definite on the space left out. There K - w^2 M >= (lambda_h - w^2) / (lambda_h - s) (K - s M), with the shift
+s < 0 at which the stiffness is factorised. So with the residual r of Galerkin's solution u for one load p,
 
     0 <= error of p^T u <= r^T (K - s M)^-1 r (lambda_h - s) / (lambda_h - w^2),
 
-and between two different loads the error is at most the geometric mean of theirs (Cauchy, Schwarz).
+and between two different loads the error is at most the geometric mean of their errors (Cauchy, Schwarz).
 
-Where every mode has the same damping ratio z, what is left out also damps. To a load p it answers p^T u with
-the imaginary part -2 z w m_3, where m_s = sum (phi_i^T p)^2 / w_i^s over the modes left out. The modes that
-stand for them have the true m_2, m_4 (from two blocks on also m_6), but another m_3. Of the true one is known
+If all modes have the same damping ratio z, the modes left out damp as well. Their response p^T u to a load p
+has the imaginary part -2 z w m_3, where m_s = sum (phi_i^T p)^2 / w_i^s over the modes left out. The modes
+that represent them have the true m_2, m_4 (from two blocks on also m_6), but another m_3. The true m_3
+satisfies
 
     m_4^(3/2) / m_6^(1/2) <= m_3 <= (m_2 m_4)^(1/2),    m_6 <= m_4 / lambda_h
 
-(the logarithm of m_s is convex). A resonance of the loss factor 2 z, with all of its energy there, is then
-damped wrongly by at most w / m_2 times the distance to these limits, relative.
+(the logarithm of m_s is convex). For a resonance of the loss factor 2 z, with all of its energy there, the
+relative error of the damping is at most w / m_2 times the distance of m_3 from these limits.
 
-Rows without mass answer at once, as no mode does: a mode far above all that is of interest stands for them,
-at w_far, and answers at w by (w / w_far)^2 too much.
+Rows without mass respond instantly, as no mode does. A mode at w_far, far above all frequencies of interest,
+represents them; its response at w is too large by the relative amount (w / w_far)^2.
 """
 
 from __future__ import annotations
@@ -52,17 +54,17 @@ class Flexibility(Frozen):
     """Modes that represent those left out, and bounds of the error of their response."""
 
     modes: Modes
-    bound: float  # of the receptance among the loads, relative to their static one; inf if there is none
-    damping: float  # bound of the error of a resonance's damping, relative, where all modes have one ratio
+    bound: float  # of the receptance between the loads, relative to their static one; inf if there is none
+    damping: float  # bound of the relative error of a resonance's damping, if all modes have one ratio
 
 
 class Truncation(Frozen):
-    """A structure with only its lowest modes kept: highest frequency of interest and first mode left out."""
+    """A structure of which only the lowest modes are kept, with the frequencies that limit its use."""
 
     structure: FactoredStructure
     kept: Modes
     omega: float  # [rad/s] the highest angular frequency of interest
-    beyond: float  # [rad^2/s^2] square of that of the first mode left out: a lower limit of all of them
+    beyond: float  # [rad^2/s^2] squared frequency of the first mode left out: a lower limit of all of them
     options: FlexibilityOptions = FLEXIBILITY
 
 
@@ -104,9 +106,9 @@ def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
 
 
 def _with_shift_for_static(truncation: Truncation) -> Truncation:
-    """The truncation, with another shift where static displacements would need too many corrections.
+    """The truncation, with another shift if static displacements would need too many corrections.
 
-    Of a small structure a shift costs nothing, and corrections the digits that are lost in K u.
+    For a small structure another shift costs nothing, while corrections lose the digits that cancel in K u.
     """
     structure, beyond, near = truncation.structure, truncation.beyond, truncation.options.static_tolerance
     number = structure.corrections(beyond, near)
@@ -117,7 +119,7 @@ def _with_shift_for_static(truncation: Truncation) -> Truncation:
 def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, static: FloatArray) -> float:
     """Greatest error of a load's own receptance relative to `static`; inf beyond the first mode left out.
 
-    The modes are those that stand for what is left out.
+    `modes` are those that represent the modes left out.
     """
     structure, omega, beyond = truncation.structure, truncation.omega, truncation.beyond
     if omega**2 >= beyond:
@@ -133,11 +135,12 @@ def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, s
 def error_at_other_rows(
     truncation: Truncation, found: Flexibility, loads: FloatArray, others: Sequence[int]
 ) -> tuple[float, float]:
-    """Error of the displacements at other rows under the loads, and the part of it by damping.
+    """Error of the displacements at other rows under the loads, and the part of it due to damping.
 
-    Of the two static receptances the geometric mean; the second is to be multiplied by the loss factor. Their
-    own flexibility is not among the modes: Galerkin's solution errs at them by more, and the part m_3 of what
-    is left out is only known to be at most m_2 over the first frequency left out, here and in the modes.
+    It is relative to the geometric mean of the two static receptances; the second is to be multiplied by the
+    loss factor. The modes do not contain the flexibility of these rows. So Galerkin's solution errs more at
+    them, and m_3 is only known to be at most m_2 over the first frequency left out. That holds both for the
+    modes left out and for the modes that represent them.
     """
     omega, beyond = truncation.omega, truncation.beyond
     if omega**2 >= beyond:
@@ -171,7 +174,8 @@ def _damping_error(
 ) -> FloatArray:
     """Bound of the error of m_3 of each load over its static receptance; `sixth`: whether m_6 is known.
 
-    In units of the greatest part of each load and of the lowest mode: the powers of extreme ones overflow.
+    It is computed relative to the greatest part of each load and the lowest mode: powers of extremes
+    overflow.
     """
     if not modes.count:
         return np.zeros(outer.shape[1])
@@ -192,11 +196,10 @@ def _damping_error(
 def _static(
     structure: FactoredStructure, kept: Modes, loads: FloatArray, rest: FloatArray, omega: float
 ) -> FloatArray:
-    """Static displacement of each load along itself, from the modes' part and `rest`.
+    """Static displacement of each load along itself, from the kept modes' part and `rest`.
 
-    That of rigid-body modes is taken at omega, if omega is not 0.
-
-    What pushes rigid-body modes has no static answer; up to omega theirs is at least that.
+    Rigid-body modes have no static response. Their response at omega is taken, if omega is not 0: up to omega
+    it is at least that.
     """
     rigid = kept.stiffness <= -structure.shift
     on_modes = np.abs(kept.shapes.conj().T @ loads) ** 2
@@ -219,7 +222,7 @@ def _orthogonal(structure: FactoredStructure, kept: Modes, displacements: FloatA
 
 
 def _of_energy_1(structure: FactoredStructure, columns: FloatArray, least: FloatArray | float) -> FloatArray:
-    """Columns scaled to elastic energy 1; those with no more than `least` are rounding and left out."""
+    """Columns scaled to elastic energy 1; columns of energy up to `least` are rounding and left out."""
     energy = energy_of(structure.K, columns)
     unit: FloatArray = columns[:, energy > least] / np.sqrt(energy[energy > least])
     return unit
@@ -228,7 +231,7 @@ def _of_energy_1(structure: FactoredStructure, columns: FloatArray, least: Float
 def _galerkin(structure: FactoredStructure, basis: FloatArray, far: float, independent: float) -> Modes:
     """Modes within a space of displacements, without nearly dependent directions.
 
-    far is the square of the highest angular frequency that one may have.
+    far is the greatest squared angular frequency of a mode.
     """
     if not basis.shape[1]:
         return Modes(np.zeros(0), basis)
@@ -236,8 +239,8 @@ def _galerkin(structure: FactoredStructure, basis: FloatArray, far: float, indep
     unit = 1.0 / np.sqrt(np.diagonal(stiffness).real)
     value, vector = scipy.linalg.eigh(stiffness * unit * unit[:, None])
     good = value > independent * value.max()
-    basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # of stiffness 1
+    basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # columns of stiffness 1
     mass, turn = scipy.linalg.eigh(basis.conj().T @ (structure.M @ basis))
-    # in descending order of mass: in ascending order of frequency
+    # descending order of mass is ascending order of frequency
     shapes = (basis @ turn / np.sqrt(np.maximum(mass, 1.0 / far)))[:, ::-1]
     return Modes(energy_of(structure.K, shapes), shapes)

@@ -1,12 +1,13 @@
-"""Places of the contacts' displacements, and of the forces along them, among the unknowns of a balance.
+"""Indices of the contacts' displacements, and of the forces along them, among the unknowns of a balance.
 
-Contact after contact the means of its displacements along each of its directions, then for each harmonic the
-real and imaginary part of each of them:
+For each contact in turn: the means of its displacements along each of its directions, then for each harmonic
+the real and imaginary part of each displacement:
 
     x_0, y_0, ..., Re X_1, Im X_1, Re Y_1, Im Y_1, ..., Re X_2, ...
     x = x_0 + Re sum_j X_j exp(i h_j theta)
 
-The last direction of a contact is its normal. A port is a direction of a contact; ports are counted through.
+The last direction of a contact is its normal. A port is a direction of a contact; ports are numbered
+consecutively over all contacts.
 """
 
 from __future__ import annotations
@@ -69,7 +70,7 @@ class Layout(Frozen):
 
     @cached_property
     def waves_at(self) -> IntArray:
-        """Index (harmonic, port) of the real part of each port's amplitude in every harmonic."""
+        """Index (harmonic, port) of the real part of each port's amplitude at every harmonic."""
         return self.wave_at + self.stride * np.arange(self.harmonics)[:, None]
 
     @cached_property
@@ -128,7 +129,7 @@ def layout_of(contacts: int, directions: int, harmonics: int) -> Layout:
 
 @lru_cache(maxsize=256)
 def _between(layout: Layout, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, IntArray, IntArray]:
-    """Number of unknowns with new harmonics; indices of shared harmonics in the new and old ones."""
+    """Number of unknowns with the new harmonics; indices of the shared harmonics in new and old unknowns."""
     wide = layout_of(layout.contacts, layout.directions, len(new))
     both = [h for h in (0, *old) if h == 0 or h in new]
     to, of = (

@@ -17,7 +17,7 @@ from fcm.structure.receptance import DrivenModes, Receptance, dynamic_stiffness
 from fcm.structure.rigid import settled
 
 ComplexArray = npt.NDArray[np.complex128]
-FROM_SINE = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
+FROM_SINE = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re(X exp(i omega t))
 
 
 class Linear(Frozen):
@@ -28,15 +28,15 @@ class Linear(Frozen):
     ports: FloatArray  # (mode, port)
     dofs: FloatArray  # (mode, dof)
     force: ComplexArray  # (driven, mode) of x = Re(X exp(i h omega t))
-    square: ComplexArray  # (driven, mode) times omega^2, beside the force
-    load: FloatArray  # (mode,) static
-    flexibility: FloatArray  # (mode, mode) displacements under mean forces
-    counted: FloatArray  # (contact,) normal stiffness that is counted to the structure in the means
+    square: ComplexArray  # (driven, mode) force per omega^2, in addition to `force`
+    load: FloatArray  # (mode,) static forces
+    flexibility: FloatArray  # (mode, mode) of displacements under mean forces
+    counted: FloatArray  # (contact,) normal stiffness that the flexibility includes
     adrift: npt.NDArray[np.bool_]  # (mode,) rigid-body modes that no closed contact holds
-    driven: tuple[int, ...]  # harmonics h of the forces, of which the first is 1
+    driven: tuple[int, ...]  # harmonics h of the forces, the first is 1
 
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
-        """Receptances of the ports at some harmonics, with the sums over modes or without them."""
+        """Receptances of the ports at some harmonics; summed: with the sums over modes."""
         modes = DrivenModes(self.ports, self.natural, self.damping, self.force, self.square, self.driven)
         return Receptance(modes, self.static, harmonics, self.counted.size, summed)
 
@@ -62,12 +62,12 @@ class Linear(Frozen):
 
     @cached_property
     def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-        """Combination of ports that each degree of freedom is, see `attached_to`."""
+        """Combination of ports that equals each degree of freedom, see `attached_to`."""
         return attached_to(self.ports, self.dofs)
 
     @cached_property
     def numbers(self) -> tuple[bytes, ...]:
-        """Key of the structure: bytes that are equal for equal structures."""
+        """Key of the structure: bytes that are equal if the structures are equal."""
         arrays = (getattr(self, field.name) for field in fields(Linear) if field.name != "driven")
         return (bytes(str(self.driven), "ascii"), *(array.tobytes() for array in arrays))
 
@@ -83,12 +83,11 @@ class Linear(Frozen):
         return self.receptance(np.array(self.driven, dtype=np.float64))
 
     def answers_with(self, springs: FloatArray, omega: FloatArray) -> ComplexArray:
-        """Responses (case, point, driven, port) to the forces, with springs (case, port) in place of
-        contacts.
+        """Responses (case, point, driven, port) to the forces, with springs (case, port) instead of contacts.
 
-        Frequencies are omega (point,). They come from the dynamic stiffness of the modes with the springs.
-
-        That is as large as the modes are many, where the ports' receptance is as large as these are.
+        omega (point,) are the frequencies. The responses follow from the dynamic stiffness of the modes with
+        the springs, a matrix as large as the number of modes, instead of the receptance, as large as the
+        number of ports.
         """
         orders = np.array(self.driven, dtype=np.float64)
         stiffness = _stiffness(self.natural, self.damping, omega, orders)
@@ -100,21 +99,21 @@ class Linear(Frozen):
         return found
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
-        """Displacements (point, harmonic, dof) by forces on the ports (point, harmonic, port)."""
+        """Displacements (point, harmonic, dof) under forces on the ports (point, harmonic, port)."""
         modal = force @ self.ports.T
         return amplitudes(self.natural, self.damping, omega, harmonics, modal) @ self.dofs
 
     def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
-        """Natural frequencies (mode,) [rad/s] with springs (port,) in place of contacts, for a harmonic."""
+        """Natural frequencies (mode,) [rad/s] with springs (port,) instead of contacts, for a harmonic."""
         return with_springs(self.natural, self.ports, springs)
 
 
 def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-    """Combination of ports (port, dof) that equals each degree of freedom, and a flag (dof,) where none does.
+    """Combination of ports (port, dof) that equals each degree of freedom, and a flag (dof,) if none does.
 
-    Shapes on both, (mode, port) and (mode, dof). One port is enough where it moves as the degree of freedom:
-    of fewer modes than ports all could be combined to that. A combination of several ports is one only where
-    they do not nearly cancel.
+    ports (mode, port) and dofs (mode, dof) are shapes. A single port is taken if it moves as the degree of
+    freedom: with fewer modes than ports, a combination of all ports would always exist. A combination of
+    several ports is accepted only if its terms do not nearly cancel.
 
     >>> ports = np.array([[1.0, 2.0, 1.0], [1.0, -1.0, 0.0]])
     >>> shares, apart = attached_to(ports, 2.0 * ports[:, 1:2])
@@ -191,7 +190,7 @@ def _stiffness(
 
 
 class _Last(threading.local):
-    """The structure that each thread requested last, with its key; the curves of a sweep share it."""
+    """The structure that each thread requested last, with its key; all curves of a sweep share it."""
 
     def __init__(self) -> None:
         self.key: tuple[object, ...] = ()
@@ -202,8 +201,8 @@ _LAST = _Last()
 
 
 def linear_of(scene: Scene) -> Linear:
-    """The `Linear` structure of a scene (of one curve)."""
-    if scene.ring is not None or not scene.modal.frequency.all():  # others have the contacts' stiffness in it
+    """The `Linear` structure of a scene of one curve."""
+    if scene.ring is not None or not scene.modal.frequency.all():  # these contain the contacts' stiffness
         return _made(scene)
     modal, forces = scene.modal, [(one.amplitude, one.phase, one.power, one.harmonic) for one in scene.forces]
     arrays = (modal.frequency, modal.damping, modal.mass, modal.shapes, *scene.directions())
@@ -253,11 +252,11 @@ def _made(scene: Scene) -> Linear:
 def _flexibility(
     natural: FloatArray, normal: FloatArray, k_v: FloatArray, adrift: npt.NDArray[np.bool_]
 ) -> FloatArray:
-    """Flexibility (mode, mode) of the modes, with normal springs counted to them; modes adrift have none.
+    """Flexibility (mode, mode) of the modes, including normal springs; modes adrift have none.
 
-    Without stiffness of its own a rigid-body mode has no flexibility. Then the normal springs of the contacts
-    are counted to the structure, and taken off the contacts' forces again. The equation is the same, and its
-    terms are finite as long as the closed contacts hold the structure.
+    A rigid-body mode has no stiffness, and so no flexibility. The normal springs of the contacts are then
+    added to the structure, and subtracted from the contacts' forces. The equation is the same, and its terms
+    are finite as long as the closed contacts hold the structure.
     """
     if not (natural == 0.0).any():
         return np.diag(natural**-2)

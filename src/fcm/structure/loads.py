@@ -15,9 +15,9 @@ ComplexArray = npt.NDArray[np.complex128]
 class Loads(NamedTuple):
     """External forces: static + Im(sum_h (constant_h + omega^2 square_h) exp(i h omega t))."""
 
-    harmonics: tuple[int, ...]  # (driven,) h: 1, and those of which there are forces
+    harmonics: tuple[int, ...]  # (driven,) h: 1, and the harmonics of forces
     constant: ComplexArray  # (driven, dof)
-    square: ComplexArray  # (driven, dof) as of an unbalance; omega in rad/s
+    square: ComplexArray  # (driven, dof) as of an unbalance, with omega in rad/s
     static: FloatArray  # (dof,)
 
     def at(self, omega: float) -> ComplexArray:
@@ -26,7 +26,7 @@ class Loads(NamedTuple):
 
 
 def driven_harmonics(scene: Scene) -> tuple[int, ...]:
-    """The harmonics at which there are forces, in order, and always 1."""
+    """The harmonics of the forces, and always 1, in ascending order."""
     return tuple(sorted({1, *(force.harmonic for force in scene.forces)}))
 
 

@@ -1,18 +1,18 @@
 r"""A ring with different blades, in the modal coordinates of the ring with equal blades.
 
-The tuned modes of nodal diameter n, P_i on one sector (P_i^H M P_i = 1 for each sector), move sector k by
-
+The tuned modes of nodal diameter n have the shapes P_i on one sector (P_i^H M P_i = 1 for each sector). They
+move sector k by
     x_k = sqrt(2 / N) Re(P_i exp(2 pi i n k / N) z),    z = c + i s
 
-with the two real coordinates c, s of modal mass 1; of n = 0 and of N / 2 there is c alone, with 1 / sqrt(N).
-Of blade k the stiffness K_b is multiplied by 1 + d_k. In these coordinates that adds
+with two real coordinates c, s of modal mass 1. For n = 0 and N / 2 there is only c, with 1 / sqrt(N). The
+stiffness K_b of blade k is multiplied by 1 + d_k. In these coordinates that adds
 
     dK = sum_k d_k X_k^T K_b X_k,    X_k (row, coordinate) the displacements of sector k
 
-to diag(w_i^2), and couples the waves of all diameters. With all modes of the sector it is exact. With some of
-them it is the method of the subset of nominal modes (Yang and Griffin, Journal of Engineering for Gas
-Turbines and Power 123, 2001). That is accurate while the mistuned modes are combinations of the modes that
-are kept.
+to diag(w_i^2), and couples the waves of all diameters. With all modes of the sector this is exact. With some
+of them it is the method of the subset of nominal modes (Yang and Griffin, Journal of Engineering for Gas
+Turbines and Power 123, 2001). That is accurate as long as the mistuned modes are combinations of the kept
+modes.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ ComplexArray = npt.NDArray[np.complex128]
 class MistunedOptions(Frozen):
     """Tolerances for mistuned rings."""
 
-    # w^2 relative to the lowest nonzero one of the tuned ring, below which it is 0
+    # w^2 relative to the lowest nonzero one of the tuned ring, up to which it counts as 0
     rigid_tolerance: float = 1e-9
-    # likeness of the shapes of a family from which on their strains are taken as alike
+    # likeness of the shapes of a family from which on their strains count as alike
     min_likeness: float = 0.5
 
 
@@ -40,9 +40,9 @@ OPTIONS = MistunedOptions()
 
 
 class Basis(Frozen):
-    """Real coordinates of a ring: the shape on sector k is r_k Re P + i_k Im P of a sector mode's P."""
+    """Real coordinates of a ring: the shape on sector k is r_k Re P + i_k Im P, with P of a sector's mode."""
 
-    mode: npt.NDArray[np.intp]  # (coordinate,) the sector's mode that it belongs to
+    mode: npt.NDArray[np.intp]  # (coordinate,) the sector's mode of each coordinate
     real: FloatArray  # (coordinate, sector)
     imaginary: FloatArray  # (coordinate, sector)
 
@@ -55,7 +55,7 @@ class Basis(Frozen):
     def stiffness(self, energy: FloatArray, change: FloatArray) -> FloatArray:
         """Stiffness change (coordinate, coordinate) by relative changes (sector,) of the blades' stiffness.
 
-        energy (2, mode, 2, mode) is K_b between the real (0) and imaginary (1) parts of the modes' shapes.
+        energy (2, mode, 2, mode): K_b between real (0) and imaginary (1) parts of the modes' shapes.
         """
         parts = (self.real, self.imaginary)
         found = np.zeros((self.mode.size, self.mode.size))
@@ -67,7 +67,7 @@ class Basis(Frozen):
 
 
 def basis_of(diameter: npt.NDArray[np.int64], sectors: int) -> Basis:
-    """Coordinates of a ring with a number of sectors, from the nodal diameters (mode,) of a sector's modes.
+    """Coordinates of a ring of N sectors, from the nodal diameters (mode,) of a sector's modes.
 
     >>> basis = basis_of(np.array([0, 1, 2]), 4)
     >>> basis.mode.tolist(), basis.real[1].round(3).tolist()
@@ -97,13 +97,13 @@ def energy_of(shapes: ComplexArray, weighted: ComplexArray) -> FloatArray:
 def strains(
     frequency: FloatArray, shapes: ComplexArray, diameter: npt.NDArray[np.int64]
 ) -> tuple[ComplexArray, FloatArray]:
-    """Strain amplitudes (mode, family) of sector modes with unknown stiffness, and their likeness.
+    """Strain amplitudes (mode, family) of sector modes for an unknown stiffness, and their likeness.
 
-    The fundamental mistuning model (Feiner and Griffin, Journal of Turbomachinery 124, 2002): the i-th modes
-    of all diameters are a family, in which a sector deforms alike. So the strain energy of a sector between
-    two of a family is w_i w_j times a factor of phase, that of P_ref^H P; between two families there is none.
-    The likeness (mode,) is |P_ref^H P| / (|P_ref| |P|), which the model takes as 1; P_ref is of the lowest
-    diameter.
+    In the fundamental mistuning model (Feiner and Griffin, Journal of Turbomachinery 124, 2002) the i-th
+    modes of all diameters are a family, in which a sector deforms alike. So the strain energy of a sector
+    between two modes of a family is w_i w_j times a phase factor, that of P_ref^H P; between two families it
+    is 0. The likeness (mode,) is |P_ref^H P| / (|P_ref| |P|), which the model takes as 1; P_ref belongs to
+    the lowest diameter.
     """
     order = np.lexsort((frequency, diameter))
     families = int((diameter == diameter.min()).sum())
@@ -124,14 +124,14 @@ def strains(
 def modes_of_mistuned(squared: FloatArray, change: FloatArray) -> tuple[FloatArray, FloatArray]:
     """w^2 (mode,) in ascending order, and eigenvectors (coordinate, mode), of diag(squared) + change.
 
-    They are found by a Jacobi method, which is as accurate for the lowest modes as for the highest (Drmac and
-    Veselic, SIAM Journal on Matrix Analysis 29, 2008). The highest stand for flexibility and can be a million
-    times as high.
+    A Jacobi method computes them, which is as accurate for the lowest modes as for the highest (Drmac and
+    Veselic, SIAM Journal on Matrix Analysis 29, 2008). The highest modes represent flexibility and can be a
+    million times as high.
 
     Raises
     ------
     StructureError
-        If that has a negative eigenvalue, or one of 0 beside those that the tuned ring has.
+        If an eigenvalue is negative, or more eigenvalues are 0 than those of the tuned ring.
 
     Examples
     --------

@@ -1,9 +1,9 @@
 """Multifrontal factors of large sparse symmetric or Hermitian matrices: A = L S L^H with signs S.
 
-Columns that share their entries are eliminated together, in a dense front, by LAPACK and BLAS. Its pivots are
-factored by Cholesky where they are positive definite, else by their eigenvalues, whose signs are counted. By
-Haynsworth's rule A has as many negative eigenvalues as the pivots of all fronts together. One triangle is
-kept, half of what L and U take.
+Columns that share their entries are eliminated together, in a dense front, by LAPACK and BLAS. The pivots of
+a front are factored by Cholesky if they are positive definite, otherwise by an eigendecomposition, whose
+signs are counted. By Haynsworth's rule, A has as many negative eigenvalues as the pivots of all fronts
+together. One triangle is stored, half the size of L and U.
 
 Sources: J. W. H. Liu, The multifrontal method for sparse matrix solution: theory and practice, SIAM Review
 34 (1992) 82; E. V. Haynsworth, Determination of the inertia of a partitioned Hermitian matrix, Linear
@@ -38,7 +38,7 @@ class Factor:
     Attributes
     ----------
     negative
-        How many of its eigenvalues are negative.
+        Number of its negative eigenvalues.
 
     >>> factor = Factor(scipy.sparse.csc_array([[1.0, 2.0], [2.0, 1.0]]))
     >>> factor.solve(np.array([3.0, 3.0])).round(12).tolist(), factor.negative
@@ -53,7 +53,7 @@ class Factor:
         SingularError
             If a pivot is zero to rounding.
         MemoryError
-            If the memory does not hold the factor.
+            If the factor does not fit into memory.
         """
         matrix = scipy.sparse.csc_array(matrix)
         self._tree = tree or tree_of(matrix)
@@ -85,7 +85,7 @@ class Factor:
         scale = float(np.abs(lower.diagonal()).max(initial=0.0))
         place = np.empty(lower.shape[0], dtype=np.intp)
         sizes = np.diff(self._tree.begin) + np.array([below.size for below in self._tree.below])
-        room = np.empty(int(sizes.max()) ** 2, dtype=lower.dtype)  # of one front after the other
+        room = np.empty(int(sizes.max()) ** 2, dtype=lower.dtype)  # shared by all fronts in turn
         waiting: dict[int, list[tuple[IntArray, Array]]] = {}
         for number, ((first, last), below) in enumerate(
             zip(pairwise(self._tree.begin), self._tree.below, strict=True)
@@ -108,11 +108,11 @@ class Factor:
 
 
 class _Front(Frozen):
-    """What is kept of an eliminated front: pivots F = L S L^H, and the rows B below them."""
+    """The stored part of an eliminated front: pivots F = L S L^H, and the rows B below them."""
 
-    pivots: Array  # L; or its inverse where signs are given
+    pivots: Array  # L; or its inverse if there are signs
     beneath: Array  # B L^-H
-    signs: Array | None  # S; none where all are positive
+    signs: Array | None  # S; None if all are positive
 
     @property
     def negative(self) -> int:
@@ -167,10 +167,10 @@ def _of_any_sign(full: Array, count: int, scale: float) -> _Front:
 
 
 def _add(full: Array, at: IntArray, left: Array, together: int = 64) -> None:
-    """Adds the update of one front (lower triangle) to another front, at ascending places.
+    """Adds the update of one front (lower triangle) to another front, at ascending indices.
 
-    Some columns at a time: those of one node alone would take as many calls as there are nodes, squared. What
-    is above the diagonal in them is added as well, where nothing is read.
+    `together` columns are added at a time, as single nodes would take as many calls as there are nodes,
+    squared. Entries above the diagonal in these columns are added as well, but never read.
     """
     flat, size = full.ravel(order="K"), full.shape[0]  # by columns
     for first in range(0, at.size, together):

@@ -1,14 +1,14 @@
-"""Receptances of the structure at the contacts, for every harmonic of a frequency, summed over modes.
+"""Receptances of the structure at the contacts, for every harmonic of a frequency, as sums over modes.
 
-With modes of mass 1, shapes P on the ports, those of the first contact first, and x = Re(X exp(i h omega t)),
+With modes of mass 1, shapes P on the ports in the order of the contacts, and x = Re(X exp(i h omega t)),
 
     G(h omega) = sum_i P_i P_i^T c_i,    c_i = 1 / (w_i^2 - (h omega)^2 + 2 i zeta_i w_i h omega)
 
 and the derivatives by omega.
 
-Of a ring in which a wave travels there is one structure for each harmonic. Harmonic h of the motion of sector
-k is X_h exp(i h k phi), so it meets the modes of one nodal diameter (`TravellingReceptance`). These have
-complex shapes P on the ports, in which the next sector counts exp(i h phi) times:
+In a ring with a travelling wave, each harmonic has its own structure. Harmonic h of the motion of sector k is
+X_h exp(i h k phi), so it excites the modes of one nodal diameter (`TravellingReceptance`). Their shapes P on
+the ports are complex; on the next sector they are multiplied by exp(i h phi):
 
     G(h omega) = sum_i P_i P_i^H c_i = A + B + i (D - D^T),    P = a + i b
 
@@ -30,9 +30,9 @@ from fcm.structure.options import DAMPING, RECEPTANCE
 
 
 def modal_stiffness(natural: float, rate: float, w: float, least_loss: float) -> tuple[float, float]:
-    """Dynamic stiffness w_n^2 - w^2 + i rate w of a mode of mass 1, its real and imaginary part.
+    """Dynamic stiffness w_n^2 - w^2 + i rate w of a mode of mass 1: its real and imaginary part.
 
-    Never zero: nothing damps an undamped mode that is excited at its own frequency, and a little does here.
+    It is never zero: an undamped mode excited at its own frequency is given a small damping.
     """
     # the difference of squares as a product: exact next to an undamped resonance
     re: float = (natural - w) * (natural + w)
@@ -78,18 +78,18 @@ class DrivenModes(NamedTuple):
 class Receptance:
     """Receptances at the ports of contacts, and the response to external forces, at one frequency.
 
-    G_re, G_im, dG_re, dG_im (harmonic, port, port) are receptances and derivatives; X_re, X_im, dX_re, dX_im
-    (driven, port) the response to the external forces. c, s (harmonic, mode) are the compliances of the modes
-    and their derivatives, static (port, port) is for mean forces. force_re, force_im, slope_re, slope_im
-    (driven, mode) are the external forces at omega and their derivatives. Without `summed`, for many ports, G
-    is not made; responses then go by the modes.
+    G_re, G_im, dG_re, dG_im (harmonic, port, port) are the receptances and their derivatives; X_re, X_im,
+    dX_re, dX_im (driven, port) the response to the external forces. c, s (harmonic, mode) are the compliances
+    of the modes and their derivatives; static (port, port) is for mean forces. force_re, force_im, slope_re,
+    slope_im (driven, mode) are the external forces at omega and their derivatives. Without `summed`, for many
+    ports, G is not computed; responses are then computed by modes.
 
-    forced (harmonic,) is the number of the external force at each harmonic of the list, -1 where there is
-    none, and first the place of harmonic 1 in the list.
+    forced (harmonic,) is the number of the external force at each harmonic of the list, -1 if there is none;
+    first is the place of harmonic 1 in the list.
 
     mean_at, wave_at (port,): indices of the mean of a port and of the real part of its first harmonic among
-    the unknowns of a balance, see `fcm.structure.layout`. stride: from the index of one harmonic to the next.
-    layout: that of these unknowns, where the ports belong to so many contacts.
+    the unknowns of a balance, see `fcm.structure.layout`. stride: step of the index from one harmonic to the
+    next. layout: the layout of these unknowns, for the given number of contacts.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Receptance:
         self.force_re, self.force_im = np.array(force.real), np.array(force.imag)
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.slope_re, self.slope_im = np.zeros((2, *force.shape))
-        self.weights = np.zeros((4 * count, modes))  # those of the modes, and the sums over these, as one
+        self.weights = np.zeros((4 * count, modes))  # of the modes; contiguous with the sums over them
         self.summed, size = summed, ports if summed else 0
         self.sum = np.zeros((4 * count * size, size))
         self.c_re, self.c_im, self.s_re, self.s_im = np.asarray(self.weights).reshape(4, count, modes)
@@ -305,8 +305,8 @@ class Receptance:
 class TravellingReceptance(Receptance):
     """Receptances of a ring's sector, from those of each travelling-wave harmonic.
 
-    `waves` (harmonic,) are real receptances on ports with real and with imaginary parts, each of one
-    harmonic.
+    `waves` (harmonic,) are real receptances of one harmonic each. Their ports are the real, then the
+    imaginary parts of the sector's ports.
     """
 
     def __init__(
@@ -396,11 +396,10 @@ class ForcedModes:
         size: cython.double[::1],
         out: cython.double[::1],
     ) -> cython.int:
-        """Fills, for some harmonics, the greatest amplitude over the size of a degree of freedom:
-        (harmonic,).
+        """Fills the greatest amplitude, relative to the size of its degree of freedom, for some harmonics.
 
-        force (harmonic, port, 2): real and imaginary parts; size (dof,), where 0 does not count; harmonic 1
-        is the first of both.
+        force (harmonic, port, 2): real and imaginary parts; size (dof,), where 0 is left out. Harmonic 1 is
+        the first of force and of the result.
         """
         k: cython.Py_ssize_t
         for k in range(harmonics.shape[0]):

@@ -30,11 +30,11 @@ from fcm.structure.rounding import of_frequencies, of_receptances
 
 
 class ModeSelection(Frozen):
-    """Options on what is kept of a structure."""
+    """Options on what is kept of a structure in its reduction."""
 
-    count: int | None = None  # modes; None for all up to some times the highest frequency of interest
-    flexibility: bool = True  # whether that of the other modes is kept as well, under the loads
-    other_rows: Sequence[int] = ()  # whose displacement is asked for, though no load acts there
+    count: int | None = None  # of modes; None: all up to some times the highest frequency of interest
+    flexibility: bool = True  # whether the flexibility of the other modes under the loads is kept as well
+    other_rows: Sequence[int] = ()  # rows without loads whose displacements are reported
 
 
 class Reduced(Frozen):
@@ -44,20 +44,18 @@ class Reduced(Frozen):
     kept: int
     rigid: int
     beyond: float  # [rad/s] first frequency left out; inf if there is none
-    bound: float  # of the receptances among the loads, relative to their static ones
-    damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
-    rounding: float = 0.0  # how far the frequency of a mode that is kept may be off, relative
-    other_rows: tuple[float, float] = (0.0, 0.0)  # see `flexibility.error_at_other_rows`, with rounding
-    digits: int | None = None  # with which the stiffness was written, if these are few
+    bound: float  # of the receptances between the loads, relative to their static ones
+    damping: float = 0.0  # bound of the error of a resonance's damping, if all modes have one ratio
+    rounding: float = 0.0  # relative error of a kept mode's frequency by rounding
+    other_rows: tuple[float, float] = (0.0, 0.0)  # see `flexibility.error_at_other_rows`; with rounding
+    digits: int | None = None  # digits with which the stiffness was written, if they are few
     unclear: float = 0.0  # see `rigid_body.unclear_below`
 
 
 def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, selection: ModeSelection) -> Reduced:
     """Reduces a structure to modes for loads (row, load) up to the angular frequency top.
 
-    For the selection's other rows the error of their displacement is estimated as well.
-
-    At the other rows of the selection it is told how far what that leaves out is off.
+    For the selection's other rows the error of their displacement is bounded as well.
     """
     count, rest, others = selection.count, selection.flexibility, selection.other_rows
     structure = factored_structure(K, M, top)
@@ -76,7 +74,7 @@ def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, selection: Mode
     plain = Reduced(kept, wanted, rigid, np.inf, 0.0, rounding=off, digits=digits_of(K), unclear=unclear)
     if found.count == wanted and (wanted == structure.rows or not (rest and loads.shape[1])):
         return plain
-    beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
+    beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # the rest is massless
     plain = replace(plain, beyond=float(np.sqrt(beyond)))
     if not (rest and loads.shape[1]):
         return replace(plain, bound=np.nan)
@@ -102,10 +100,11 @@ def _cleared(structure: FactoredStructure, found: Modes) -> Modes:
 
 
 def _elastic_apart(structure: FactoredStructure, found: Modes, rigid: int) -> tuple[FactoredStructure, Modes]:
-    """The structure and its modes, with elastic modes orthogonal to the rigid-body modes, which are first.
+    """The structure and its modes, rigid-body modes first, elastic modes orthogonal to them.
 
-    Beside rigid-body modes, -1 / s, they lose the digits by which s is nearer to zero than their lambda. If
-    these are many, all are solved for again about -lambda of the first.
+    Relative to rigid-body modes, with 1 / -s, elastic modes lose as many digits as s is nearer to zero than
+    their lambda. If these are many, all modes are computed again with the shift -lambda of the first elastic
+    mode.
     """
     if not 0 < rigid < found.count:
         return structure, found
@@ -123,14 +122,14 @@ def _elastic_apart(structure: FactoredStructure, found: Modes, rigid: int) -> tu
 
 
 def _together(kept: Modes, more: Modes) -> Modes:
-    """The modes of the structure followed by those that represent the rest."""
+    """The modes of the structure, followed by those that represent the rest."""
     return Modes(
         np.concatenate((kept.stiffness, more.stiffness)), np.concatenate((kept.shapes, more.shapes), axis=1)
     )
 
 
 def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
-    """Unit loads (row, load) on those rows that move least under a load along themselves."""
+    """Unit loads (row, load) on those of the other rows that move least under a load along themselves."""
     elastic = modes.stiffness > 0.0
     seen = np.abs(modes.shapes[list(others)][:, elastic].T) ** 2
     order = np.argsort((seen / modes.stiffness[elastic, None]).sum(axis=0))
@@ -140,14 +139,14 @@ def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:
-    """Number of modes kept where no number is requested."""
+    """Number of modes kept if no number is given."""
     if rows <= REDUCTION.full_size:
         return modes.count
     return max(REDUCTION.min_modes, int((modes.stiffness < (REDUCTION.frequency_factor * top) ** 2).sum()))
 
 
 def _enough(modes: Callable[[int], Modes], rows: int, top: float, count: int | None) -> Modes:
-    """The modes that are kept and one more, if there is one."""
+    """The modes that are kept, and one more if there is one."""
     if count is not None:
         return modes(min(count + 1, rows))
     number = min(rows, REDUCTION.full_size)

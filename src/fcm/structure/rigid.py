@@ -1,9 +1,9 @@
 """Rigid-body modes: those that closed contacts hold, and those that are adrift.
 
-A rigid-body mode has no stiffness of its own. In the mean only normal forces answer its displacement, for
-friction depends on motion and not on place. So the rigid-body modes are turned, among themselves, into
-those that move some contact along its normal, and those that move none. The latter are adrift: no
-mean force depends on where they are, and what pushes them on average pushes them on and on.
+A rigid-body mode has no stiffness. In the mean only normal forces respond to its displacement, as friction
+depends on motion and not on place. So the rigid-body modes are rotated, among themselves, into modes that
+move some contact along its normal, and modes that move none. The latter are adrift: no mean force depends on
+their place, and a mean load accelerates them without end.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def settled(scene: Scene) -> tuple[Modal, BoolArray]:
-    """The modes with rigid-body modes rotated into held and adrift ones; mask (mode,) of the latter."""
+    """The modes with rigid-body modes rotated into held and adrift ones; mask (mode,) of those adrift."""
     modal = scene.modal
     adrift = np.zeros(modal.frequency.size, dtype=bool)
     rigid = np.flatnonzero(modal.frequency == 0.0)

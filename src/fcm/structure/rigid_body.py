@@ -1,4 +1,4 @@
-"""Recognises rigid-body modes in the results of an eigensolver, whose small frequency is rounding."""
+"""Recognise rigid-body modes in the results of an eigensolver, whose low frequencies are rounding."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from fcm.structure.options import RIGID_BODY
 if TYPE_CHECKING:
     from fcm.structure.eigen import FloatArray, Matrix, Modes
 
-MOST = 6  # rigid-body modes of one body
+MOST = 6  # number of rigid-body modes of one body
 
 
 def rigid_by_gap(frequency: FloatArray, most: int = MOST) -> int:
-    """Number of rigid-body modes among modes of nonzero frequency, by a gap after the lowest; at most `most`.
+    """Number of rigid-body modes among modes of nonzero frequency, by a gap after them; at most `most`.
 
-    Their own frequencies are rounding, and may be as far from each other.
+    The frequencies of rigid-body modes are rounding, and may also have gaps between them.
 
     >>> rigid_by_gap(np.array([2e-8, 1e-3, 2e-3, 52.0, 80.0])), rigid_by_gap(np.array([0.5, 52.0, 80.0]))
     (3, 0)
@@ -31,7 +31,7 @@ def rigid_by_gap(frequency: FloatArray, most: int = MOST) -> int:
 
 
 def most_rigid(K: Matrix) -> int:
-    """Greatest possible number of rigid-body modes: six for each body, fewer for one with fewer rows.
+    """Greatest possible number of rigid-body modes: six for each body, fewer if it has fewer rows.
 
     >>> import scipy.sparse
     >>> most_rigid(scipy.sparse.block_diag([np.ones((2, 2)), np.ones((9, 9))]))
@@ -41,7 +41,7 @@ def most_rigid(K: Matrix) -> int:
 
 
 def bodies(K: Matrix) -> npt.NDArray[np.intp]:
-    """The body of each row (row,): the number of the part of the structure that stiffness couples it to.
+    """The body of each row (row,): the number of the part of the structure that its stiffness couples it to.
 
     >>> import scipy.sparse
     >>> bodies(scipy.sparse.block_diag([np.ones((2, 2)), -np.ones((3, 3))])).tolist()
@@ -55,14 +55,14 @@ def bodies(K: Matrix) -> npt.NDArray[np.intp]:
 def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
     """Number of lowest modes that have no stiffness beyond the rounding of the matrices.
 
-    No unit of a row changes what is compared, each time with a gap to the next frequency that is the wider,
-    the less is known of the rounding:
+    The criteria do not depend on the units of the rows. Each needs a gap to the next frequency, which is the
+    wider the less is known of the rounding:
 
-    - the share that is left of the sum of terms of the elastic energy, phi^T K phi / |phi|^T |K| |phi|;
-    - the most negative stiffness. No structure has one, so it is the error that a reduction has left;
-    - phi^T K phi / phi^T M phi beside the largest ratio of the diagonals. A reduction to few rows leaves of a
-      free body rounding alone, which is all of their stiffness then;
-    - the last digits that the entries were written with.
+    - the elastic energy relative to the sizes of its terms, phi^T K phi / |phi|^T |K| |phi|;
+    - the most negative stiffness. No structure has one, so it is an error left by a reduction;
+    - phi^T K phi / phi^T M phi relative to the largest ratio of the diagonals. After a reduction to few rows,
+      a free body has only rounding, which is then all of its stiffness;
+    - the last digits with which the entries were written.
     """
     share = _share(K, modes)
     size, many = np.abs(modes.stiffness), most_rigid(K)
@@ -73,7 +73,7 @@ def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
         if count == size.size:
             if left <= RIGID_BODY.cancellation_tolerance:
                 return count
-            continue  # nothing tells how soft they are
+            continue  # there is no next frequency to compare with
         gap = float(np.sqrt(highest)) / max(float(frequency[count]), 1e-300)
         if (
             (left <= RIGID_BODY.cancellation_tolerance and gap <= RIGID_BODY.max_cancelled_ratio)
@@ -86,7 +86,7 @@ def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
 
 
 def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
-    """Number of lowest modes that may be rigid-body modes: before a gap, with little elastic energy."""
+    """Number of lowest modes that may be rigid-body modes: with little elastic energy, followed by a gap."""
     size = np.abs(modes.stiffness)
     share = _share(K, modes)
     little = (share <= RIGID_BODY.nearly_rigid[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
@@ -102,7 +102,7 @@ def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
 
 
 def _nearest(left: float) -> float:
-    """Greatest ratio of neighbouring frequencies that is still a gap, for a share `left` of the terms."""
+    """Greatest ratio of neighbouring frequencies that is a gap, for a share `left` of the energy's terms."""
     return min(
         RIGID_BODY.min_ratio,
         RIGID_BODY.nearly_rigid[1]
@@ -119,12 +119,12 @@ def _share(K: Matrix, modes: Modes) -> FloatArray:
 
 
 def _unknown(modes: Modes) -> float:
-    """Stiffness up to which modes are unknown, judged by the most negative one; 0 without negative ones."""
+    """Stiffness up to which modes are uncertain, by the most negative stiffness; 0 if none is negative."""
     return RIGID_BODY.negative_factor * max(0.0, -float(modes.stiffness.min(initial=0.0)))
 
 
 def _low(K: Matrix, M: Matrix, share: FloatArray) -> FloatArray:
-    """Stiffness of each mode that is rounding beside the stiffest row of the matrices."""
+    """Stiffness of each mode that is rounding relative to the stiffest row of the matrices."""
     stiff, heavy = K.diagonal().real, M.diagonal().real
     largest = float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
     low: FloatArray = (
@@ -137,7 +137,7 @@ def _low(K: Matrix, M: Matrix, share: FloatArray) -> FloatArray:
 
 
 def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int:
-    """Number of lowest modes without stiffness within the digits of K, far below the next one; 0 if none."""
+    """Number of lowest modes with no stiffness within the digits of K and a gap after them; 0 if none."""
     may = modes.stiffness <= RIGID_BODY.standard_deviations * energy_uncertain(K, modes.shapes)
     count = may.size if may.all() else int(may.argmin())
     apart = (
@@ -151,7 +151,7 @@ def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int
 def unclear_below(K: Matrix, modes: Modes, rigid: int) -> float:
     """Fraction of the first elastic frequency below which the digits of K cannot exclude rigid-body modes.
 
-    0 where that is too little to be said, or nothing is rigid.
+    0 if it is too small to matter, or if there are no rigid-body modes.
     """
     if not 0 < rigid < modes.count:
         return 0.0

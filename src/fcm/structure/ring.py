@@ -1,4 +1,4 @@
-"""The structure of a ring's sector as arrays, which differ for each harmonic of a travelling wave."""
+"""The structure of a ring's sector as arrays, which differ between the harmonics of a travelling wave."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ class Wave(Frozen):
 
 
 class RingLinear(Linear):
-    """The structure of a sector; the fields of `Linear` are those for the mean, of nodal diameter 0."""
+    """The structure of a sector; the fields of `Linear` are those of the mean, with nodal diameter 0."""
 
     ring: Ring
     directions: FloatArray  # (dof, port)
-    loads: Loads  # (dof,)
+    loads: Loads  # on the sector's degrees of freedom
 
     def wave(self, harmonic: int) -> Wave:
         """The modes of the sector for a harmonic of the travelling wave."""
@@ -44,7 +44,7 @@ class RingLinear(Linear):
 
     @cached_property
     def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-        """Combination of ports that each degree of freedom is, see `Linear.attached`; equal in every wave."""
+        """Combination of ports that equals each degree of freedom in every wave, see `Linear.attached`."""
         waves = [self.wave(harmonic) for harmonic in range(self.ring.period)]
         ports, dofs = (np.concatenate([getattr(one, name) for one in waves]) for name in ("ports", "dofs"))
         return attached_to(*(np.concatenate((shapes.real, shapes.imag)) for shapes in (ports, dofs)))
@@ -55,7 +55,7 @@ class RingLinear(Linear):
         return TravellingReceptance(waves, self.static, harmonics, self.counted.size, self.driven)
 
     def _real(self, harmonic: int) -> Receptance:
-        """Receptance of one harmonic, on the ports' real parts and imaginary parts as separate real ports."""
+        """Receptance of one harmonic, with real and imaginary parts of the ports as separate ports."""
         wave = self.wave(harmonic)
         both = np.concatenate((wave.ports.real, wave.ports.imag), axis=1)
         force, square = np.zeros((2, 1, len(wave.dofs)), dtype=np.complex128)
@@ -68,7 +68,7 @@ class RingLinear(Linear):
         )
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
-        """Displacements (point, harmonic, dof) by forces on the ports (point, harmonic, port)."""
+        """Displacements (point, harmonic, dof) under forces on the ports (point, harmonic, port)."""
         found = np.zeros((*force.shape[:2], self.directions.shape[0]), dtype=np.complex128)
         for j, h in enumerate(harmonics):
             wave = self.wave(int(h))
@@ -79,16 +79,16 @@ class RingLinear(Linear):
         return found
 
     def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
-        """Natural frequencies (mode,) [rad/s] of a harmonic's modes, with springs (port,) for contacts."""
+        """Natural frequencies (mode,) [rad/s] at a harmonic, with springs (port,) instead of contacts."""
         return self.wave(harmonic).stiffened(springs)
 
 
 class Diameter(Frozen):
-    """Natural frequencies [rad/s] of one nodal diameter, in ascending order, (mode,) each."""
+    """Natural frequencies [rad/s] of one nodal diameter, in ascending order, each array (mode,)."""
 
     number: int
     opened: FloatArray  # without the contacts
-    stuck: FloatArray  # with k_u, k_v of every contact; k_v alone where there is no friction
+    stuck: FloatArray  # with k_u, k_v of every contact; with k_v alone if it has no friction
 
 
 def nodal_diameters(scene: Scene) -> list[Diameter]:

@@ -1,10 +1,10 @@
 """Effect of rounding on modes and receptances: most of a low mode's elastic energy cancels.
 
-Stiff parts beside soft ones, and fine meshes, make the terms of the elastic energy of a mode many orders
-greater than their sum. The frequency is off by what is lost of that sum. The shapes are off, too: they have
-some stiffness in common, which modes have not. At w^2 = -a < 0 nothing resonates, and the answer u to a load
-p has the energy u^T (K + a M) u = p^T u. For the modes that does not hold any more, and the difference is the
-error of their answer.
+In fine meshes, and with stiff parts next to soft ones, the terms of a mode's elastic energy are many orders
+greater than their sum. The error of the frequency is what this sum loses. The shapes err as well: exact modes
+have no stiffness between them, the computed ones have some. At w^2 = -a < 0 nothing resonates, and the
+response u to a load p has the energy u^T (K + a M) u = p^T u. The computed modes violate this, and the
+difference is the error of their response.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from fcm.structure.digits import energy_uncertain
 from fcm.structure.eigen import FloatArray, Matrix, Modes, elastic_energy
 from fcm.structure.options import REDUCTION
 
-LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic energy is summed
+LONG = float(np.finfo(np.longdouble).eps)  # epsilon of the numbers in which elastic energy is summed
 
 
 def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
     """Relative error of each mode's frequency by rounding; 0 for rigid-body modes.
 
-    Each row of the sum is rounded by itself: two deviations of that are taken, and of entries that were
-    written with few digits.
+    The rows of the sum are rounded independently. Two standard deviations of their sum are taken, and of the
+    sum for entries that were written with few digits.
     """
     rows = np.abs(modes.shapes) * (abs(K) @ np.abs(modes.shapes))
-    size = rows.max(axis=0)  # whose squares may overflow
+    size = rows.max(axis=0)  # squares of the rows may overflow
     together = size * np.linalg.norm(np.divide(rows, size, out=np.zeros_like(rows), where=size > 0.0), axis=0)
     lost = 2.0 * (LONG * together + energy_uncertain(K, modes.shapes))
     elastic = modes.stiffness > 0.0
@@ -36,9 +36,9 @@ def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
 def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega: float) -> float:
     """Error of a load's own receptance by rounding, relative to the static one, up to omega.
 
-    At rest, near it, between resonances and at omega; at a resonance by as much more as that is higher.
-    The answer of rigid-body modes, which have no static one, is that at omega. Of many loads those are looked
-    at beside rest that at rest are off most, or move least.
+    It holds at rest, near rest, between resonances and at omega; at a resonance it grows with the receptance.
+    Rigid-body modes have no static response; that at omega is taken. If there are many loads, only those with
+    the greatest errors at rest, or the least motion at rest, are examined at other frequencies.
     """
     elastic = modes.stiffness > 0.0
     if not (elastic.any() and loads.size):
@@ -61,7 +61,7 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
 
 
 def _between(modes: Modes, omega: float) -> FloatArray:
-    """Frequencies up to omega that are far from all modes, omega itself being the last.
+    """Frequencies up to omega that are far from all modes; the last is omega if it is.
 
     Empty for omega = 0.
     """

@@ -16,7 +16,7 @@ class PeriodicGradients(NamedTuple):
     f: ComplexArray  # (..., harmonic)
     n: ComplexArray  # (..., harmonic)
     df: ComplexArray  # (..., harmonic, motion, harmonic of the motion, part)
-    dn: ComplexArray  # the same
+    dn: ComplexArray  # the same axes as df
 
 
 def periodic_forces(
@@ -41,7 +41,7 @@ def periodic_forces(
     ----------
     u, v : array_like, complex, shape (..., harmonic)
         Coefficients of the tangential and normal displacement across the contact [length], the mean first;
-        the imaginary part of the mean does not count. The shorter is taken as filled up with zeros.
+        the imaginary part of the mean is ignored. The shorter array is padded with zeros.
     mu : array_like
         Friction coefficient [-], at least 0.
     k_u, k_v : array_like
@@ -49,16 +49,16 @@ def periodic_forces(
     n_0 : array_like
         Preload [force]; negative for a gap, n_0 = -k_v gap.
     harmonics : int, optional
-        Greatest harmonic of the forces that is asked for; otherwise as many as the motion has.
+        Greatest harmonic of the forces; by default that of the motion.
     start : array_like, optional
-        Displacement u at which the contact began unstressed [length]. It matters only to a contact that
-        never slips: its slider rests there, or as near to it as the slip limits allow.
+        Displacement u at which the contact began unstressed [length]. It matters only for a contact that
+        never slips: its slider rests there, or as near as the slip limits permit.
 
     Returns
     -------
     f, n : complex128, shape (..., harmonic) [force]
-        Coefficients of the friction force on the displacement u, and of the normal force, the mean first. All
-        arguments but for their harmonics broadcast. NaN where an argument is not finite.
+        Coefficients of the friction force on the displacement u, and of the normal force, the mean first.
+        All arguments broadcast, except along the harmonics. NaN where an argument is not finite.
 
     Raises
     ------
@@ -67,13 +67,13 @@ def periodic_forces(
 
     Notes
     -----
-    All events of the cycle are located, none missed, however many instants that takes. Between them the
-    forces are trigonometric polynomials, and their integrals are closed. Measured against a march in extended
-    precision, the error is below 1e-14 of the greatest force. That was over 10 000 motions of 1 to 15
-    harmonics that decay as h**-0.7 to h**-3. A normal load that varies much more than the friction force adds
-    its own rounding. So does a contact that closes for a small part of its normal motion. With one harmonic
-    it is `fourier_coefficients`.
-    Source: Yang, Chu and Menq (1998), equations (1) to (7), for motions of several harmonics.
+    All events of the cycle are located, and none is missed, whatever the number of evaluations. Between them
+    the forces are trigonometric polynomials, which are integrated in closed form. Compared with time marching
+    in extended precision, the error is below 1e-14 of the greatest force, for 10 000 motions of 1 to 15
+    harmonics that decay as h**-0.7 to h**-3. The error is greater if the normal load varies much more than
+    the friction force, or if the contact closes for a small part of its normal motion. With one harmonic the
+    result is that of `fourier_coefficients`. Source: Yang, Chu and Menq (1998), equations (1) to (7), for
+    motions of several harmonics.
 
     Examples
     --------
@@ -103,19 +103,19 @@ def periodic_gradients(
 ) -> PeriodicGradients:
     """Coefficients of `periodic_forces` with their derivatives by all coefficients of u and v.
 
-    Arguments and errors are those of `periodic_forces`.
+    Arguments and exceptions are those of `periodic_forces`.
 
     Returns
     -------
     PeriodicGradients
         f, n, and df, dn of shape (..., harmonic, 2, harmonic of the motion, 2): ``df[..., h, 1, k, 0]`` is
-        the derivative of the h-th coefficient of f by the real part of the k-th of v; the last index is 1 for
-        the imaginary part. That of a mean is 0.
+        the derivative of the h-th coefficient of f by the real part of the k-th of v. The last index is 1 for
+        the imaginary part; that of a mean has the derivative 0.
 
     Notes
     -----
-    Exact. Within rounding of the onset of slip, or of separation, a derivative is that of the side on which
-    there is none.
+    Exact. Within rounding of the onset of slip or of separation, the derivative is the one-sided derivative
+    without slip or separation.
 
     Examples
     --------

@@ -1,24 +1,24 @@
-"""Kernel: one steady cycle of a contact under any periodic motion: its states, and its forces by harmonics.
+"""Kernel: one steady cycle of a contact under any periodic motion, and Fourier coefficients of its forces.
 
 The cycle is cut where the contact closes and opens, at the maxima of the lower limit (tops) and at the minima
-of the upper limit (bottoms). Between two cuts, a span, neither limit has an extreme that could push the
-slider and let go again. So the law there is one clip,
+of the upper limit (bottoms). Within a span, between two cuts, neither limit has an extreme at which it could
+push the slider and release it again. So the law in a span is one clip,
 
     w_end = max(lower, min(w_start, upper)),
 
 and at most one slip, which lasts until the end of the span (`advance`). While the contact is open, w follows
-u. The steady cycle is known from its start on: at a closing w = u; without one, the greatest top pins w if it
-is above the least bottom, and else w never moves (`LineCycle`). A rounding error can shift an event, but
-never choose a wrong sequence by more than that error.
+u. The steady cycle is known from its start: at a closing w = u. Without a closing, the greatest top
+determines w if it is above the least bottom; otherwise w never moves (`LineCycle`). A rounding error can
+shift an event, but cannot choose a wrong sequence by more than that error.
 
-Over each piece of the cycle the forces are trigonometric polynomials. So all that is needed for their Fourier
-coefficients are the integrals of exp(-i m theta) over the pieces in which the contact sticks, slips (with the
-sign of the force) and is closed. Short sticks are integrated by Gauss's rule instead, from differences since
-their start: the closed form would be a difference of nearly equal numbers (`LineIntegrals`).
+Over each piece of the cycle the forces are trigonometric polynomials. So their Fourier coefficients need only
+the integrals of exp(-i m theta) over the pieces in which the contact sticks, slips (with the sign of the
+force) and is closed. Short sticks are integrated by Gauss's rule instead, from differences to their start;
+the closed form would be a difference of nearly equal numbers (`LineIntegrals`).
 
-The derivatives are by the coefficients of the motion. The forces are continuous, so the instants of the
-events do not enter; the place where the slider came to rest does. Where an event grazes, a derivative is that
-of the side on which it does not occur (`LineDerivatives`). What other kernels call: see `PeriodicContact`.
+The derivatives are by the coefficients of the motion. As the forces are continuous, the instants of the
+events do not enter; the place where the slider came to rest does. Where an event grazes, the derivative is
+the one-sided derivative without the event (`LineDerivatives`). Other kernels call `PeriodicContact`.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ else:
         ZeroCrossings,
     )
 
-STICK = cython.declare(cython.int, 0)  # states, and what brought a slider to rest; of a slip its sign
+STICK = cython.declare(cython.int, 0)  # states, and causes of rest; a slip has the sign of its force
 POSITIVE = cython.declare(cython.int, 1)
 NEGATIVE = cython.declare(cython.int, -1)
 SEPARATION = cython.declare(cython.int, 2)
@@ -101,16 +101,16 @@ STICKS = cython.declare(cython.int, 0)
 SIGNED_SLIPS = cython.declare(cython.int, 1)  # positive less negative
 CONTACT = cython.declare(cython.int, 2)
 LONG = cython.declare(cython.int, 3)  # sticks that are integrated in closed form
-# A stick is short up to two radians of the highest harmonic in it: eight points are then exact to rounding.
+# A stick is short up to two radians of its highest harmonic: eight points are then exact to rounding.
 SHORT = cython.declare(cython.double, 2.0)
 POINTS = cython.declare(cython.int, 8)
-_GAUSS = gauss(8)  # POINTS of them, on 0 to 1
+_GAUSS = gauss(8)  # POINTS points, on 0 to 1
 
 
 def join_states(state: cython.int[::1], piece: cython.int[::1], count: cython.int) -> cython.int:
-    """Joins pieces of a cycle that follow one another in the same state; returns how many are left.
+    """Joins successive pieces of a cycle with the same state; returns the number of pieces left.
 
-    Of those that are joined the number of the first is kept; the last may go on in the first of the cycle.
+    Joined pieces keep the number of the first of them; the last piece may join the first of the cycle.
 
     >>> state, piece = (np.array(numbers, dtype=np.intc) for numbers in ([0, 1, 1, 2, 0], [0, 1, 2, 4, 5]))
     >>> left = join_states(state, piece, 5)
@@ -132,27 +132,27 @@ def join_states(state: cython.int[::1], piece: cython.int[::1], count: cython.in
 
 @cython.cclass
 class LineCycle(CycleEvents):
-    """A steady cycle of a contact on a line: its pieces in order, up to `pieces`.
+    """A steady cycle of a contact on a line: its pieces in order, `pieces` in number.
 
     Attributes
     ----------
     state
         STICK, POSITIVE or NEGATIVE slip, SEPARATION.
     begin
-        The angle [rad] at which it begins, increasing; the last ends at 2 pi after the first begins.
+        The angle [rad] at which a piece begins, increasing; the last ends 2 pi after the first begins.
     event
-        The event at which it begins; nothing, if it is the only one and `cause` is 0.
+        The event at which a piece begins; meaningless for a single piece with `cause` 0.
     rest
-        Of a stick the place of the slider k_u w, from the mean of u, divided by the scale of the motion.
+        For a stick, the place of the slider k_u w relative to the mean of u, over the scale of the motion.
     cause
-        Of a stick what brought the slider to rest: POSITIVE or NEGATIVE slip, SEPARATION; 0 its start.
+        For a stick, what brought the slider to rest: POSITIVE or NEGATIVE slip, SEPARATION; 0: its start.
     w, slipping, span, span_begin, span_cause
-        Of the present span: the slider, the side of a slip that goes on into it (0: it rests), the event and
-        the angle at which it begins, and what brought the slider to rest.
+        For the present span: the slider, the side of a slip that continues into it (0: it rests), the event
+        and the angle at which it begins, and what brought the slider to rest.
     behaviour, kind, start
-        Of the motion taken last: as of `LineMotion.load` and `solve`, and the start as `solve` has it.
+        For the motion taken last: results of `LineMotion.load` and `solve`, and the start passed to `solve`.
     greatest_lower, least_upper, overlap
-        Of a contact that never opens, the greatest top, the least bottom, and the first less the second.
+        For a contact that never opens: the greatest top, the least bottom, and the first minus the second.
     """
 
     def __init__(self, motion: LineMotion) -> None:
@@ -170,7 +170,7 @@ class LineCycle(CycleEvents):
         self.numbers, self.contact = np.zeros(2 + 4 * motion.count), ContactParameters()
 
     def take(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
-        """Solves the cycle of the motion x[first:], see `solve`; does nothing for the motion taken last."""
+        """Solves the cycle of the motion x[first:], see `solve`; unless it is the motion taken last."""
         if self.known(x, first, contact):
             return self.kind
         i: cython.Py_ssize_t
@@ -197,10 +197,10 @@ class LineCycle(CycleEvents):
         return True
 
     def solve(self, behaviour: cython.int, start: float) -> cython.int:
-        """Solves a loaded motion's cycle: OPEN, STUCK or MIXED, the slider starting at `start` from the mean
-        of u.
+        """Solves the cycle of a loaded motion; returns OPEN, STUCK or MIXED.
 
-        Of a contact that never slips there is one piece, a stick, whose cause is 0 unless a limit holds it.
+        start: place of the slider at the start, relative to the mean of u. A contact that never slips has one
+        piece, a stick, whose cause is 0 unless a limit holds it.
         """
         self.pieces = self.events = 0
         self.overlap = 0.0
@@ -239,7 +239,7 @@ class LineCycle(CycleEvents):
         return spare >= 0.0
 
     def sort_cuts(self) -> None:
-        """Sorts the cuts by angle, each reduced to the turn that begins at the first node."""
+        """Sorts the cuts by angle, reduced to the turn that begins at the first node."""
         i: cython.int
         for i in range(self.crossings.count):
             if self.crossings.angle[i] < self.motion.first:
@@ -249,7 +249,7 @@ class LineCycle(CycleEvents):
         self.crossings.sort()
 
     def never_open(self, start: float) -> cython.int:
-        """Solves a cycle without separation, from the greatest top on if it lies above the least bottom."""
+        """Solves a cycle without separation; from the greatest top if it lies above the least bottom."""
         i: cython.int
         e: cython.int
         top: cython.int = -1
@@ -264,7 +264,7 @@ class LineCycle(CycleEvents):
                     top, first = e, i
             elif bottom < 0 or self.upper[e] < self.upper[bottom]:
                 bottom = e
-        if top < 0 or bottom < 0:  # a limit that does not move at all, or hardly
+        if top < 0 or bottom < 0:  # a limit that is constant, or nearly so
             e = self.place(self.motion.first, MEETS)
             top, bottom = e if top < 0 else top, e if bottom < 0 else bottom
         self.greatest_lower, self.least_upper = self.lower[top], self.upper[bottom]
@@ -281,7 +281,7 @@ class LineCycle(CycleEvents):
         return MIXED
 
     def march(self, first: cython.int, kind: cython.int) -> None:
-        """Passes span after span, from the cut at which w is known."""
+        """Passes through all spans, from the cut at which w is known."""
         count: cython.int = self.crossings.count
         turn: float = 0.0
         i: cython.int
@@ -291,7 +291,7 @@ class LineCycle(CycleEvents):
         self.slipping, self.span_cause = 0, POSITIVE
         self.span = first if kind == TOP else self.place(theta, kind)
         self.span_begin, self.w = theta, self.lower[self.span]
-        never_opens: bool = kind == TOP  # then all cuts have been placed, in their order
+        never_opens: bool = kind == TOP  # then all cuts have been placed, in order
         if kind == CLOSES:
             self.close()
         for i in range(count if never_opens else count - 1):  # noqa: B007
@@ -327,7 +327,7 @@ class LineCycle(CycleEvents):
         return length
 
     def along(self, p: cython.int) -> float:
-        """How the place of the slider in a stick p varies with the load, beside k_u u; see `cause`.
+        """Derivative of the place of the slider in stick p by the load, beside that by k_u u; see `cause`.
 
         After a slip it is that of the limit. After a separation w = u where the load vanishes, and that
         instant moves by -dn / n'.
@@ -335,7 +335,7 @@ class LineCycle(CycleEvents):
         e: cython.int = self.event[p]
         along: float = -1.0 if self.cause[p] == POSITIVE else 1.0
         if self.cause[p] == SEPARATION:
-            # its limits are never steeper than the motion here, or it would not stick
+            # its limits are never steeper than the motion here; otherwise it would not stick
             along = self.motion.ratio * self.load_rate[e]
             if fabs(self.motion_rate[e]) < along:
                 along = -self.motion_rate[e] / along
@@ -352,7 +352,7 @@ class LineCycle(CycleEvents):
             self.slipping = NEGATIVE
 
     def pushes(self, side: cython.int) -> bool:
-        """Whether a limit that has met the slider goes on to push it, by more than rounding."""
+        """Whether a limit that has met the slider continues to push it, by more than rounding."""
         if side == 0:
             return False
         rate: float = self.lower_rate[self.span] if side > 0 else -self.upper_rate[self.span]
@@ -360,7 +360,7 @@ class LineCycle(CycleEvents):
         return rate > rounding
 
     def advance(self, end: cython.int, theta: float, kind: cython.int) -> None:
-        """Passes one span, up to a cut at which the contact is closed or opens."""
+        """Passes one span, up to a cut; the contact is closed before it."""
         if kind == OPENS:
             self.lower[end] = self.upper[end] = self.moved[end]
         self.margin[end] = self.w - self.upper[end] if kind == BOTTOM else self.lower[end] - self.w
@@ -376,7 +376,7 @@ class LineCycle(CycleEvents):
         self.slipping = side if kind != (TOP if side > 0 else BOTTOM) and self.pushes(side) else 0
 
     def slip(self, side: cython.int, end: cython.int, theta: float) -> None:
-        """Appends the slip at the end of a span, from the angle at which it begins."""
+        """Appends the slip at the end of a span, with the angle at which it begins."""
         begin: float
         if side == self.slipping:
             self.add(side, self.span, self.span_begin, 0.0, 0)
@@ -387,7 +387,7 @@ class LineCycle(CycleEvents):
     def slip_begin(self, side: cython.int, end: cython.int, theta: float) -> float:
         """Angle at which the pushing limit meets the resting slider.
 
-        Before, the limit may have receded from it.
+        Before that, the limit may have receded from the slider.
         """
         row: cython.int = LOWER if side > 0 else UPPER
         g: float = (self.lower[end] if side > 0 else self.upper[end]) - self.w
@@ -412,7 +412,7 @@ class LineCycle(CycleEvents):
             value = (self.lower[self.span] if side > 0 else self.upper[self.span]) - self.w
             slope = self.lower_rate[self.span] if side > 0 else self.upper_rate[self.span]
             if value * side > -self.crossings.noise:
-                value = 0.0  # the limit lets go of the slider here, and comes back
+                value = 0.0  # the limit releases the slider here, and returns
         self.crossings.begin_at(low, value, slope)
         begin: float = self.crossings.root(row, self.w, theta, g, d)
         return begin
@@ -431,7 +431,7 @@ class LineIntegrals(FourierIntegrals):
         self.points, self.weights = _GAUSS
 
     def integrate(self) -> None:
-        """Sums the integrals of exp(-i m theta) over the pieces, and the forces of short sticks."""
+        """Computes the integrals of exp(-i m theta) over the sets of pieces, and of the force in sticks."""
         m: cython.int
         p: cython.int
         e: cython.int = self.cycle.event[0]
@@ -446,7 +446,7 @@ class LineIntegrals(FourierIntegrals):
                 self.piece(p, p % 2, (p + 1) % 2, max(self.cycle.length(p), 0.0))
 
     def piece(self, p: cython.int, begin: cython.int, end: cython.int, length: float) -> None:
-        """Adds a piece in which the contact is closed to the sums of its sets."""
+        """Adds a piece in which the contact is closed to the integrals of its sets."""
         m: cython.int
         state: cython.int = self.cycle.state[p]
         w: float = self.cycle.rest[p]
@@ -491,7 +491,7 @@ class LineIntegrals(FourierIntegrals):
                 b = self.power_sin[begin, h] * self.grow_re[h] + self.power_cos[begin, h] * self.grow_im[h]
                 f += self.motion.re[FORCE, k] * a - self.motion.im[FORCE, k] * b
                 limit += self.motion.re[REACH, k] * a - self.motion.im[REACH, k] * b
-            # of a load that is tiny beside the motion, a rounding error may put it past the limit
+            # if the load is tiny relative to the motion, rounding may put f beyond the limit
             f = max(-limit, min(f, limit))
             f *= self.weights[i] * length
             for m in range(self.most + 1):
@@ -503,7 +503,7 @@ class LineIntegrals(FourierIntegrals):
             self.total_im[m] += self.stick_im[m] * a - self.stick_re[m] * b
 
     def grow(self, re: float, im: float) -> None:
-        """Fills exp(i m y) - 1 for all m from that of m = 1, each to full relative accuracy."""
+        """Fills exp(i m y) - 1 for all m from the value of m = 1, each with full relative accuracy."""
         m: cython.int
         a: float = 0.0
         b: float = 0.0
@@ -517,7 +517,7 @@ class LineIntegrals(FourierIntegrals):
 
 @cython.cclass
 class LineDerivatives(ForceDerivatives):
-    """Derivatives of the forces on a line; `memory` (unknown,) is those of one place of rest."""
+    """Derivatives of the forces on a line; `memory` (unknown,) holds those of one place of rest."""
 
     def __init__(self, integrals: LineIntegrals, outputs: list[int]) -> None:
         ForceDerivatives.__init__(self, integrals, outputs)
@@ -549,7 +549,7 @@ class LineDerivatives(ForceDerivatives):
                 self.remember(p)
 
     def gradient(self, p: cython.int) -> None:
-        """Fills `memory`: derivatives of the slider's resting place in piece p, but for the mean of u."""
+        """Fills `memory`: derivatives of the place of rest in stick p, except that by the mean of u."""
         e: cython.int = self.cycle.event[p]
         along: float = self.cycle.along(p)
         k: cython.int
@@ -562,7 +562,7 @@ class LineDerivatives(ForceDerivatives):
             self.memory[4 + 4 * k], self.memory[5 + 4 * k] = along * c, -along * s
 
     def remember(self, p: cython.int) -> None:
-        """Subtracts the contribution of one stick; `gradient` has left the powers of its start."""
+        """Subtracts the contribution of stick p; `gradient` has filled the powers of its start."""
         i: cython.int
         j: cython.int
         h: cython.int
@@ -601,7 +601,7 @@ class PeriodicContact(ContactKernel):
         mean u, mean v, then for each harmonic h:  Re U_h, Im U_h, Re V_h, Im V_h
         mean f, mean n, then for each harmonic h:  Re F_h, Im F_h, Re N_h, Im N_h
 
-    Another kernel has the stiffness d Re F_1 / d Re U_1 by
+    Another kernel obtains the stiffness d Re F_1 / d Re U_1 as follows:
 
         from cython.cimports.fcm.contact.periodic.cycle import PeriodicContact
 
@@ -663,14 +663,14 @@ class PeriodicContact(ContactKernel):
     def stick(self) -> None:
         """Sets the forces of a sticking contact.
 
-        Its slider rests at the start, or at the extreme of the limit that holds it.
+        Its slider rests at its start, or at the extreme of the limit that holds it.
         """
         self.forces[0] = -self.cycle.rest[0]
         self.take_waves(0, FORCE)
         self.press(LOAD)
 
     def slip(self) -> None:
-        """Sets the forces from their integrals; those of short sticks are in the totals already."""
+        """Sets the forces from the integrals; the totals contain the short sticks already."""
         i: cython.int
         h: cython.int
         row: cython.Py_ssize_t

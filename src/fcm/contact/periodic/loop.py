@@ -33,13 +33,14 @@ class PeriodicLoop(Frozen, LoadedPieces):
     slip_motion : ndarray, shape (max(len(angles), 1),) [length]
         w while the contact sticks, for each state; NaN for the others.
     dissipation : float
-        Energy that friction takes in a cycle [force length].
+        Energy dissipated by friction in a cycle [force length].
     slip_path : float
-        Way of the slider while it slips, in a cycle [length].
+        Path of the slider while it slips, in a cycle [length].
     greatest_force, least_load, greatest_load : float
         Greatest |f|; least and greatest n_0 + k_v v, negative where the contact is open [force].
     overlap : float
-        How far the slip limits of k_u w exceed each other, equation (25) [force]: below 0 it never slips.
+        Greatest lower limit of k_u w minus its least upper limit, equation (25) [force]; below 0 it never
+        slips.
     """
 
     u: ComplexArray
@@ -83,12 +84,13 @@ def periodic_loop(
     Parameters
     ----------
     u, v : array_like, complex, shape (harmonic,)
-        Coefficients of the displacements, and mu, k_u, k_v, n_0 and start, as in `periodic_forces`; numbers.
+        Coefficients of the displacements. mu, k_u, k_v, n_0 and start are numbers, as in `periodic_forces`.
 
     Returns
     -------
     PeriodicLoop
-        With `sequence`, `angles`, and at any angle `force`, `normal_load`, `displacement`, `states`.
+        With `sequence`, `angles`, and the functions of the angle `force`, `normal_load`, `displacement`,
+        `states`.
 
     Raises
     ------
@@ -124,7 +126,7 @@ def periodic_loop(
 
 
 def _visible(cycle: LineCycle) -> list[Piece]:
-    """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
+    """Pieces (state, first angle, place of the slider) longer than rounding, with equal neighbours joined."""
     begin = np.asarray(cycle.begin)[: cycle.pieces]
     length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
     shown = np.flatnonzero((length > PERIODIC.min_state_length) | (cycle.pieces == 1)).astype(np.intc)
@@ -134,7 +136,7 @@ def _visible(cycle: LineCycle) -> list[Piece]:
 
 
 def _seen(cycle: LineCycle, p: int) -> tuple[int, float]:
-    """State of piece p, and the place of the slider when it begins; a slip that hardly moves is a stick."""
+    """State of piece p and initial place of the slider; a slip shorter than rounding counts as a stick."""
     state = cycle.state[p]
     if LETTERS[state] not in "PN":
         return state, float(cycle.rest[p])
@@ -144,9 +146,9 @@ def _seen(cycle: LineCycle, p: int) -> tuple[int, float]:
 
 
 def _ordered(regions: list[Piece]) -> list[Piece]:
-    """The pieces rotated to begin with a separation, else with a stick after negative slip.
+    """The pieces, beginning with a separation, or without one with a stick after negative slip.
 
-    Of several the first after angle 0 is taken.
+    If there are several, the first after angle 0 is taken.
     """
     states = [state for state, _, _ in regions]
     firsts = [i for i, state in enumerate(states) if state == "S"] or [

@@ -1,17 +1,17 @@
-"""Kernel: how far a contact is from another regime, as signed functions of its motion; extremes and energy.
+"""Kernel: signed distances of a contact from other regimes (margins); extremes and energy of a cycle.
 
 A regime of a contact is the sequence of its events. The derivatives of its forces jump, or begin like a
 square root, where
 
 - an extreme of the load passes zero: the contact closes once more, or opens once more;
 - the greatest lower limit of the slider passes the least upper one: it begins to slip, equation (25);
-- one of these passes the place where the slider of a contact that never slips began;
-- an extreme of a limit passes the slider that rests there: another slip begins, and the slider is left
+- one of these two passes the start of the slider of a contact that never slips;
+- an extreme of a limit passes the slider that rests there: another slip begins, which leaves the slider
   elsewhere; or another extreme of a limit holds the slider of a contact that never slips.
 
-Where a slip halts (P to PEP), and in which direction a contact slips as it opens and closes, the derivatives
-are continuous. `Margins` are these functions of any motion. `Measures` are those of a cycle that is solved,
-smooth while the events before stay what they are, with its extremes and its energy.
+The derivatives are continuous where a slip halts (P to PEP), and where the direction of slip at opening or
+closing changes. `Margins` are these functions for any motion, smooth while the preceding events do not
+change. `Measures` are the extremes and the energy of a solved cycle.
 """
 
 from __future__ import annotations
@@ -88,15 +88,15 @@ UPWARDS = cython.declare(cython.int, 5)
 DOWNWARDS = cython.declare(cython.int, 6)
 MINIMUM = cython.declare(cython.int, 7)
 MAXIMUM = cython.declare(cython.int, 8)
-FIXED = cython.declare(cython.int, 5)  # kinds of which there is one each
-PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
+FIXED = cython.declare(cython.int, 5)  # number of kinds with one margin each
+PAST = cython.declare(cython.double, 1.0)  # size of a margin of which only the sign is known
 
 
 @cython.cclass
 class RegimeMargins:
-    """Margins of a motion: value, kind, angle (margin,), the first `count` of `most`.
+    """Margins of a motion: value, kind, angle (margin,), the first `count` of them; `most` is the capacity.
 
-    Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
+    Values are relative to the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
 
     def __init__(self, normal: LineMotion, of_slips: int) -> None:
@@ -109,7 +109,7 @@ class RegimeMargins:
         """Computes the margins of the motion x[first:] of a contact; see `ContactKernel`."""
 
     def note(self, kind: cython.int, angle: float, value: float) -> None:
-        """Appends a margin, if there is room for it."""
+        """Appends a margin if there is room for it."""
         if self.count < self.most:
             self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
             self.count += 1
@@ -117,14 +117,14 @@ class RegimeMargins:
     def squared(
         self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters
     ) -> float:
-        """The smooth function of the motion whose root the margin of a kind is; NaN if that is none."""
+        """The squared margin of a kind, a smooth function of the motion; NaN if the margin is not a root."""
         none: float = NAN
         return none
 
     def loads(self, behaviour: cython.int) -> None:
-        """Appends the margins of closing and opening, from the extremes of the load, which is sampled.
+        """Appends the margins of closing and opening, from the extremes of the sampled load.
 
-        Where the extremes cannot matter, only the sign of a margin is set.
+        If the extremes cannot matter, only the signs of the margins are set.
         """
         i: cython.int
         value: float
@@ -143,7 +143,7 @@ class RegimeMargins:
 
 @cython.cclass
 class Margins(RegimeMargins):
-    """`find` computes the margins of the motion of a contact on a line."""
+    """Margins of a contact on a line; `find` computes them for a motion."""
 
     def __init__(self, cycle: LineCycle) -> None:
         RegimeMargins.__init__(self, cycle.motion, 2 * cycle.motion.highest + 2)
@@ -183,7 +183,7 @@ class Margins(RegimeMargins):
                 self.note(DOWNWARDS, self.cycle.event_angle[e], self.cycle.margin[e])
 
     def holders(self, extreme: cython.int, kind: cython.int, limit: cython.double[::1], side: float) -> None:
-        """Appends how far each extreme of the limit holding the slider exceeds the furthest other extreme."""
+        """Appends the margin of each extreme of the limit that holds the slider to the furthest other one."""
         e: cython.int
         furthest: cython.int = -1
         second: cython.int = -1
@@ -203,14 +203,14 @@ class Margins(RegimeMargins):
 
 LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and BOTTOM
 GREATEST_LOAD = cython.declare(cython.int, 11)
-TURN = cython.declare(cython.int, 12)  # of the motion
+TURN = cython.declare(cython.int, 12)  # extremes of the motion
 POINTS = cython.declare(cython.int, 8)
-PART = cython.declare(cython.double, 3.0)  # [rad] in which as many points err by 2e-15
-_GAUSS = gauss(8)  # POINTS of them, on 0 to 1
+PART = cython.declare(cython.double, 3.0)  # length [rad] over which POINTS points err by 2e-15
+_GAUSS = gauss(8)  # POINTS points, on 0 to 1
 
 
 def greatest_load(crossings: ZeroCrossings) -> float:
-    """Greatest load of a sampled motion, at one of the extremes found, divided by the scale of the load."""
+    """Greatest load of a sampled motion, over the extremes in `crossings`, relative to the load's scale."""
     i: cython.int
     value: float
     high: float = crossings.motion.at[LOAD, 0]
@@ -228,11 +228,11 @@ class Measures(CycleMeasures):
     Attributes
     ----------
     least_load, greatest_load
-        Extremes of n_0 + k_v v [force]: the first is positive where the contact never opens, the second, by
-        `measure`, negative where it never closes.
+        Extremes of n_0 + k_v v [force]: the first is positive if the contact never opens. The second, as
+        computed by `measure`, is negative if it never closes.
     overlap
-        Greatest lower limit less least upper limit of k_u w [force]: negative where the contact never slips,
-        equation (25); of a contact that opens it is positive.
+        Greatest lower limit minus least upper limit of k_u w [force], equation (25): negative if the contact
+        never slips; positive for a contact that opens.
     """
 
     def __init__(self, cycle: LineCycle) -> None:
@@ -252,16 +252,16 @@ class Measures(CycleMeasures):
         self.slips(k_u)
 
     def bear(self, contact: ContactParameters) -> None:
-        """Computes what there is of any contact, which costs less than `measure`."""
+        """Computes the attributes of `CycleMeasures`, which costs less than `measure`."""
         self.pieces = self.cycle.pieces
         self.motion.sample()
         self.friction()
-        # of the extremes that `friction` has found
+        # `friction` has found the extremes
         self.greatest_load = max(greatest_load(self.crossings) * self.motion.load_scale, 0.0)
         self.slips(contact.k_u)
 
     def extremes(self) -> None:
-        """Computes the extremes of the load and of both limits, as if the contact never opened."""
+        """Computes the extremes of the load and of both limits as if the contact never opened."""
         i: cython.int
         kind: cython.int
         value: float
@@ -339,12 +339,13 @@ class Measures(CycleMeasures):
                 self.slip(p, self.cycle.length(p))
                 energy += self.piece_energy
                 path += self.piece_path
-        # forces times ways of forces: the stiffness turns these into lengths; without it there is no friction
+        # energy and path are in forces squared and forces: the stiffness converts them; friction needs a
+        # stiffness
         length: float = self.motion.scale / k_u if k_u > 0.0 else 0.0
         self.dissipation, self.slip_path = energy * self.motion.scale * length, path * length
 
     def slip(self, p: cython.int, length: float) -> None:
-        """Integrates energy and path over one slip by Gauss's rule, in parts short enough for it."""
+        """Integrates energy and path over one slip by Gauss's rule, in sufficiently short parts."""
         i: cython.int
         j: cython.int
         row: cython.int = LOWER if self.cycle.state[p] > 0 else UPPER

@@ -1,16 +1,15 @@
-"""Kernel: a contact's periodic motion as trigonometric polynomials: its load and its two limits.
+"""Kernel: a contact's periodic motion as trigonometric polynomials: the load and the two slip limits.
 
-In forces instead of displacements, and over the greatest amplitude, the limits between which the slider k_u w
-is held are
+The limits of the slider k_u w, as forces relative to the greatest amplitude, are
 
     lower(theta) = k_u u - mu n,   upper(theta) = k_u u + mu n,   n = n_0 + k_v v where that is positive.
 
-The mean of u is left out: it matters only to a slider that never moves.
+The mean of u is omitted: it matters only for a slider that never moves.
 
-Where a row of that changes its sign none is missed. Between two nodes its values and slopes at both, and a
-bound of its fourth derivative, prove that it has no zero, or that it is monotone (`fcm.cubic`). Where they do
-not, the interval is halved, until what could be hidden is no more than the rounding of the row itself
-(`ZeroCrossings`). Each event has the limits of the slider there, and their rates (`CycleEvents`).
+No sign change of a row is missed. Between two nodes, the values and slopes at both and a bound of the fourth
+derivative prove that the row has no zero, or that it is monotone (`fcm.cubic`). If they do not, the interval
+is halved, until a hidden zero is within the rounding of the row itself (`ZeroCrossings`). Each event holds
+the limits of the slider there, and their rates (`CycleEvents`).
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ def _waves(count: int, harmonics: list[int]) -> tuple[npt.NDArray[np.float64], n
     return np.cos(angle), np.sin(angle)
 
 
-# Rows of coefficients and of samples. The row after one is its derivative.
+# Rows of coefficients and of samples. The row after each is its derivative.
 LOAD = cython.declare(cython.int, 0)
 LOAD_RATE = cython.declare(cython.int, 1)
 LOWER = cython.declare(cython.int, 3)
@@ -58,30 +57,30 @@ UPPER = cython.declare(cython.int, 6)
 UPPER_RATE = cython.declare(cython.int, 7)
 FORCE = cython.declare(cython.int, 9)  # k_u u
 FORCE_RATE = cython.declare(cython.int, 10)
-REACH = cython.declare(cython.int, 12)  # mu n; of coefficients only
+REACH = cython.declare(cython.int, 12)  # mu n; a row of coefficients only
 ROWS = cython.declare(cython.int, 13)
 
-POWERS = cython.declare(cython.int, 3)  # of a harmonic's number, in bounds
+POWERS = cython.declare(cython.int, 3)  # number of powers of a harmonic's number, in bounds
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 
 
 @cython.cclass
 class LineMotion(HarmonicMotion):
-    """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
+    """Motion u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
 
     Attributes
     ----------
     nodes, first, step
-        The number of nodes, at the angles first + j step [rad]: few for a motion of the fundamental alone,
-        many for all harmonics.
+        The number of nodes, at the angles first + j step [rad]: `few` if only the fundamental moves, `many`
+        for all harmonics.
     at (row, node)
         The rows at the nodes.
     node_cos, node_sin (node, harmonic)
-        The harmonics at the few, then at the many; those that are taken stand from `before` on.
+        The harmonics at the few nodes, then at the many; the rows in use begin at `before`.
     taken
-        Whether a cycle remembers the motion that is loaded; see `LineCycle.take`.
+        Whether a cycle has solved the motion that is loaded; see `LineCycle.take`.
     sampled
-        Whether the nodes are those of that motion.
+        Whether `at` is filled for that motion.
     """
 
     def __init__(self, harmonics: list[int], options: PeriodicOptions = PERIODIC) -> None:
@@ -97,7 +96,7 @@ class LineMotion(HarmonicMotion):
         self.at = np.zeros((REACH, self.many))
 
     def take_nodes(self, moving: cython.int) -> None:
-        """Chooses the nodes for a motion whose first so many harmonics are not zero."""
+        """Chooses the nodes for a motion whose harmonics after the first `moving` ones are zero."""
         self.alone = moving <= 1 and self.fundamental
         self.nodes = self.few if self.alone else self.many
         self.before = 0 if self.alone else self.few
@@ -105,7 +104,7 @@ class LineMotion(HarmonicMotion):
         self.first = FIRST_NODE * self.step
 
     def load(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
-        """Takes a motion x[first:]; OPEN, CLOSED or MIXED, UNKNOWN where a number is not finite."""
+        """Takes a motion x[first:]; returns OPEN, CLOSED or MIXED, or UNKNOWN if a number is not finite."""
         self.taken = self.sampled = False
         if not self.measure(x, first, contact):
             return UNKNOWN
@@ -156,8 +155,8 @@ class LineMotion(HarmonicMotion):
     def bound(self) -> None:
         """Fills `load_bound` and `limit_bound`, bounds of the derivatives of each order.
 
-        They are sums of order**power times the amplitude; of a limit those of the motion and the load, so
-        that they also bound their rounding.
+        They are sums of order**power times the amplitude. For a limit the amplitudes of motion and load are
+        added, so that the sums also bound the rounding.
         """
         k: cython.int
         p: cython.int
@@ -226,9 +225,9 @@ class LineMotion(HarmonicMotion):
     def derivatives(
         self, row: cython.int, other: cython.int, c_1: float, s_1: float
     ) -> tuple[float, float, float]:
-        """Second derivative and slope of a row, and the value of another, at an angle.
+        """Second derivative and slope of a row, and value of another row, at an angle.
 
-        The angle is given by its cosine and sine.
+        c_1 and s_1 are the cosine and sine of the angle.
         """
         c: float = c_1
         s: float = s_1
@@ -252,21 +251,21 @@ class LineMotion(HarmonicMotion):
         return bend, slope, value
 
     def node_before(self, theta: float) -> cython.int:
-        """Number of the last node at or before an angle; not reduced to one turn."""
+        """Number of the last node at or before an angle, not reduced to one turn."""
         return cython.cast(cython.int, floor((theta - self.first) / self.step))
 
 
 @cython.cclass
 class ZeroCrossings:
-    """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search.
+    """Angles where rows of a motion change sign: `angle`, the first `count`, in the order of the searches.
 
-    `order`: their numbers by rising angle, when they have been sorted.
+    `order`: their numbers by rising angle, after `sort`.
     """
 
     def __init__(self, motion: LineMotion, options: PeriodicOptions = PERIODIC) -> None:
         self.motion = motion
         self.max_halvings, self.min_interval = options.max_halvings, options.min_interval
-        self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
+        self.capacity = 4 * motion.highest + 4  # two zeros for each harmonic, and as many extremes
         self.angle = np.empty(self.capacity)
         self.kind, self.order = np.empty((2, self.capacity), dtype=np.intc)
         self.open = np.zeros(motion.at.shape[1], dtype=np.intc)
@@ -283,10 +282,10 @@ class ZeroCrossings:
             self.open[j] = 0
 
     def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> None:
-        """Appends the crossings of LOAD or of a rate, as kinds `rising` and `falling`; -1 leaves one kind
-        out.
+        """Appends the sign changes of LOAD or of a rate, as kinds `rising` and `falling`; -1 omits a kind.
 
-        The search of LOAD, which has to come first, finds the intervals that are open, which others skip.
+        The search of LOAD has to come first: it finds the intervals in which the contact is open, which the
+        other searches skip.
         """
         j: cython.int
         self.row, self.rising, self.falling = row, rising, falling
@@ -336,7 +335,7 @@ class ZeroCrossings:
         return 0
 
     def interval(self, j: cython.int) -> None:
-        """Walks from node j to the next, halving the interval until a crossing is excluded or isolated."""
+        """Goes from node j to the next, halving the interval until a crossing is excluded or isolated."""
         left: cython.int = j if j >= 0 else j + self.motion.nodes
         right: cython.int = left + 1 if left + 1 < self.motion.nodes else 0
         row: cython.int = self.row
@@ -381,12 +380,12 @@ class ZeroCrossings:
         return bool(low > 0.0 or high < 0.0)
 
     def note(self, theta: float, value: float, slope: float) -> None:
-        """Takes the next point of the walk, and appends a crossing if its certain sign has changed."""
+        """Takes the next point of the walk, and appends a crossing if the certain sign has changed."""
         if fabs(value) <= self.noise:
             return
         sign: cython.int = 1 if value > 0.0 else -1
         kind: cython.int = self.rising if sign > 0 else self.falling
-        if sign == -self.sign and kind >= 0 and self.count < self.capacity:  # which all zeros have
+        if sign == -self.sign and kind >= 0 and self.count < self.capacity:  # every zero changes the sign
             self.angle[self.count] = self.root(self.row, 0.0, theta, value, slope)
             self.kind[self.count] = kind
             self.count += 1
@@ -394,25 +393,25 @@ class ZeroCrossings:
         self.begin_at(theta, value, slope)
 
     def begin_at(self, theta: float, value: float, slope: float) -> None:
-        """Makes a point the last one of the walk."""
+        """Makes a point the last point of the walk."""
         self.last, self.last_value, self.last_slope = theta, value, slope
 
     def root(self, row: cython.int, level: float, high: float, g_high: float, d_high: float) -> float:
-        """Angle at which a row takes a value, from the last point on: Halley's method, bracketed.
+        """Angle at which a row takes a value, beyond the last point: Halley's method, bracketed.
 
-        g_high, d_high: row minus level, not zero, and its slope at an angle beyond. So are the value and
-        slope of the last point, but that may be zero where the row turns in between.
+        g_high, d_high: row minus level, not zero, and its slope at the upper end. `last_value` and
+        `last_slope` are those at the last point; the value there may be zero if the row turns in between.
         """
         low: float = self.last
         g_low: float = self.last_value
         d_low: float = self.last_slope
         up: bool = g_high > 0.0
         length: float = high - low
-        # near an end where it turns, the sign of the row is that of a rounding error
+        # near a zero end where the row turns, its sign is due to rounding
         rounding: float = 4.0 * EPSILON * (self.motion.limit_bound[0] + self.motion.limit_bound[1])
         floor: float = rounding if g_low == 0.0 else 0.0
         x: float = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
-        third: float = 2.0 * self.motion.highest  # derivative, relative to the second: twice its bound
+        third: float = 2.0 * self.motion.highest  # twice a bound of the third derivative over the second
         for _ in range(100):
             c, s = cos(x), sin(x)
             bend, slope, value = self.motion.derivatives(row, row, c, s)
@@ -459,7 +458,7 @@ def _of_one(found: ZeroCrossings, motion: LineMotion, begin: float) -> cython.vo
 
 
 def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
-    """Approximate root in [0, 1] of a cubic with given values and slopes at the ends, other than 0 itself."""
+    """Approximate root in (0, 1] of a cubic with given values and slopes at the ends."""
     c_2, c_3 = powers(g_1 - g_0, d_0, d_1)
     if g_0 == 0.0:
         return _last_root(d_0, c_2, c_3)
@@ -475,7 +474,7 @@ def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
 
 
 def _last_root(c_0: float, c_1: float, c_2: float) -> float:
-    """The greatest root of a quadratic in [0.01, 1], or 0.5 if there is none."""
+    """The greatest root of a quadratic in [0.01, 1]; 0.5 if there is none."""
     root: float = c_1 * c_1 - 4.0 * c_0 * c_2
     if root < 0.0:
         return 0.5
@@ -491,12 +490,12 @@ CLOSES = cython.declare(cython.int, 0)  # kinds of cuts
 OPENS = cython.declare(cython.int, 1)
 TOP = cython.declare(cython.int, 2)
 BOTTOM = cython.declare(cython.int, 3)
-MEETS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event that is no cut
+MEETS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event, but not a cut
 
 
 @cython.cclass
 class CycleEvents:
-    """Angles of a cycle in no order, up to `events`, with the limits of the motion there.
+    """Events of a cycle, the first `events`, in any order, with the limits of the motion there.
 
     Attributes
     ----------
@@ -505,10 +504,10 @@ class CycleEvents:
     lower, upper, moved
         Both limits and k_u u, divided by the scale of the motion.
     lower_rate, upper_rate, load_rate, motion_rate
-        Their derivatives by the angle; that of the load is divided by its own scale.
+        Their derivatives by the angle; that of the load is relative to its own scale.
     margin
-        Of a TOP or BOTTOM, how far the limit is beyond the slider there: it slips if that is positive.
-        Of an instant that OPENS, which way the slider has to go to be there. Divided by the scale.
+        For a TOP or BOTTOM, how far the limit passes the slider: it slips if that is positive. For OPENS, the
+        way of the slider to its place there. Relative to the scale.
     """
 
     def __init__(self, motion: LineMotion, size: int) -> None:

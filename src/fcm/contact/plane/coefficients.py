@@ -37,7 +37,8 @@ def planar_forces(
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     r"""Friction and normal force of a contact that slides in a plane, in periodic motion, exactly.
 
-    With x(theta) = Re sum_h X_h exp(i h theta), vectors in the plane, and the slider w held in a moving disc,
+    With x(theta) = Re sum_h X_h exp(i h theta), vectors in the plane, and the slider w held within a moving
+    disc,
 
         n = max(n_0 + k_v v, 0)
         f = k_u (u - w),   |f| <= mu n,   w' = lambda f / |f| with lambda >= 0, and 0 while |f| < mu n
@@ -46,7 +47,7 @@ def planar_forces(
     ----------
     u_x, u_y, v : array_like, complex, shape (..., harmonic)
         Coefficients of the two tangential and the normal displacement across the contact [length], the mean
-        first; the imaginary part of the mean does not count. The shorter are taken as filled up with zeros.
+        first; the imaginary part of the mean is ignored. Shorter arrays are padded with zeros.
     mu : array_like
         Friction coefficient [-], at least 0.
     k_u, k_v : array_like
@@ -54,16 +55,16 @@ def planar_forces(
     n_0 : array_like
         Preload [force]; negative for a gap, n_0 = -k_v gap.
     harmonics : int, optional
-        Greatest harmonic of the forces that is asked for; otherwise as many as the motion has.
+        Greatest harmonic of the forces; by default that of the motion.
     start_x, start_y : array_like, optional
-        Displacement at which the contact began unstressed [length]. It matters only to a contact that never
-        slips: its slider rests there, or at the nearest place that all slip limits allow.
+        Displacement at which the contact began unstressed [length]. It matters only for a contact that never
+        slips: its slider rests there, or at the nearest place that all slip limits permit.
 
     Returns
     -------
     f_x, f_y, n : complex128, shape (..., harmonic) [force]
         Coefficients of the friction force on the displacement u, and of the normal force, the mean first. All
-        arguments but for their harmonics broadcast. NaN where an argument is not finite.
+        arguments broadcast, except along the harmonics. NaN where an argument is not finite.
 
     Raises
     ------
@@ -74,15 +75,16 @@ def planar_forces(
 
     Notes
     -----
-    While it slips, f = mu n (cos alpha, sin alpha), and the direction obeys a Riccati equation,
+    In slip, f = mu n (cos alpha, sin alpha), and the direction obeys a Riccati equation,
 
         r alpha' = e_perp . u',   lambda = e . u' - r' >= 0,   r = mu n / k_u
 
     which is the linear equation y' = [[u_x', u_y'], [u_y', -u_x']] y / (2 r) of tan(alpha / 2) = y_2 / y_1.
-    It is solved by collocation of order 15, slips end where lambda vanishes and sticks where |u - w| = r, all
-    located. What a contact that never opens remembers of the period before is found by Newton's method.
-    Measured against extrapolated marches and in 30 digits, the error is below 1e-10 of k_u times the greatest
-    coefficient. With motion along one line it is `periodic_forces`.
+    It is solved by collocation of order 15. Slips end where lambda vanishes, and sticks where |u - w| = r;
+    all these events are located. If the contact never opens, Newton's method finds the place of the slider
+    that repeats after a period. Compared with extrapolated time marching and with 30 digits, the error is
+    below 1e-10 of k_u times the greatest coefficient. For motion along one line the result is that of
+    `periodic_forces`.
 
     Examples
     --------
@@ -114,20 +116,20 @@ def planar_gradients(
 ) -> PlanarGradients:
     """Coefficients of `planar_forces` with their derivatives by all coefficients of u_x, u_y and v.
 
-    Arguments and errors are those of `planar_forces`.
+    Arguments and exceptions are those of `planar_forces`.
 
     Returns
     -------
     PlanarGradients
         f_x, f_y, n, and df_x, df_y, dn of shape (..., harmonic, 3, harmonic of the motion, 2):
         ``df_x[..., h, 2, k, 0]`` is the derivative of the h-th coefficient of f_x by the real part of the
-        k-th of v; the last index is 1 for the imaginary part. That of a mean is 0.
+        k-th of v. The last index is 1 for the imaginary part; that of a mean has the derivative 0.
 
     Notes
     -----
-    The derivatives are by the variational equation of the slip direction, and through all that the slider
-    remembers. They differ from difference quotients by 1e-8 of the stiffness. Within rounding of the onset of
-    slip, or of opening, a derivative is that of the side on which there is none.
+    The derivatives follow from the variational equation of the slip direction and from the memory of the
+    slider. They differ from difference quotients by 1e-8 of the stiffness. Within rounding of the onset of
+    slip or of opening, the derivative is the one-sided derivative without slip or opening.
 
     Examples
     --------

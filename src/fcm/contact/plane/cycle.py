@@ -1,12 +1,12 @@
 """Kernel: the steady cycle of a contact in its plane, and the Fourier coefficients of its forces.
 
-A contact that opens has forgotten everything when it closes again. One that does not open remembers where its
-slider was a period ago. So the steady cycle is a fixed point of the map P of that place over a period, which
-is nonexpansive: |P(a) - P(b)| <= |a - b|. Newton's method finds it, with the derivative of P that comes with
-the slip; where that does not help, a period more is taken as it is.
+A contact that opens forgets everything before it closes again. One that does not open remembers the place of
+its slider a period ago. So the steady cycle is a fixed point of the map P of that place over a period, which
+is nonexpansive: |P(a) - P(b)| <= |a - b|. Newton's method finds it, with the derivative of P from the slip;
+if that does not help, the place after another period is taken.
 
-The integrals that the slider has gathered over the cycle are the Fourier coefficients of the forces, and
-their derivatives. What other kernels call: see `PlanarContact`.
+The integrals along the cycle are the Fourier coefficients of the forces, and their derivatives. Other kernels
+call `PlanarContact`.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ class PlanarCycle:
     Attributes
     ----------
     kind
-        OPEN, STUCK, MIXED, UNKNOWN, or UNSOLVED where no steady cycle was found.
+        OPEN, STUCK, MIXED, UNKNOWN, or UNSOLVED if no steady cycle was found.
     periods
-        How many were gone through for it.
+        Number of periods that were followed to find it.
     """
 
     def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
@@ -91,7 +91,7 @@ class PlanarCycle:
         self.sides, self.replaced = 0, -1
 
     def solve(self, behaviour: cython.int, s_x: float, s_y: float, gradient: bool) -> cython.int:
-        """Solves the cycle of the loaded motion, for a slider that began at a place from the means of u."""
+        """Solves the cycle of the loaded motion; s_x, s_y: start of the slider relative to the means of u."""
         self.periods = self.slider.pieces = self.slider.panels = 0
         self.slider.failed = False
         self.behaviour = self.kind = behaviour
@@ -160,7 +160,7 @@ class PlanarCycle:
         return UNSOLVED if self.slider.failed else MIXED
 
     def closed(self, gradient: bool) -> cython.int:
-        """Solves a cycle without separation: repeats periods until the slider returns to its start.
+        """Solves a cycle without separation: repeats periods until the slider returns to where it began.
 
         A period begins at the angle at which the slip disc is smallest.
         """
@@ -179,7 +179,7 @@ class PlanarCycle:
         r = r / speed if speed > 0.0 else 0.0
         w_x: float = self.motion.value[SCAN, 0] - r * self.motion.value[SCAN, 3]
         w_y: float = self.motion.value[SCAN, 1] - r * self.motion.value[SCAN, 4]
-        # a slider that slips hardly at all, and sticks between, is drawn ever so slowly to the place that the
+        # a slider that slips very little, and sticks in between, approaches very slowly the place that the
         # discs miss least
         if self.resting.overlap < self.slight * self.motion.reach:
             self.resting.encloses(True)
@@ -202,7 +202,7 @@ class PlanarCycle:
         self.sides = 0
         for i in range(self.most_periods):
             self.periods = i + 1
-            if i > 0:  # most often it is the steady one, as nearly all is forgotten in the first
+            if i > 0:  # usually the steady one, as the first period forgets nearly everything
                 self.gather(gradient)
             change = self.period(begin, w_x, w_y)
             if self.slider.failed:
@@ -229,7 +229,7 @@ class PlanarCycle:
             if change < self.contraction * before and known:
                 before = change
                 w_x, w_y = w_x + (d * x - b * y) / by, w_y + (a * y - c * x) / by
-                # the next change is of the square of this one
+                # Newton's method: the next change is of the order of the square of this one
                 if change * change < self.next_change * fine * self.motion.reach * by * by:
                     break
                 if bounded and not self.between(w_x, w_y):
@@ -246,7 +246,7 @@ class PlanarCycle:
         return UNSOLVED if self.slider.failed else MIXED
 
     def gather(self, gradient: bool) -> None:
-        """Clears the sums and lets the next period be summed."""
+        """Clears the sums, so that the next period is summed."""
         self.slider.integrals.begin()
         self.slider.integrals.contact(0.0, TWO_PI)
         if gradient:
@@ -255,11 +255,11 @@ class PlanarCycle:
         self.slider.derivatives.take(0, self.slider.derivatives.unknowns if gradient else 2)
 
     def bracket(self, w_x: float, w_y: float) -> bool:
-        """Whether a period moves two places of the slider towards each other; `place` then lies between them.
+        """Whether a period moves two places of the slider towards each other; `place` then lies between.
 
-        Where the slider slips hardly less than all the time, a period moves it from one side of its steady
-        place far to the other side, which Newton's method does not see. A period takes all places to a curve,
-        nearly: along the line between two of them the way is bounded, by the Illinois rule.
+        If the slider slips nearly all the time, a period moves it from one side of its steady place far to
+        the other side, which Newton's method does not see. A period takes all places nearly to a curve. So
+        the root is bracketed along the line between two places, by the Illinois rule.
         """
         i: cython.int
         x: float = self.moved_x
@@ -273,7 +273,7 @@ class PlanarCycle:
             self.side[1 - i, 2] *= 0.5 if i == self.replaced else 1.0
             self.side[1 - i, 3] *= 0.5 if i == self.replaced else 1.0
             self.replaced = i
-            # across the line the way of a period is taken
+            # across the line the place after the period is taken
             w_x, w_y = w_x + x - along * d_x, w_y + y - along * d_y
         elif self.sides == 1 and x * self.side[0, 2] + y * self.side[0, 3] < 0.0:
             i, self.sides, self.replaced = 1, 2, -1
@@ -285,7 +285,7 @@ class PlanarCycle:
         x, y = self.side[1, 0] - self.side[0, 0], self.side[1, 1] - self.side[0, 1]
         one: float = self.side[0, 2] * x + self.side[0, 3] * y
         two: float = self.side[1, 2] * x + self.side[1, 3] * y
-        if not one > 0.0 > two:  # they no longer are
+        if not one > 0.0 > two:  # they no longer bracket
             self.sides = 0
             return False
         part: float = one / (one - two)
@@ -300,7 +300,7 @@ class PlanarCycle:
         return 0.0 <= along <= d_x * d_x + d_y * d_y
 
     def period(self, begin: float, w_x: float, w_y: float) -> float:
-        """Passes one period from a place of the slider; returns its distance from there at the end."""
+        """Passes one period from a place of the slider; returns the distance from there to its end."""
         self.slider.pieces = self.slider.panels = 0
         if self.slider.varying:
             self.slider.derivatives.start()
@@ -323,9 +323,9 @@ class PlanarContact(ContactKernel):
     harmonics, outputs : list of int, each increasing, from 1 on
         Harmonics of the displacements, and of the forces; the mean is always one.
     most_panels : int
-        How many panels of slip are recorded, for a loop.
+        Number of panels of slip that are recorded, for a loop.
     options : PlanarOptions, optional
-        How exactly the motion is followed.
+        Tolerances with which the motion is followed.
 
     Notes
     -----
@@ -380,7 +380,7 @@ class PlanarContact(ContactKernel):
         return self.kind
 
     def resist(self, contact: ContactParameters, resistance: cython.double[:, ::1]) -> None:
-        """That along a direction is k_u in stick, and mu k_v, by the normal displacement, in slip."""
+        """Tangential: k_u in stick, and mu k_v by the normal displacement in slip; normal: k_v in contact."""
         rubs: cython.bint = contact.mu * contact.k_u > 0.0
         stick: float = 0.0
         closed: float = 0.0
@@ -449,7 +449,7 @@ class PlanarContact(ContactKernel):
 
     def stick_gradient(self, s_x: float, s_y: float) -> None:
         """Sets the derivatives of a contact that never slips."""
-        self.derivatives.take(0, self.unknowns)  # a cycle that was sought before may have left fewer
+        self.derivatives.take(0, self.unknowns)  # an earlier search for a cycle may have left fewer
         self.jacobian[2, 2] = 1.0
         self.derivatives.stick_waves()
         if self.cycle.resting.held == 0:
@@ -460,7 +460,7 @@ class PlanarContact(ContactKernel):
             self.held_by_two()
 
     def held_by_one(self, s_x: float, s_y: float) -> None:
-        """Derivatives where one disc holds the slider, at W = s + (|U - s| - R) e nearest to its start."""
+        """Derivatives if one disc holds the slider, at W = s + (|U - s| - R) e nearest to its start."""
         j: cython.int
         self.cycle.motion.place(SCAN, self.cycle.resting.basis[0, 3])
         self.cycle.motion.bend(SCAN)
@@ -479,7 +479,7 @@ class PlanarContact(ContactKernel):
             u_x: float = self.derivatives.u_x[j]
             u_y: float = self.derivatives.u_y[j]
             r: float = self.derivatives.r[j]
-            if j < 2:  # of the mean of u: the start moves the other way
+            if j < 2:  # the mean of u: the start moves the other way
                 u_x, u_y = (1.0, 0.0) if j == 0 else (0.0, 1.0)
             x_1: float = 0.0
             y_1: float = 0.0
@@ -510,7 +510,7 @@ class PlanarContact(ContactKernel):
             self.jacobian[0, j], self.jacobian[1, j] = -w_x, -w_y
 
     def held_by_two(self) -> None:
-        """Derivatives where the slider rests where two circles meet: e . (d U - d W) = d R of both."""
+        """Derivatives if the slider rests where two circles meet: e . (d U - d W) = d R for both."""
         i: cython.int
         j: cython.int
         x: float

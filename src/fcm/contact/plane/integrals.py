@@ -1,22 +1,22 @@
-r"""Kernel: integrals over a cycle in the plane, of the forces' harmonics and of their derivatives.
+r"""Kernel: integrals over a cycle in the plane, for the harmonics of the forces and their derivatives.
 
-A friction force is U less the place of the slider while the contact sticks, and R times the direction while
-it slips. U and R are trigonometric polynomials. So two kinds of integrals are needed: of exp(-i m theta) over
-all sticks, in closed form, and of both components of the direction times exp(-i m theta) over all slips. The
-latter are by Radau's rule on the panels by which the direction was found.
+A friction force is U minus the place of the slider in stick, and R times the direction in slip. U and R are
+trigonometric polynomials. So two kinds of integrals are needed: of exp(-i m theta) over all sticks, in closed
+form; and of both components of the direction times exp(-i m theta) over all slips, by Radau's rule on the
+panels in which the direction is computed.
 
-Their derivatives by the coefficients of the motion go through every piece of the cycle. The forces are
-continuous, so the instants of events do not enter their integrals. What the slider remembers does. With U the
-motion and xi the derivative of the direction alpha,
+Their derivatives by the coefficients of the motion are carried through all pieces of the cycle. As the forces
+are continuous, the instants of events do not enter; the memory of the slider does. With U the motion and xi
+the derivative of the direction alpha,
 
     stick:  d W is kept;                          d F = d U - d W
     slip:   R xi' = -(e . U') xi + e_perp . d U' - alpha' d R;   d F = d R e + R xi e_perp
 
-From stick to slip R xi = e_perp . (d U - d W): what is along e is what the disc takes. From slip to stick
-d W = d U - d F. Where the contact closes, W = U at an instant that moves by -d R / R'; or, where it slips at
-once, the equation of slip has one solution that is finite, (e . U') xi = e_perp . d U' - alpha' d R.
-At the end of a period of a contact that never opens, d W is that of the start; what it would be from one kept
-fixed, and from its two unit changes, are carried along as columns of their own.
+From stick to slip, R xi = e_perp . (d U - d W); the disc takes the component along e. From slip to stick, d W
+= d U - d F. Where the contact closes, W = U at an instant that moves by -d R / R'. If it slips at once, the
+equation of slip has one finite solution, (e . U') xi = e_perp . d U' - alpha' d R. At the end of a period of
+a contact that never opens, d W equals that at the start. So the derivatives from a fixed start, and those for
+its two unit changes, are carried along as columns of their own.
 """
 
 from __future__ import annotations
@@ -58,16 +58,16 @@ class PlanarIntegrals(FourierIntegrals):
     Attributes
     ----------
     held_x_re, held_x_im, held_y_re, held_y_im (h,)
-        Of the place of the slider while the contact sticks.
+        Integrals of the place of the slider in stick.
     work, path
-        Of the friction force on the slider, and the way of the slider, divided by the scale.
+        Work of the friction force on the slider, and path of the slider, relative to the scale.
     """
 
     def __init__(self, motion: PlaneMotion, most: int) -> None:
         FourierIntegrals.__init__(self, motion, most, 4)
         self.held_x_re, self.held_x_im, self.held_y_re, self.held_y_im = np.zeros((4, most + 1))
         self.work = self.path = 0.0
-        # of the slips, each node of a panel by itself: direction x and y times cosine and sine
+        # for the slips, each node of a panel separately: direction x and y times cosine and sine
         self.lanes = np.zeros((4 * (self.highest + 1), STAGES))
         if not cython.compiled:
             self.x, self.y, self.c, self.s = np.zeros((4, STAGES))
@@ -139,7 +139,7 @@ class PlanarIntegrals(FourierIntegrals):
                 c = w
 
     def total(self) -> None:
-        """Adds the slip sums of all nodes up."""
+        """Adds the slip sums of all nodes to the integrals."""
         m: cython.int
         i: cython.int
         for m in range(self.highest + 1):
@@ -151,7 +151,7 @@ class PlanarIntegrals(FourierIntegrals):
 
 
 def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
-    """Zeros (rows, width) aligned to a cache line of the processor."""
+    """Zeros (rows, width), aligned to a cache line of the processor."""
     room = np.zeros(rows * width + 8)
     first = -room.ctypes.data // 8 % 8
     return room[first : first + rows * width].reshape(rows, width)
@@ -161,13 +161,13 @@ def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
 class PlanarDerivatives(ForceDerivatives):
     """Derivatives of the forces in a plane.
 
-    Columns 0 and 1, which are those of the means of u, are of the place of the slider at the start until
-    `settle`: that it moves one way is that u moves the other. Only columns from `low` to `high` are made.
+    Until `settle`, columns 0 and 1 are the derivatives by the place of the slider at the start; later by the
+    means of u, which move the other way. Only columns from `low` to `high` are computed.
 
     Attributes
     ----------
     w_x, w_y, turn (unknown,)
-        Derivatives of the resting slider, and of the direction of slip.
+        Derivatives of the place of the slider at rest, and of the direction of slip.
     """
 
     def __init__(self, panel: Panel, sums: PlanarIntegrals, outputs: list[int]) -> None:
@@ -191,7 +191,7 @@ class PlanarDerivatives(ForceDerivatives):
                 self.gathered[i, j] = 0.0
 
     def take(self, low: cython.int, high: cython.int) -> None:
-        """Chooses the columns that are built, and starts from a resting slider."""
+        """Chooses the columns that are computed, and starts from a slider at rest."""
         j: cython.int
         self.low, self.high = low, high
         for j in range(low):
@@ -199,7 +199,7 @@ class PlanarDerivatives(ForceDerivatives):
         self.start()
 
     def start(self) -> None:
-        """Sets the derivatives of the slider to the two unit changes of its own place."""
+        """Sets the derivatives of the slider at the start: unit changes of its own place, 0 for others."""
         j: cython.int
         for j in range(self.low, self.high):
             self.w_x[j] = self.w_y[j] = 0.0
@@ -250,7 +250,7 @@ class PlanarDerivatives(ForceDerivatives):
         self.moved()
         x_1: float = self.panel.motion.value[SCAN, 3]
         y_1: float = self.panel.motion.value[SCAN, 4]
-        # the motion is never faster here than the disc grows, or it would not stick
+        # the motion is never faster here than the disc grows; otherwise it would not stick
         by: float = max(self.panel.motion.value[SCAN, 5], fabs(x_1), fabs(y_1))
         by = 1.0 / by if by > 0.0 else 0.0
         for j in range(self.low, self.high):
@@ -259,7 +259,7 @@ class PlanarDerivatives(ForceDerivatives):
             self.w_y[j] = self.u_y[j] + y_1 * later
 
     def close_sliding(self, e_x: float, e_y: float, rate: float) -> None:
-        """Derivatives of the slip direction where the contact closes and slips, turning at a rate."""
+        """Derivatives of the slip direction where the contact closes and slips, with alpha' = rate."""
         j: cython.int
         k: cython.int
         c: float
@@ -289,10 +289,10 @@ class PlanarDerivatives(ForceDerivatives):
         return most
 
     def rest_of_turns(self) -> float:
-        """Greatest `rest` of the derivatives of t in the panel: what its polynomial leaves out.
+        """Greatest truncation error (`Panel.rest`) of the derivatives of t in the panel.
 
-        Where the load is small beside the motion a direction that is off fades at once. Then derivatives go
-        with the motion, and panels need not be as short as what has faded.
+        Where the load is small relative to the motion, an error of the direction fades at once. The
+        derivatives then follow the motion, and panels need not resolve what has faded.
         """
         i: cython.int
         j: cython.int
@@ -319,9 +319,9 @@ class PlanarDerivatives(ForceDerivatives):
         return most
 
     def carry(self, gather: bool) -> None:
-        """Carries the derivatives through the panel and, if wanted, gathers their part of the Jacobian.
+        """Carries the derivatives through the panel and, if gather, adds their part of the Jacobian.
 
-        The inverse of the panel's last Newton step is used.
+        It uses the inverse of the panel's last Newton step.
         """
         by: float = 2.0 / (1.0 + self.panel.tangent[STAGES] * self.panel.tangent[STAGES])
         if not self.panel.driven:
@@ -336,7 +336,7 @@ class PlanarDerivatives(ForceDerivatives):
             self.solve(gather, by)
 
     def drive(self) -> None:
-        """Fills `block`: right sides for the derivatives of t at the nodes, by start direction and motion."""
+        """Fills `block`: right sides for the derivatives of t at the nodes, by first direction and motion."""
         i: cython.int
         j: cython.int
         k: cython.int
@@ -375,7 +375,7 @@ class PlanarDerivatives(ForceDerivatives):
                 self.block[i, j + 3] -= across_y * c
 
     def solve(self, gather: bool, by: float) -> None:
-        """Sets `turn` at the end of the panel and, if wanted, gathers what t at the nodes contributes."""
+        """Sets `turn` at the end of the panel and, if gather, adds the contribution of t at the nodes."""
         i: cython.int
         j: cython.int
         p: cython.int
@@ -391,7 +391,7 @@ class PlanarDerivatives(ForceDerivatives):
                         self.gathered[p, j] += self.weight[p, i] * t
 
     def weigh(self) -> None:
-        """Fills `weight`, by which derivatives of t at the nodes enter the friction integrals."""
+        """Fills `weight`: factors of the derivatives of t at the nodes in the friction integrals."""
         i: cython.int
         m: cython.int
         row: cython.int
@@ -428,7 +428,7 @@ class PlanarDerivatives(ForceDerivatives):
                 self.weight[row + 2, i], self.weight[row + 3, i] = y * c, -y * s
 
     def stick(self, begin: float, end: float) -> None:
-        """Subtracts from the friction derivatives what the slider's place in a stick contributes."""
+        """Subtracts the contribution of the slider's place in a stick from the friction derivatives."""
         j: cython.int
         m: cython.int
         h: cython.int
@@ -460,7 +460,7 @@ class PlanarDerivatives(ForceDerivatives):
                 self.jacobian[row + 3, j] -= s * self.w_y[j]
 
     def direct(self) -> None:
-        """Adds the derivatives of the forces by the motion and load at the same angle."""
+        """Adds the derivatives of the forces by motion and load at the same angle."""
         i: cython.int
         for i in range(-1, self.outputs):
             self.add_product(i, 0, STICKS, 0)

@@ -27,15 +27,15 @@ class PlanarLoop(Frozen, LoadedPieces):
     u_x, u_y, v : ndarray, complex, shape (harmonic,) [length]
         The motion, as given to `planar_loop`, as are mu [-], k_u, k_v [force / length] and n_0 [force].
     sequence : str
-        The states in order: E stick, P slip, in whatever direction, S separation: 'EPEP', 'EPS', ...
+        The states in order: E stick, P slip in any direction, S separation: 'EPEP', 'EPS', ...
     angles : ndarray, shape (len(sequence),) or (0,) for a single state [rad]
         ``angles[i]`` in [0, 2 pi) is where state ``sequence[i]`` begins and the one before it ends.
     slip_motion : ndarray, shape (max(len(angles), 1), 2) [length]
         w_x and w_y while the contact sticks, for each state; NaN for the others.
     dissipation : float
-        Energy that friction takes in a cycle [force length].
+        Energy dissipated by friction in a cycle [force length].
     slip_path : float
-        Way of the slider while it slips, in a cycle [length].
+        Path of the slider while it slips, in a cycle [length].
     greatest_force : float
         Greatest |f| [force].
     """
@@ -70,7 +70,8 @@ class PlanarLoop(Frozen, LoadedPieces):
         begin = self._panels[:, 0]
         t = begin[0] + np.mod(angle[slips] - begin[0], 2.0 * np.pi)
         at = np.searchsorted(begin, t, side="right") - 1
-        # where a slip begins rounding may put an angle before it, after the last panel of the slip before
+        # at the beginning of a slip rounding may put an angle before it, after the last panel of the slip
+        # before
         after = (at + 1) % begin.size
         ahead = np.mod(begin[after] - t, 2.0 * np.pi)
         sooner = (t - begin[at] - self._panels[at, 1] > ahead) & (begin.size > 1)
@@ -114,7 +115,7 @@ def planar_loop(
     Parameters
     ----------
     u_x, u_y, v : array_like, complex, shape (harmonic,)
-        Coefficients of the displacements, and the other arguments, as in `planar_forces`; numbers.
+        Coefficients of the displacements. The other arguments are numbers, as in `planar_forces`.
 
     Returns
     -------
@@ -171,7 +172,7 @@ def _solved(motion: KernelArguments) -> PlanarContact:
 
 
 def visible(contact: PlanarContact) -> list[Piece]:
-    """Pieces (state, first angle, slider place) longer than rounding, equal neighbours joined."""
+    """Pieces (state, first angle, place of the slider) longer than rounding, with equal neighbours joined."""
     slider = contact.cycle.slider
     begin = np.asarray(slider.begin)[: slider.pieces]
     lengths = np.diff(begin, append=begin[0] + 2.0 * np.pi)
@@ -187,7 +188,7 @@ def visible(contact: PlanarContact) -> list[Piece]:
 
 
 def _greatest(loop: PlanarLoop, harmonics: int) -> float:
-    """Greatest magnitude |f|: at a transition, or by fine sampling near the greatest of many angles."""
+    """Greatest |f|: at a transition, or by fine sampling near the angle where a coarse sample is greatest."""
     step = 2.0 * np.pi / (LOOP.angles_per_harmonic * max(harmonics, 1))
     theta = np.concatenate((loop.angles, np.arange(0.0, 2.0 * np.pi, step)))
     size = np.hypot(*np.moveaxis(loop.force(theta), -1, 0))
@@ -208,7 +209,7 @@ def directions(panels: FloatArray, theta: FloatArray) -> FloatArray:
 
 
 def between(tangent: FloatArray, part: FloatArray) -> FloatArray:
-    """Values of the panels' polynomials (point, s), 0 at their start, at a fraction of each panel."""
+    """Value of each panel's polynomial (point, s), which is 0 at the start, at a fraction of the panel."""
     rule = radau(STAGES)
     nodes = np.concatenate(([0.0], rule.nodes))
     values = np.concatenate((np.zeros((tangent.shape[0], 1)), tangent), axis=1)

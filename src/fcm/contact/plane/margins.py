@@ -1,16 +1,16 @@
-"""Kernel: how far a contact in its plane is from another regime, as signed functions of its motion.
+"""Kernel: signed distances of a contact in a plane from other regimes (margins); extremes of a cycle.
 
 As on a line, the derivatives of its forces jump, or begin like a root, where
 
 - an extreme of the load passes zero: the contact closes once more, or opens once more;
-- all discs come to have a place in common, or no longer: it begins to slip;
-- the place where the slider of a contact that never slips began leaves what is common to them;
-- another disc comes to hold a slider that never slips, beside the one that does;
-- a disc that passes a resting slider comes to touch it: another slip begins, and leaves it elsewhere.
+- all discs begin, or cease, to have a place in common: it stops, or begins, to slip;
+- the start of the slider of a contact that never slips leaves the places that all discs have in common;
+- a disc begins to hold a slider that never slips, besides the one that does;
+- a disc that passes a slider at rest comes to touch it: another slip begins, and leaves it elsewhere.
 
-Where a slip halts, lambda vanishing for an instant, the derivatives are continuous.
+The derivatives are continuous where lambda vanishes for an instant, so that a slip halts.
 
-`PlanarMeasures` says what else a cycle tells: its greatest forces, energy, way, and states in order.
+`PlanarMeasures` computes greatest forces, energy, slip path and states of a cycle.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ PUSHES = cython.declare(cython.int, 5)
 
 @cython.cclass
 class PlanarMargins(RegimeMargins):
-    """`find` computes the margins of the motion of a contact in its plane."""
+    """Margins of a contact in a plane; `find` computes them for a motion."""
 
     def __init__(self, cycle: PlanarCycle) -> None:
         RegimeMargins.__init__(self, cycle.motion.normal, 4 * cycle.motion.highest + 4)
@@ -97,7 +97,7 @@ class PlanarMargins(RegimeMargins):
             return
         if self.cycle.behaviour == CLOSED:
             self.resting.encloses(True)
-            # slips are as long as the root of this, and turn by that
+            # a slip is as long as the root of this, and turns by as much
             beyond: float = self.resting.overlap if self.resting.overlap > 0.0 else PAST
             self.note(SLIPS, 0.0, sqrt(beyond * self.motion.reach))
         else:
@@ -108,7 +108,7 @@ class PlanarMargins(RegimeMargins):
     def overlap(self, x: cython.double[::1], contact: ContactParameters, start: bool) -> float:
         """How far all discs of a motion x must grow to share a place [force]; see `resting`.
 
-        With `start` the discs must contain the place where the slider began.
+        With `start` the discs must contain the start of the slider.
         """
         self.hold(x, 0, contact, start)
         reach: float = self.resting.beyond if start else self.resting.overlap
@@ -132,7 +132,7 @@ class PlanarMargins(RegimeMargins):
         contact: ContactParameters,
         start: cython.bint,
     ) -> None:
-        """Lets `resting` examine a motion."""
+        """Examines a motion by `resting`."""
         self.motion.load(x, first, contact)
         self.resting.sampled = False
         if start:
@@ -142,7 +142,7 @@ class PlanarMargins(RegimeMargins):
             self.resting.encloses(True)
 
     def rests(self, s_x: float, s_y: float) -> None:
-        """Appends the margins of a contact that never slips: to slip, and of its start being left."""
+        """Appends the margins of a contact that never slips: of slip, and of leaving its start."""
         if not self.resting.sampled:  # far inside
             self.note(SLIPS, 0.0, -PAST)
             self.note(STARTS, 0.0, PAST)
@@ -156,7 +156,7 @@ class PlanarMargins(RegimeMargins):
         starts: float = -self.resting.beyond
         self.resting.encloses(True)
         room: float = max(-self.resting.overlap, 0.0)
-        # a corner of what is common to the discs moves as its root, and so do the forces
+        # a corner of the common places moves as the root of this, and so do the forces
         self.note(SLIPS, 0.0, -sqrt(room * self.motion.reach) if corner else -room)
         self.note(STARTS, 0.0, starts)
 
@@ -167,7 +167,7 @@ class PlanarMargins(RegimeMargins):
         return room
 
     def weaker(self, s_x: float, s_y: float) -> float:
-        """Push of the weaker of two discs that hold a place: w - s = p_1 e_1 + p_2 e_2."""
+        """Push of the weaker of the two discs that hold a place: w - s = p_1 e_1 + p_2 e_2."""
         a_x: float = self.resting.basis[0, 0] - self.resting.w_x
         a_y: float = self.resting.basis[0, 1] - self.resting.w_y
         b_x: float = self.resting.basis[1, 0] - self.resting.w_x
@@ -184,10 +184,10 @@ class PlanarMargins(RegimeMargins):
         return least
 
     def pushes(self) -> None:
-        """Appends for every stick the discs that nearly touch its slider, and the shift by the next slip.
+        """Appends for every stick the discs that nearly touch its slider, and its gap after the next slip.
 
-        If there is one stick alone, which the beginning of a period may cut in two, or none but by rounding,
-        the slip takes the slider back to where it was, and tells nothing.
+        If there is a single stick, which the beginning of a period may divide, the slip takes the slider back
+        to where it was. It then gives no margin, nor does a stick within rounding.
         """
         p: cython.int
         n: cython.int = self.cycle.slider.pieces
@@ -207,7 +207,7 @@ class PlanarMargins(RegimeMargins):
                 self.note(PUSHES, halt, self.outside(p, halt))
 
     def within(self, p: cython.int, end: float) -> None:
-        """Appends the discs within a stick that come nearest to its slider."""
+        """Appends the margins of the discs within a stick that come nearest to its slider."""
         begin: float = self.cycle.slider.begin[p]
         step: float = 1.0 / (self.steps * max(self.motion.highest, 1))
         steps: cython.int = cython.cast(cython.int, (end - begin) / step) + 2
@@ -226,7 +226,7 @@ class PlanarMargins(RegimeMargins):
             older, old = old, new
 
     def outside(self, p: cython.int, theta: float) -> float:
-        """Distance of the slider of a stick outside the disc of an angle; negative inside."""
+        """Distance of a stick's slider outside the disc at an angle; negative inside."""
         self.motion.place(SCAN, theta)
         gap: float = hypot(
             self.motion.value[SCAN, 0] - self.cycle.slider.rest_x[p],
@@ -238,7 +238,7 @@ class PlanarMargins(RegimeMargins):
 
 @cython.cclass
 class PlanarMeasures(CycleMeasures):
-    """Measures of the cycle of a contact in its plane; states begin with the first stick if there is one."""
+    """Measures of the cycle of a contact in a plane; states begin with the first stick, if there is one."""
 
     def __init__(self, cycle: PlanarCycle) -> None:
         CycleMeasures.__init__(self, np.zeros(cycle.slider.capacity + 1, dtype=np.intc))
@@ -268,7 +268,7 @@ class PlanarMeasures(CycleMeasures):
         self.greatest_load = max(greatest_load(self.crossings), 0.0) * self.motion.load_scale
 
     def friction(self) -> None:
-        """Computes the greatest magnitude of friction: at the ends of a piece, or where it stops growing."""
+        """Computes the greatest friction force: at the ends of a piece, or where it stops growing."""
         p: cython.int
         i: cython.int
         n: cython.int = self.cycle.slider.pieces
@@ -290,7 +290,7 @@ class PlanarMeasures(CycleMeasures):
         self.greatest_friction = most * self.motion.scale
 
     def top(self, p: cython.int, low: float, high: float, before: float) -> float:
-        """Greatest magnitude within an interval, where its growth vanishes, by false position (Illinois)."""
+        """Greatest friction in an interval, where its growth vanishes, by false position (Illinois)."""
         i: cython.int
         after: float = self.growth
         most: float = 0.0
@@ -322,9 +322,9 @@ class PlanarMeasures(CycleMeasures):
         return 0.0
 
     def states(self, rubs: cython.bint) -> None:
-        """Fills the states without those within rounding, equal neighbours joined.
+        """Fills the states, without those within rounding, and with equal neighbours joined.
 
-        Without friction a closed contact is not called slipping.
+        Without friction a closed contact counts as sticking.
         """
         p: cython.int
         i: cython.int
@@ -349,7 +349,7 @@ class PlanarMeasures(CycleMeasures):
             self.pieces += 1
         first = self.piece[0]
         self.pieces = join_states(self.state, self.piece, self.pieces)
-        if self.piece[0] != first:  # the last goes on in the first: it stands in the place of that
+        if self.piece[0] != first:  # the last state continues in the first, and replaces it
             state = self.state[self.pieces - 1]
             for i in range(self.pieces - 1, 0, -1):
                 self.state[i] = self.state[i - 1]

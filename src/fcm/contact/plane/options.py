@@ -1,4 +1,4 @@
-"""Options for the motion of a contact in its plane."""
+"""Options for a contact that slides in a plane."""
 
 from __future__ import annotations
 
@@ -10,73 +10,72 @@ from fcm.frozen import Frozen
 class PlanarOptions(Frozen):
     """Tolerances and limits of the kernel of contacts in a plane; lengths of panels are angles in radians.
 
-    Of the panels by which slip is followed
-    ---------------------------------------
-    tolerance : last coefficient of a panel's polynomial, times its radius relative to the greatest, up to
-        which the panel is accepted. Forces err by about 1e-5 of that, 1e-3 at worst, their derivatives by
-        more, see below.
+    Panels by which a slip is followed
+    ----------------------------------
+    tolerance : greatest last coefficient of a panel's polynomial, times its relative radius, at which the
+        panel is accepted. Forces err by about 1e-5 of that, 1e-3 at worst; derivatives by more, see below.
     panel_length : longest panel, times the highest harmonic that is integrated.
-    coefficient_floor : least value taken for the last coefficient, relative to the last but one: it may
+    coefficient_floor : least value assumed for the last coefficient, relative to the last but one: it may
         vanish by chance.
     last_change : square root of the change of t expected next, below which the next step of Newton's method
         is the last.
-    zero_change : change of t in a step of Newton's method, below which there is no further step.
+    zero_change : change of t in a Newton step, below which there is no further step.
     frozen_change : change of t in a step, up to which the derivatives of the equations are kept for the next.
-    max_iterations : most steps of Newton's method; where it takes more, the panel is too long.
+    max_iterations : most steps of Newton's method; if it needs more, the panel is too long.
     max_initial_tangent : greatest t at the end of a panel in the first guess.
     max_tangent : value of t from which on a panel is too long; below it directions are within 100 degrees of
         that at the start.
-    max_growth : exponent by which directions may part in a panel; with more it is too long.
-    derivative_fraction : weight of the derivatives' error in that of a panel, where derivatives are wanted.
-    light_load_tolerance : factor on the length of a panel: their product is the least weight of its error
-        where the load is small, for the derivatives there.
-    min_factor, max_factor, safety : least and greatest ratio of a panel's length to the one before, and
-        factor on what the tolerance allows.
-    grading_length : distance from where the contact opens, times the highest harmonic, within which panels
-        are graded towards that.
-    end_factor : force, relative to the tolerance, that is left for a last panel up to where the contact
-        opens.
-    impulse_tolerance : derivative of the impulse by the direction that is left for it, where derivatives are
-        wanted.
-    max_grading : longest graded panel, relative to the distance from where the contact opens.
+    max_growth : exponent by which neighbouring directions may part in a panel; with more it is too long.
+    derivative_fraction : weight of the derivatives' error in the error of a panel, if derivatives are
+        computed.
+    light_load_tolerance : times the length of a panel, the least weight of its error where the load is small,
+        for the derivatives there.
+    min_factor, max_factor, safety : least and greatest ratio of a panel's length to the last, and factor on
+        the length that the tolerance permits.
+    grading_length : distance to the opening of the contact, times the highest harmonic, within which panels
+        are graded towards it.
+    end_factor : force, relative to the tolerance, that a last panel up to the opening may leave out.
+    impulse_tolerance : derivative of the impulse by the direction that such a panel may leave out, if
+        derivatives are computed.
+    max_grading : greatest length of a graded panel, relative to the distance to the opening.
     zero_radius : radius of a disc, relative to its bound, up to which it counts as zero.
-    negligible_length : distance from where the contact opens, within which the force adds nothing any more.
+    negligible_length : distance to the opening of the contact within which the force contributes nothing.
 
-    Of sticks
-    ---------
+    Sticks
+    ------
     min_step : shortest step of a stick, and shortest slip.
     first_step : shortest first step of a stick; doubled while no slip follows the stick.
     edge_tolerance : distance from the edge of its disc, in terms of the squared radius, up to which a slider
         within it lies on the edge.
 
-    Of steady cycles
-    ----------------
-    max_periods : most periods that are computed in search of a steady cycle.
+    Steady cycles
+    -------------
+    max_periods : most periods that are followed to find a steady cycle.
     place_tolerance : change of a slider's place in a period, relative to the lesser of radius and motion, up
         to which it is steady.
-    next_change : change expected next, relative to that, below which a step of Newton's method is the last.
+    next_change : expected next change, relative to that, below which a step of Newton's method is the last.
     max_contraction : change of the place in a period, relative to the one before, from which on Newton's
-        method is of no help.
-    min_determinant : determinant of the derivatives of that change by the place, up to which there are none
-        to go by.
+        method does not help.
+    min_determinant : determinant of the derivatives of that change by the place, up to which they are not
+        used.
     double_point_tolerance : change of a slider's place in a period, relative to the radius, up to which it is
-        steady where nothing improves it: at the slip limit itself the fixed point is double, and as uncertain
-        as the square root of the rounding.
+        steady if nothing improves it: at the slip limit the fixed point is double, and as uncertain as the
+        square root of the rounding.
     slight_miss : distance by which the discs miss one place, relative to the radius, below which a slider
         hardly slips.
     min_depth : least depth of that place within one of the discs, relative to the radius.
-    min_way : way of a slider in a period, relative to the radius, below which the way is summed, and is no
-        difference of places.
+    min_way : path of a slider in a period, relative to the radius, below which it is summed instead of taken
+        as a difference of places.
 
-    Of a slider at rest, and of what is told
-    ----------------------------------------
+    Slider at rest, and results
+    ---------------------------
     max_exchanges : most exchanges of the discs that hold a slider at rest.
     max_halvings : most halvings of a step between two nodes, after which its cubic is exact.
     disc_tolerance : half the angle between two discs, below which they are the same.
     min_bend : curvature of a slider's distance from the edge of a disc, relative to the radius, below which
         the disc has no angle of its own.
     samples_per_radian : number of samples for each radian of the highest harmonic, among which an extreme is
-        looked for.
+        sought.
     min_state_length : length of a state below which it is rounding.
     smooth_radius : radius of the disc, relative to the motion, up to which the contact slides without
         friction.
@@ -125,11 +124,11 @@ class PlanarOptions(Frozen):
 
 
 class LoopOptions(Frozen):
-    """Options on how a loop of forces is read from a cycle.
+    """Options on how the loop of a cycle is sampled.
 
     recorded_panels : number of panels of slip that are recorded at first.
     angles_per_harmonic : number of angles for each period of the highest harmonic, at which the greatest
-        force is looked for.
+        force is sought.
     """
 
     recorded_panels: int = 1000
@@ -137,8 +136,8 @@ class LoopOptions(Frozen):
 
 
 LOOP = LoopOptions()
-OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 1e-8 mostly, 1e-6 at worst
+OPTIONS = PlanarOptions()  # for a balance: forces within 1e-10, derivatives 1e-8 mostly, 1e-6 at worst
 FINE = replace(
     OPTIONS, tolerance=1e-9, panel_length=4.0, last_change=1e-6, impulse_tolerance=1e-11
-)  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
-FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels
+)  # for `planar_forces`: forces within 1e-11, derivatives 1e-8
+FINEST = replace(FINE, tolerance=1e-11)  # for a loop, which evaluates the polynomials within panels

@@ -1,11 +1,11 @@
 r"""Kernel: a contact's periodic motion in its plane, and the direction of its slip over a panel of angles.
 
-The motion is that of trigonometric polynomials: u_x, u_y and the radius. Everything is divided by the
-greatest amplitude of a force, so that the slider k_u w is held within the disc
+u_x, u_y and the radius are trigonometric polynomials. They are divided by the greatest amplitude of a force,
+so that the slider k_u w is held within the disc
 
     |U - W| <= R,   U = k_u u,   R = mu n,   n = n_0 + k_v v where that is positive.
 
-The means of u are left out: they matter only to a slider that never moves.
+The means of u are omitted: they matter only for a slider that never moves.
 
 The direction of slip is found by collocation of its Riccati equation. In slip U - W = R e, e = (cos alpha,
 sin alpha), and the slider W' = lambda e moves only as it is pushed, so
@@ -18,12 +18,12 @@ t = tan((alpha - alpha_0) / 2), a = e_0 . U' and b = e_0_perp . U',
     2 R t' = b - 2 a t - b t^2
 
 which is a Riccati equation: t = y_2 / y_1, where y' = [[a, b], [b, -a]] y / (2 R) is linear. So the end of a
-panel is a Moebius map of its start. A polynomial t of degree s that obeys the equation at Radau's s points
-errs at the end by the order 2 s - 1 of the length; multiplied by R, the equation has no singular point where
-the load vanishes, and where R is small, its roots alpha = direction of U' are met without a small step
-(Hairer and Wanner, Solving ordinary differential equations II, IV.5).
+panel is a Moebius map of its start. A polynomial t of degree s that satisfies the equation at Radau's s
+points errs at the end by the order 2 s - 1 of the length. Multiplied by R, the equation has no singular point
+where the load vanishes. Where R is small, the solution alpha = direction of U' needs no small step (Hairer
+and Wanner, Solving ordinary differential equations II, IV.5).
 
-Of an error of the direction the force has no more than it began with, (|R d alpha|)' <= 0 while lambda >= 0.
+The error of the force due to the direction does not grow: (|R d alpha|)' <= 0 while lambda >= 0.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ else:
     from fcm.contact.plane.radau import STAGES
 
 
-# Rows of coefficients; `value` has those of X, Y and REACH, then their first and their second derivatives.
+# Rows of coefficients; `value` holds X, Y and REACH, then their first and their second derivatives.
 X = cython.declare(cython.int, 0)
 Y = cython.declare(cython.int, 1)
 REACH = cython.declare(cython.int, 2)
@@ -59,7 +59,7 @@ LOAD = cython.declare(cython.int, 3)  # the normal force, divided by its own sca
 ROWS = cython.declare(cython.int, 4)
 SCAN = cython.declare(cython.int, 0)  # the slot of single angles; those of a panel follow
 
-BOUNDS = cython.declare(cython.int, 5)  # orders of derivatives that are bounded
+BOUNDS = cython.declare(cython.int, 5)  # number of orders of derivatives that are bounded, from 0 on
 
 
 @cython.cclass
@@ -69,16 +69,16 @@ class PlaneMotion(HarmonicMotion):
     Attributes
     ----------
     normal
-        The same load as the motion of a contact on a line, which finds where the contact closes and opens.
+        The same load as a `LineMotion`, which finds where the contact closes and opens.
     size, reach
         Bounds of |U| and of R.
     motion_bound, reach_bound
-        By the order of a derivative: no value of that of U, of R, is greater.
+        Bounds of the derivatives of U and of R, by the order of the derivative.
     cos, sin (slot, harmonic), value (slot, 11)
-        Of the angles taken by `place`: the harmonics; U_x, U_y, R, their first derivatives, their second,
-        which `bend` adds; cosine and sine of the angle. Of those of a panel only the last has them.
+        For the angles placed by `place`: the harmonics; U_x, U_y, R, their first derivatives, their second
+        ones (filled by `bend`), cosine and sine of the angle. Of the nodes of a panel only the last has them.
     node (8, s), node_cos, node_sin (harmonic, s)
-        Of the nodes of a panel: U_x, U_y, R, their first derivatives, cosine and sine; the harmonics.
+        For the nodes of a panel: U_x, U_y, R, their first derivatives, cosine and sine; the harmonics.
     """
 
     def __init__(self, harmonics: list[int], stages: int, options: PlanarOptions) -> None:
@@ -96,7 +96,7 @@ class PlaneMotion(HarmonicMotion):
             self.node = np.zeros(8 * stages)
 
     def load(self, x: cython.double[::1], first: cython.Py_ssize_t, contact: ContactParameters) -> cython.int:
-        """Takes a motion x[first:]; OPEN, CLOSED or MIXED, UNKNOWN where a number is not finite."""
+        """Takes a motion x[first:]; returns OPEN, CLOSED or MIXED, or UNKNOWN if a number is not finite."""
         k: cython.int
         i: cython.Py_ssize_t = first + 3
         k_u: float = contact.k_u
@@ -140,12 +140,12 @@ class PlaneMotion(HarmonicMotion):
         self.size, self.reach = self.motion_bound[0], self.reach_bound[0]
 
     def rubs(self) -> bool:
-        """Whether the friction is more than rounding beside the motion."""
+        """Whether the friction exceeds rounding relative to the motion."""
         rubs: bool = self.reach > self.smooth * self.size
         return rubs
 
     def place(self, slot: cython.int, theta: float) -> None:
-        """Fills U, R, their derivatives and the harmonics at an angle, into one slot."""
+        """Fills U, R, their derivatives and the harmonics at an angle, into a slot."""
         c_1: float = cos(theta)
         s_1: float = sin(theta)
         c: float = c_1
@@ -179,7 +179,7 @@ class PlaneMotion(HarmonicMotion):
         self.value[slot, 9], self.value[slot, 10] = c_1, s_1
 
     def place_nodes(self, theta: cython.p_double) -> None:
-        """Fills the motion at the nodes of a panel; the last node also as a slot."""
+        """Fills the motion at the nodes of a panel; the last node also into a slot."""
         i: cython.int
         k: cython.int
         last: cython.int = self.stages
@@ -204,7 +204,7 @@ class PlaneMotion(HarmonicMotion):
             self.cos[last, k], self.sin[last, k] = self.node_cos[k, last - 1], self.node_sin[k, last - 1]
 
     def bend(self, slot: cython.int) -> None:
-        """Fills the second derivatives at an angle that has been placed."""
+        """Fills the second derivatives at an angle in a slot."""
         k: cython.int
         square: float
         x: float = 0.0
@@ -220,18 +220,19 @@ class PlaneMotion(HarmonicMotion):
 
 @cython.cclass
 class Panel:
-    """A panel solved by `solve`, its nodes in the slots of the motion from 1 on.
+    """A panel of slip, solved by `solve`; its nodes are those of `PlaneMotion.place_nodes`.
 
     Attributes
     ----------
     theta, length, start_x, start_y, start_rate, start_bend
-        The angle [rad] at which it begins, how long it is, the direction, alpha' and alpha'' there.
+        The angle [rad] at which it begins, its length, and the direction, alpha' and alpha'' there.
     left, fade
-        0 if its nodes are Radau's in the angle. Else how far from its beginning the contact opens [rad], and
-        the part by which the root of what is left falls: they are in that root. The direction is drawn to
-        that of U' like a power of what is left, and the force falls as what is left.
+        left is 0 if its nodes are Radau's in the angle. Otherwise the panel is graded: left is the distance
+        from its beginning to the opening [rad], and its nodes are Radau's in the root of the remaining
+        distance; fade is the relative decrease of that root. The direction approaches that of U' like a power
+        of the remaining distance, to which the force is proportional.
     speed, fall (s,)
-        Of the angle by the part of the panel, at the nodes; and of what is left the part that is left there.
+        At the nodes: derivative of the angle by the fraction of the panel; remaining part of `left`.
     tangent (s + 1,), change (s,), rate (s,)
         t at the start and at the nodes; its derivative by the angle, and that of alpha, at the nodes.
     e_x, e_y, along (s,), push (s + 1,)
@@ -239,11 +240,12 @@ class Panel:
     noise
         The rounding of lambda.
     driven
-        Whether the right sides of its derivatives are made.
+        Whether the right sides of its derivatives have been computed.
     tail_before, tail_last (s,)
-        By these the last two coefficients of its derivatives follow from them; see `tails`.
+        Weights by which the last two coefficients of its derivatives follow from the right sides; see
+        `tails`.
     exact
-        Whether the derivatives of the equations, whose inverse is `inverse`, are to be those at the solution.
+        Whether `inverse`, of the derivatives of the equations, has to be that at the solution.
     """
 
     def __init__(self, motion: PlaneMotion) -> None:
@@ -280,12 +282,12 @@ class Panel:
                 self.columns[STAGES * j + i] = self.slopes[i + 1, j + 1]
 
     def begin(self, theta: float, e_x: float, e_y: float, rate: float, bend: float) -> None:
-        """Begins at an angle in a direction, which is predicted to change by alpha' and alpha''."""
+        """Begins at an angle in a direction; alpha' and alpha'' there predict how it changes."""
         self.theta, self.start_x, self.start_y = theta, e_x, e_y
         self.start_rate, self.start_bend = rate, bend
 
     def solve(self, length: float, left: float) -> bool:
-        """Solves a panel of a length from where it begins; False if it is too long."""
+        """Solves a panel of a length from its beginning; False if it is too long."""
         i: cython.int
         gone: float
         rate: float = self.start_rate
@@ -321,7 +323,7 @@ class Panel:
         return self.newton(slope, bend) and self.finish()
 
     def gone(self, part: float) -> tuple[float, float]:
-        """Angle [rad] from the panel's beginning to a fraction of it, and the derivative by the fraction."""
+        """Angle [rad] from the panel's beginning to a fraction of it, and its derivative by the fraction."""
         root: float
         if self.fade > 0.0:
             root = 1.0 - self.fade * part
@@ -331,8 +333,8 @@ class Panel:
     def newton(self, slope: float, bend: float) -> bool:
         """Solves the collocated Riccati equation by Newton's method, starting from a parabola.
 
-        After a small change its derivatives are kept, and changes fall by a factor. Where those at the
-        solution are wanted, a last step is one more than t needs.
+        After a small change the derivatives of the equation are kept, and changes fall by a constant factor.
+        If `inverse` has to be exact, one step more than t needs is taken.
         """
         i: cython.int
         step: cython.int
@@ -355,7 +357,7 @@ class Panel:
                     return False
             if last or (most < self.settled and (wanted or not self.exact)):
                 return True
-            # of kept derivatives the next change is less by as much as this one is, else it is of its square
+            # with kept derivatives the next change falls by the same ratio, otherwise quadratically
             ahead = most * most if wanted else most * (most / before)
             last = ahead < close
             wanted = most > self.frozen or (last and self.exact)
@@ -403,10 +405,10 @@ class Panel:
                 self.right[i] += self.inverse[STAGES * j + i] * self.missing[j]
 
     def invert(self) -> bool:
-        """Fills `inverse`, by columns, of the equation's derivatives by t; False where it is singular.
+        """Fills `inverse`, by columns, of the equation's derivatives by t; False if they are singular.
 
-        Columns are not exchanged: of the derivatives of Radau's rule, and positive numbers on the diagonal,
-        no pivot is small.
+        Pivoting is not needed: for the derivatives of Radau's rule with positive numbers on the diagonal no
+        pivot is small.
         """
         i: cython.int
         j: cython.int
@@ -433,7 +435,7 @@ class Panel:
         return True
 
     def finish(self) -> bool:
-        """Sets directions and lambda at the nodes; False where directions part too much for the panel."""
+        """Sets directions and lambda at the nodes; False if directions part too much in the panel."""
         i: cython.int
         j: cython.int
         found: cython.int = -1
@@ -466,11 +468,10 @@ class Panel:
         return True
 
     def rest(self) -> float:
-        """Last Legendre coefficient of t, an estimate of what its polynomial leaves out.
+        """Last Legendre coefficient of t, an estimate of the truncation error of its polynomial.
 
-        Of t times what is left, where the contact opens: so is the force.
-
-        The last may vanish by chance; then the one before it tells, of which that is about a tenth.
+        In a graded panel t is multiplied by the remaining distance, as the force is. The last coefficient may
+        vanish by chance; then a tenth of the one before it is taken.
         """
         j: cython.int
         before: float = 0.0
@@ -482,7 +483,7 @@ class Panel:
         return rest
 
     def tails(self) -> None:
-        """Fills `tail_before`, `tail_last`: last coefficients of derivatives of t, from right sides."""
+        """Fills `tail_before`, `tail_last`: weights for the last coefficients of derivatives of t."""
         i: cython.int
         j: cython.int
         one: float
@@ -494,13 +495,13 @@ class Panel:
                 self.tail_last[j] += self.tail[1, i + 1] * one
 
     def end_of_slip(self) -> float:
-        """Fraction of the panel after which lambda is within rounding; 2 if it does not fall so far."""
+        """Fraction of the panel at which lambda falls to its rounding; 2 if it does not."""
         j: cython.int
         least: float = self.push[0]
         most: float = self.push[0]
         for j in range(STAGES):
             least, most = min(least, self.push[j + 1]), max(most, self.push[j + 1])
-        if least > 0.5 * most:  # between nodes a polynomial that resolves it does not fall to nothing
+        if least > 0.5 * most:  # between nodes a resolved polynomial does not fall to zero from there
             return 2.0
         f_0: float = self.push[0] - self.noise
         if f_0 <= 0.0 and self.push[1] <= self.noise:
@@ -513,7 +514,7 @@ class Panel:
             if f_1 < 0.0:
                 return self.root(self.node[j], self.node[j + 1])
             if d_0 < 0.0 < d_1:
-                # where the tangents at both ends meet; lambda is hardly below that
+                # where the tangents at both ends meet; lambda is hardly below that point
                 x: float = (f_0 - f_1 + d_1 * h) / (d_1 - d_0)
                 if f_0 + d_0 * x < 0.0:
                     low: float = self.lowest(self.node[j], self.node[j + 1])
@@ -532,7 +533,7 @@ class Panel:
         return slope
 
     def pushed(self, x: float) -> tuple[float, float]:
-        """lambda beyond rounding, and its derivative, at a fraction x of the panel."""
+        """lambda minus its rounding, and its derivative, at a fraction x of the panel."""
         k: cython.int
         total: float = 0.0
         t: float = 0.0
@@ -559,9 +560,9 @@ class Panel:
         return value - self.motion.value[SCAN, 5] - self.noise, slope * speed
 
     def root(self, low: float, high: float) -> float:
-        """Fraction at which lambda vanishes, between one where it is positive and one where it is negative.
+        """Fraction at which lambda vanishes, by bracketed Newton's method.
 
-        Newton's method, bracketed.
+        lambda is positive at `low` and negative at `high`.
         """
         x: float = 0.5 * (low + high)
         step: float
@@ -581,7 +582,7 @@ class Panel:
         return x
 
     def lowest(self, low: float, high: float) -> float:
-        """Fraction at which lambda is least, between one where it falls and one where it rises."""
+        """Fraction at which lambda is least, between `low`, where it falls, and `high`, where it rises."""
         i: cython.int
         x: float = 0.5 * (low + high)
         for i in range(40):  # noqa: B007

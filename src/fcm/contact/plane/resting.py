@@ -1,22 +1,22 @@
-"""Kernel: where the slider of a contact that never slips rests, and whether there is such a place.
+"""Kernel: the place where the slider of a contact that never slips rests, and whether there is one.
 
-The slider rests at any W with |U - W| <= R at every angle: a place common to all discs. It began unstressed;
-it is taken to rest there if the discs allow that, else at the nearest place that is common to them all.
+The slider can rest at any W with |U - W| <= R at every angle: a place common to all discs. It began
+unstressed. It is taken to rest at its start if the discs permit that, otherwise at the nearest common place.
 
-These are two small convex problems, each with a disc for every angle. One is for the least t by which all
-discs have to grow until they have a place in common, as of the smallest enclosing circle, with weights. The
-other is for that nearest place. A solution is held by three discs, or two, at most. Both are solved by
-exchange: the disc that is missed most joins those that hold it, and the best that these allow takes its
-place, until none is missed.
+These are two small convex problems, each with a disc for every angle. The first is the least t by which all
+discs have to grow until they have a place in common, a weighted smallest enclosing circle. The second is the
+nearest common place. At most three discs, or two, hold a solution. Both problems are solved by exchange: the
+disc that the place misses most joins those that hold it, and the best place that these permit replaces it,
+until no disc is missed.
 
-The disc that is missed most is sought among nodes first. That it is no other is proved by
+The disc missed most is first sought among nodes. That no other disc is missed is proved by
 
     h = |U - W|^2 - (R + t)^2,
 
-a trigonometric polynomial, positive where a disc that has grown by t is missed. Its values and slopes at both
-ends of a step, and a bound of its fourth derivative, prove that it is negative, monotone or concave between;
-a step that proves nothing is halved. That ends: where the cubic through both ends errs by no more than
-rounding, h has no second maximum, as a cubic has none.
+a trigonometric polynomial, positive where a disc grown by t is missed. Its values and slopes at both ends of
+a step, and a bound of its fourth derivative, prove that it is negative, monotone or concave in between. A
+step that proves nothing is halved. This ends: where the cubic through both ends errs by no more than
+rounding, h has at most one maximum, as a cubic has.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ FAR = cython.declare(cython.double, 1e300)
 
 @cython.cclass
 class Resting:
-    """Finds the resting place of the slider for a motion that never opens.
+    """Finds the place where the slider rests, for a motion that never opens the contact.
 
     Attributes
     ----------
     w_x, w_y
-        The place, from the means of u.
+        The place, relative to the means of u.
     overlap
-        How far all discs have to grow to have a place in common; below 0 they have, above 0 it slips. A lower
-        bound, unless it is asked for exactly.
+        How far all discs have to grow to have a place in common: up to 0 they have one, above 0 it slips. A
+        lower bound unless it is computed exactly.
     held, basis (3, 4)
-        The number of discs that hold the place, and of each its centre, radius and angle.
+        The number of discs that hold the place; centre, radius and angle of each.
     beyond, angle
-        Of the place asked for last by `farthest` or `farthest_of_all`: how far outside the disc it is that it
-        misses most.
+        For the place passed to `farthest` or `farthest_of_all`: its distance outside the disc that it misses
+        most, and the angle of that disc.
     """
 
     def __init__(self, motion: PlaneMotion) -> None:
@@ -76,7 +76,7 @@ class Resting:
         self.found = self.sampled = False
 
     def stays(self, s_x: float, s_y: float) -> bool:
-        """Whether the slider need never slip; then sets where it rests, having begun at a place."""
+        """Whether the slider need never slip, having begun at s_x, s_y; then sets where it rests."""
         self.held, self.sampled = 0, False
         self.overlap = -FAR
         self.w_x, self.w_y = s_x, s_y
@@ -115,9 +115,10 @@ class Resting:
         return self.overlap <= rounding
 
     def brief(self) -> bool:
-        """Whether the discs that hold the place asked for by `encloses` do so for an instant each.
+        """Whether each disc that holds the place found by `encloses` does so for an instant only.
 
-        A slip there is then as short as the root of what is missing; on a circle all discs hold it.
+        A slip there is then as short as the root of `overlap`. For a circular motion all discs hold the
+        place.
         """
         i: cython.int
         for i in range(self.held):
@@ -136,7 +137,7 @@ class Resting:
         return self.held > 1
 
     def nearest(self, s_x: float, s_y: float) -> None:
-        """Sets the resting place nearest to a start that is none."""
+        """Sets the resting place nearest to a start that is not common to all discs."""
         i: cython.int
         w_x: float = self.w_x
         w_y: float = self.w_y
@@ -149,7 +150,7 @@ class Resting:
             if self.beyond <= rounding:
                 break
             self.exchange(True, s_x, s_y)
-            if not self.found:  # the only place that is common, within rounding
+            if not self.found:  # the only common place, within rounding
                 self.w_x, self.w_y, self.held = w_x, w_y, 0
                 return
         self.sharpen(s_x, s_y)
@@ -157,9 +158,8 @@ class Resting:
     def sharpen(self, s_x: float, s_y: float) -> None:
         """Refines the angles of the discs that hold the place.
 
-        The place errs by the square of their errors.
-
-        Along the edge of one disc alone it moves by the error itself.
+        The place errs by the square of their errors; but along the edge of a single disc it errs by the error
+        itself.
         """
         i: cython.int
         for i in range(self.held):
@@ -172,7 +172,7 @@ class Resting:
             self.exchange(True, s_x, s_y)
 
     def sharpen_one(self, i: cython.int, w_x: float, w_y: float) -> None:
-        """Refines the angle of disc i to that at which a place misses its disc most."""
+        """Moves the angle of disc i to that at which the place w misses its disc most."""
         self.x, self.y, self.beyond = w_x, w_y, -FAR
         self.refine(self.basis[i, 3])
         self.basis[i, 3] = self.angle
@@ -197,7 +197,7 @@ class Resting:
             self.at[0, j], self.at[1, j], self.at[2, j] = x, y, r
 
     def farthest(self, w_x: float, w_y: float) -> None:
-        """Sets `beyond` and `angle` of the disc that a place misses most, among those near nodes."""
+        """Sets `beyond` and `angle` for the disc that a place misses most, among those near nodes."""
         j: cython.int
         before: float
         after: float
@@ -220,7 +220,7 @@ class Resting:
                 self.refine(self.step * (FIRST_NODE + j))
 
     def farthest_of_all(self, w_x: float, w_y: float) -> None:
-        """Sets `beyond` and `angle` of the disc that a place misses most, among all angles."""
+        """Sets `beyond` and `angle` for the disc that a place misses most, among all angles."""
         i: cython.int
         self.farthest(w_x, w_y)
         for i in range(self.exchanges):  # noqa: B007
@@ -230,7 +230,7 @@ class Resting:
                 break
 
     def next_farthest(self) -> None:
-        """Sets `beyond`: distance outside the disc missed most, other than the one that holds the place."""
+        """Sets `beyond`: distance outside the disc missed most, except the one that holds the place."""
         self.farthest(self.w_x, self.w_y)
         self.beyond = -FAR
         self.maxima(0.0, -FAR, self.basis[0, 3])
@@ -238,7 +238,7 @@ class Resting:
     def hidden(self, level: float) -> None:
         """After `farthest`: searches between the nodes for a disc missed by more than a level.
 
-        `beyond` rises above the level if and only if there is one.
+        `beyond` exceeds the level if and only if there is one.
         """
         if self.beyond > level:
             return
@@ -247,9 +247,9 @@ class Resting:
             self.refine(self.angle)
 
     def maxima(self, level: float, least: float, but: float) -> None:
-        """Sets the disc missed most, among all maxima of h above `least`.
+        """Sets `beyond` and `angle` for the disc missed most, among all maxima of h above `least`.
 
-        Of the angle `but` it is not. `level` is the t of h.
+        The disc at the angle `but` is excluded. `level` is the t of h.
         """
         j: cython.int
         k: cython.int
@@ -266,13 +266,13 @@ class Resting:
             most = max(most, d, r * r)
             mean += self.square[j]
         mean /= self.nodes
-        unit: float = most if most > 0.0 else 1.0  # squares of h may be beyond all numbers
+        unit: float = most if most > 0.0 else 1.0  # squares of h may overflow
         for j in range(self.nodes):
             d = (self.square[j] - mean) / unit
             rms += d * d
         rms = unit * sqrt(rms / self.nodes)
-        # of twice the highest harmonic, which the nodes resolve: the sum of all amplitudes is no more than
-        # the root of twice their number times the root mean square
+        # h has harmonics up to twice the highest, which the nodes resolve: the sum of all amplitudes is at
+        # most the root of twice their number times the root mean square
         order: float = 2.0 * max(self.motion.highest, 1)
         second: float = order * order * sqrt(2.0 * order) * rms
         self.fourth = order * order * second
@@ -342,7 +342,7 @@ class Resting:
         return (d - r) * (d + r), 2.0 * slope, d + fabs(r)
 
     def peak(self, low: float, high: float) -> None:
-        """Takes the single maximum of h between two angles, if its gap exceeds every gap before."""
+        """Takes the single maximum of h between two angles if it is missed by more than `beyond`."""
         i: cython.int
         first: float = low
         last: float = high
@@ -385,14 +385,14 @@ class Resting:
         return inside
 
     def outside(self, theta: float) -> float:
-        """Distance of the place (`x`, `y`) outside the disc of an angle; see `refine` for the slope."""
+        """Distance of the place (`x`, `y`) outside the disc at an angle."""
         self.motion.place(SCAN, theta)
         gap: float = hypot(self.motion.value[SCAN, 0] - self.x, self.motion.value[SCAN, 1] - self.y)
         gap -= self.motion.value[SCAN, 2]
         return gap
 
     def refine(self, theta: float) -> None:
-        """Takes the greatest gap within a step of a node, if it exceeds every gap before."""
+        """Takes the greatest gap within a step of a node if it exceeds `beyond`."""
         i: cython.int
         low: float = theta - self.step
         high: float = theta + self.step
@@ -419,7 +419,7 @@ class Resting:
             else:
                 high = theta
             step = -slope / bend if bend < 0.0 else high - low
-            if fabs(step) < 1e-15:  # which the bracket, open at the angle itself, would not allow
+            if fabs(step) < 1e-15:  # the bracket, which is open at the angle itself, would not permit it
                 break
             if not low < theta + step < high:
                 step = 0.5 * (low + high) - theta
@@ -433,9 +433,10 @@ class Resting:
             self.beyond, self.angle = gap, theta
 
     def exchange(self, near: bool, s_x: float, s_y: float) -> None:
-        """Adds the disc missed most to those that hold the place, and finds the best place again.
+        """Adds the disc missed most to those that hold the place, and finds the best place anew.
 
-        The best is the one nearest to a start if `near`, else the one that the discs miss least.
+        The best place is the one nearest to the start s_x, s_y if `near`, otherwise the one that the discs
+        miss least.
         """
         self.near, self.s_x, self.s_y = near, s_x, s_y
         i: cython.int
@@ -473,7 +474,7 @@ class Resting:
         self.held += 1
 
     def attempt(self, i: cython.int, j: cython.int) -> None:
-        """Tries the places on the circle of the new disc, and on circles i and j unless these are -1."""
+        """Tries the places on the circle of the new disc, and on circles i and j unless they are -1."""
         self.i, self.j = i, j
         n: cython.int = self.held
         r: float = self.basis[n, 2]
@@ -501,14 +502,14 @@ class Resting:
             self.consider(self.basis[n, 0] + u * x, self.basis[n, 1] + u * y, t)
             return
         if j < 0:
-            # where both circles meet: along the line of the centres, and to both sides
+            # where both circles meet: along the line of the centres, then to either side
             t = 0.5 * (d + (r - self.basis[i, 2]) * (r + self.basis[i, 2]) / d)
             u = sqrt(max((r - t) * (r + t), 0.0))
             t, u = t / d, u / d
             self.consider(self.basis[n, 0] + t * x - u * y, self.basis[n, 1] + t * y + u * x, 0.0)
             self.consider(self.basis[n, 0] + t * x + u * y, self.basis[n, 1] + t * y - u * x, 0.0)
             return
-        # three circles that grow by t: W = p + q t from the new centre, from differences of their squares
+        # three circles that grow by t: W = p + q t from the new centre, by the differences of their squares
         x_2: float = self.basis[j, 0] - self.basis[n, 0]
         y_2: float = self.basis[j, 1] - self.basis[n, 1]
         across: float = x * y_2 - y * x_2
@@ -543,7 +544,7 @@ class Resting:
             self.x, self.y, self.t = x, y, t
 
     def fits(self, x: float, y: float, t: float) -> bool:
-        """Whether a place lies within all known discs, grown by t, apart from rounding."""
+        """Whether a place lies within all known discs, grown by t, up to rounding."""
         i: cython.int
         rounding: float = 16.0 * EPSILON * (self.motion.size + self.motion.reach + fabs(x) + fabs(y))
         for i in range(self.held + 1):

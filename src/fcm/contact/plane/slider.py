@@ -1,8 +1,8 @@
-"""Kernel: the slider of a contact in its plane, from an angle on: it rests, or is pushed, until it opens.
+"""Kernel: the slider of a contact in its plane, followed from an angle on through sticks and slips.
 
-A resting slider is met by its disc at a root of g = |U - W|^2 - R^2, a trigonometric polynomial. Its values
-and slopes at both ends of a step, and a bound of its fourth derivative, prove that there is none between; a
-step that proves nothing is halved. A slip is a chain of panels, each as long as its polynomial resolves; it
+A slider at rest is met by its disc at a root of g = |U - W|^2 - R^2, a trigonometric polynomial. Its values
+and slopes at both ends of a step, and a bound of its fourth derivative, prove that there is no root between;
+a step that proves nothing is halved. A slip is a chain of panels, each as long as its polynomial resolves; it
 ends where lambda falls to zero.
 """
 
@@ -31,28 +31,28 @@ SEPARATION = cython.declare(cython.int, 2)
 
 @cython.cclass
 class Slider:
-    """The pieces of a cycle in order, up to `pieces`, and the slider at the present angle.
+    """The pieces of a cycle in order, `pieces` in number, and the slider at the present angle.
 
     Attributes
     ----------
     state, begin, rest_x, rest_y
-        Of a piece: STICK, SLIP or SEPARATION, the angle at which it begins, and where the slider rests then.
+        For each piece: STICK, SLIP or SEPARATION, its first angle, and the place of the slider there.
     theta, sliding, w_x, w_y, e_x, e_y
-        The present angle; whether it slips; where it rests if it does not, else its direction.
+        The present angle; whether the slider slips; its place if it does not, otherwise its direction.
     gone, gone_x, gone_y
-        Its way since it was entered, and where that led, as sums over its slips: no difference of places,
-        whose rounding would be all there is of a slider that hardly moves.
+        Path of the slider since it was entered, and displacement along it, as sums over its slips.
+        Differences of places would be mere rounding for a slider that hardly moves.
     longest
-        Of a panel [rad], so that Radau's rule integrates the harmonics.
+        Greatest length of a panel [rad], for which Radau's rule integrates the harmonics.
     tolerance
-        What the last coefficient of a panel may be, times the radius over its bound, or the length.
+        Greatest last coefficient of a panel, times the radius over its bound, or times the length.
     varying, gathering, gradient
-        Whether derivatives are carried along, the forces summed, and their Jacobian.
+        Whether derivatives are carried along, forces are summed, and their Jacobian is summed.
     record (panel, 5 + s), panels
-        Of each panel while forces are summed: angle, length, direction at the start, what is left to the
-        angle at which the contact opens, or 0, t at the nodes; see `Panel`.
+        For each panel while forces are summed: angle, length, direction at the start, distance to the opening
+        if it is graded, or 0, and t at the nodes; see `Panel`.
     failed
-        Whether a slip or the pieces came to no end.
+        Whether a slip could not be finished, or there are too many pieces.
     """
 
     def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
@@ -138,7 +138,7 @@ class Slider:
             self.w_y = self.motion.value[SCAN, 1] - r * self.e_y
 
     def close(self, theta: float) -> None:
-        """Closes the contact at an angle: it sticks, or slips at once along the motion if that is faster."""
+        """Closes the contact at an angle: it slips if the motion outruns the disc, otherwise it sticks."""
         self.theta, self.stalled = theta, -1e300
         self.motion.place(SCAN, theta)
         self.w_x, self.w_y = self.motion.value[SCAN, 0], self.motion.value[SCAN, 1]
@@ -187,7 +187,7 @@ class Slider:
             self.halt()
 
     def slide(self, end: float, opens: bool) -> None:
-        """Follows a slip until lambda vanishes, or up to an angle."""
+        """Follows a slip until lambda vanishes, or up to the angle `end`."""
         begin: float = self.theta
         length: float
         left: float
@@ -219,8 +219,8 @@ class Slider:
                 self.theta = end
                 return
             graded: cython.bint = opens and r > nothing and left < near
-            last: cython.bint = False  # a panel up to where it opens, whatever it leaves out
-            # as it closes nothing is remembered, and no direction at the start but that is a solution
+            last: cython.bint = False  # a panel up to the opening, whatever it leaves out
+            # at a closing nothing is remembered, and only one initial direction is a solution
             with_turns: cython.bint = self.gathering and self.gradient and r > nothing
             turned: float = self.derivatives.greatest() if with_turns else 0.0
             stray: float = self.stray() if graded else 1.0
@@ -236,7 +236,7 @@ class Slider:
                 part = max(1.0 - self.longest / (3.0 * left), 0.0)
                 length = min(length, min(self.deepest, 1.0 - part * part) * left)
             elif length > 0.6 * left and (length < left or (opens and r <= nothing)):
-                length = 0.6 * left  # nor from closing to opening at once: turns matter between alone
+                length = 0.6 * left  # not from closing to opening at once: turns matter only in between
             self.panel.begin(self.theta, self.e_x, self.e_y, rate, bend)
             for tries in range(200):  # noqa: B007
                 rest = 1e300
@@ -271,7 +271,7 @@ class Slider:
                         continue
                     self.accept(True)
                 elif self.theta == begin:
-                    self.stalled, self.first_step = begin, 2.0 * self.first_step  # no slip at all
+                    self.stalled, self.first_step = begin, 2.0 * self.first_step  # there was no slip
                     self.pieces = before
                 self.halt()
                 return
@@ -284,7 +284,7 @@ class Slider:
                 bend = self.turning(STAGES, rate)
 
     def turning(self, slot: cython.int, rate: float) -> float:
-        """alpha'' at a placed and bent angle, from R alpha' = e_perp . U'."""
+        """alpha'' at an angle in a slot with second derivatives, from R alpha' = e_perp . U'."""
         bend: float = self.e_x * self.motion.value[slot, 7] - self.e_y * self.motion.value[slot, 6]
         along: float = self.e_x * self.motion.value[slot, 3] + self.e_y * self.motion.value[slot, 4]
         bend -= (along + self.motion.value[slot, 5]) * rate
@@ -292,7 +292,7 @@ class Slider:
         return bend
 
     def scaled(self, length: float, left: float, by: float) -> float:
-        """A panel length times a factor; of a graded panel the root of the rest is scaled."""
+        """Panel length times a factor; for a graded panel the change of its root is scaled."""
         part: float
         if self.panel.fade > 0.0:
             part = max(1.0 - by * self.panel.fade, 0.0)
@@ -302,12 +302,12 @@ class Slider:
         return length
 
     def grown(self, rest: float) -> float:
-        """Factor by which a panel may be longer: its rest goes with the 8th power (STAGES) of its length."""
+        """Factor by which a panel may be longer: its error grows as the 8th power (STAGES) of its length."""
         ratio: float = sqrt(sqrt(sqrt(self.tolerance / rest)))
         return ratio
 
     def opening(self, end: float) -> None:
-        """Sets `last_x`, `last_y`, `last_speed`, `falls`: direction, speed of U' and -R' where it opens."""
+        """Sets `last_x`, `last_y`, `last_speed`, `falls`: direction, speed of U', and -R' at the opening."""
         self.motion.place(SCAN, end)
         x_1: float = self.motion.value[SCAN, 3]
         y_1: float = self.motion.value[SCAN, 4]
@@ -316,16 +316,16 @@ class Slider:
         self.last_x, self.last_y = by * x_1, by * y_1
 
     def stray(self) -> float:
-        """Distance of the present direction from the one at which the contact will open."""
+        """Distance of the present direction from that at the opening."""
         d_x: float = self.e_x - self.last_x
         d_y: float = self.e_y - self.last_y
         stray: float = sqrt(d_x * d_x + d_y * d_y)
         return stray
 
     def left_out(self, stray: float, turned: float, left: float) -> float:
-        """Bound of the impulse derivatives from slip directions no longer followed before the opening.
+        """Bound of the impulse derivatives if the slip direction is not followed up to the opening.
 
-        From the derivative of the force by the direction now, an opening that moves, and the motion.
+        It sums the derivative of the force by the present direction, the moving opening, and the motion.
         """
         if not self.falls > 0.0:
             return 1e300
@@ -346,7 +346,7 @@ class Slider:
         return self.push()
 
     def accept(self, carried: cython.bint) -> None:
-        """Advances to the end of the panel; the derivatives follow if `carried`."""
+        """Goes to the end of the panel; the derivatives follow if `carried`."""
         i: cython.int
         self.theta, self.first_step = self.panel.theta + self.panel.length, self.least_step
         self.e_x, self.e_y = self.panel.e_x[STAGES - 1], self.panel.e_y[STAGES - 1]
@@ -382,7 +382,7 @@ class Slider:
             self.derivatives.rest(self.e_x, self.e_y)
 
     def measure(self, theta: float) -> None:
-        """Sets `gap`, `gap_slope`, `noise`: g, its derivative and rounding at an angle, placed in SCAN."""
+        """Sets `gap`, `gap_slope`, `noise`: g, its derivative and rounding, at an angle placed in SCAN."""
         self.motion.place(SCAN, theta)
         d_x: float = self.motion.value[SCAN, 0] - self.w_x
         d_y: float = self.motion.value[SCAN, 1] - self.w_y
@@ -394,7 +394,7 @@ class Slider:
         self.gap_slope = 2.0 * (self.gap_slope - r * self.motion.value[SCAN, 5])
 
     def hold(self, end: float) -> None:
-        """Follows a stick until the disc meets the slider, or up to an angle."""
+        """Follows a stick until the disc meets the slider, or up to the angle `end`."""
         begin: float = self.theta
         self.add(STICK)
         self.measure(begin)
@@ -429,7 +429,7 @@ class Slider:
         low: float = begin
         g: float = self.gap
         d: float = self.gap_slope
-        # on the edge of its disc, from where g falls as bend / 2 times the square
+        # on the edge of its disc, from which g falls as bend / 2 times the square
         if g > -noise - self.on_edge * r * r:
             rate: float = 16.0 * EPSILON * size * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
             if (
@@ -471,7 +471,7 @@ class Slider:
                 self.derivatives.stick(begin, end)
 
     def release(self, begin: float, theta: float) -> None:
-        """Ends the stick at an angle, where slip begins."""
+        """Ends the stick at an angle, where a slip begins."""
         if self.gathering:
             self.integrals.stick(begin, theta, self.w_x, self.w_y)
             if self.gradient:
@@ -490,7 +490,7 @@ class Slider:
             self.derivatives.slide(self.e_x, self.e_y)
 
     def meet(self, low: float, high: float) -> float:
-        """Angle at which the disc meets the slider, between one before and one after: Newton, bracketed."""
+        """Angle between `low` and `high` at which the disc meets the slider, by bracketed Newton steps."""
         i: cython.int
         x: float = 0.5 * (low + high)
         for i in range(80):  # noqa: B007
@@ -505,7 +505,7 @@ class Slider:
                 low = x
             step: float = high - low
             if self.gap_slope > 0.0:
-                # of |U - W| - R, whose derivative is about that of g over |U - W| + R
+                # Newton's step for |U - W| - R, whose derivative is about that of g over |U - W| + R
                 step = (r - d) * (d + r) / self.gap_slope
             if not low < x + step < high:
                 step = 0.5 * (low + high) - x
