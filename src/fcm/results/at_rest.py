@@ -1,4 +1,4 @@
-"""Degrees of freedom that move by rounding alone are at rest: without a peak and without an error."""
+"""Degrees of freedom that move only by rounding are at rest: they have no peak and no error."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def without_rounding(curve: Curve) -> Curve:
-    """The curve with amplitudes of 0 where a degree of freedom moves by rounding alone.
+    """The curve with amplitudes of 0 where a degree of freedom moves only by rounding.
 
-    The peak of such a one is at no frequency, and has no error. Means stay: what is at rest may be displaced.
+    Its peak then has no frequency and no error. Means stay, as a degree of freedom at rest may be displaced.
     """
     rest = _at_rest(curve)
     if not rest.any():
@@ -51,8 +51,8 @@ def without_rounding(curve: Curve) -> Curve:
 
 
 def _at_rest(curve: Curve) -> BoolArray:
-    """Mask (dof,) of the degrees of freedom that move by rounding alone, or not at all."""
-    peaks = curve.peaks.values()  # between points they may be higher, and a nonlinear mode has none
+    """Mask (dof,) of the degrees of freedom that move only by rounding, or not at all."""
+    peaks = curve.peaks.values()  # peaks may be higher than points; a nonlinear mode has none
     size = np.fmax.reduce(curve.amplitude, axis=0, initial=np.nan)
     size = np.fmax(size, [peak.amplitude for peak in peaks])
     rounding = np.array([peak.rounding for peak in peaks])

@@ -15,9 +15,10 @@ from fcm.results.scatter import draws_beyond
 
 
 class ReadCurve(Protocol):
-    """Protocol of a curve as a file holds it.
+    """Protocol of a curve as stored in a file.
 
-    What was swept; frequency (point,), amplitude (point, dof); which points are stable, if that is known.
+    parameters: swept values; frequency (point,); amplitude (point, dof); stable: mask of stable points, or
+    None.
     """
 
     @property
@@ -31,9 +32,9 @@ class ReadCurve(Protocol):
 
 
 class Band(Frozen):
-    """Percentile band of the curves that differ only in drawn numbers; NaN where none of them reaches.
+    """Percentile band of the curves that differ only in drawn numbers; NaN at frequencies that none reaches.
 
-    Of too few draws for a percentage it goes to their least, or to their greatest.
+    With too few draws for a percentage, the band extends to their minimum or maximum.
     """
 
     parameters: dict[str, float]  # the swept values that are not drawn
@@ -41,7 +42,7 @@ class Band(Frozen):
     low: FloatArray
     median: FloatArray
     high: FloatArray
-    draws: int  # how many curves it is of
+    draws: int  # number of its curves
     reached: tuple[float, float]  # the percentages of low and high
 
 
@@ -57,15 +58,15 @@ def bands_of(
     Parameters
     ----------
     curves : sequence
-        Each with a point at least.
+        Curves with at least one point each.
     drawn : collection of str
         The swept keys whose values are random.
     column : int
-        Of the degree of freedom.
+        Column of the degree of freedom.
     span : (low, high)
         The percentages of the band.
     wide : bool
-        Whether the frequencies of the band are in geometric progression.
+        Whether the frequencies of the band are a geometric progression.
     """
     frequencies = np.concatenate([curve.frequency for curve in curves])
     ends = float(np.nanmin(frequencies)), float(np.nanmax(frequencies))
@@ -78,7 +79,7 @@ def bands_of(
 
 
 def greatest_at(curve: ReadCurve, column: int, places: FloatArray) -> FloatArray:
-    """The greatest stable amplitude at frequencies, by interpolation; NaN where there is none."""
+    """The greatest stable amplitude at given frequencies, by interpolation; NaN where there is none."""
     x, y = curve.frequency, curve.amplitude[:, column]
     stable = np.ones(x.size, bool) if curve.stable is None else curve.stable
     if x.size == 1:
@@ -107,7 +108,7 @@ def _band(
 
 
 def reached_by(count: int, span: tuple[float, float]) -> tuple[float, float]:
-    """The percentages that a band of so many draws has: 0 or 100 where they are too few for one.
+    """The percentages of a band of `count` draws: 0 or 100 if there are too few draws for one of `span`.
 
     >>> reached_by(19, (5.0, 95.0)), reached_by(20, (5.0, 95.0)), reached_by(3, (0.0, 60.0))
     ((0.0, 100.0), (5.0, 95.0), (0.0, 60.0))

@@ -1,4 +1,4 @@
-"""A mistuned ring over its sectors: the envelope, the worst blade and its amplification."""
+"""Results over the sectors of a mistuned ring: the envelope, the worst blade and its amplification."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from fcm.units import CF_UNIT, in_unit
 
 
 class Worst(Frozen):
-    """The greatest peak over the sectors of a degree of freedom; frequencies in rad/s. All (curve, dof)."""
+    """The greatest peak of a degree of freedom over the sectors; frequencies in rad/s. All (curve, dof)."""
 
     amplitude: FloatArray
     frequency: FloatArray
     sector: npt.NDArray[np.intp]
-    tuned: FloatArray  # peak of the tuned ring; NaN where that is not known
+    tuned: FloatArray  # peak of the tuned ring; NaN if unknown
     tuned_frequency: FloatArray
-    at_end: npt.NDArray[np.bool_]  # whether the amplitude is at an end of the range, and no peak
+    at_end: npt.NDArray[np.bool_]  # whether the amplitude is at an end of the range, and not a peak
     tuned_at_end: npt.NDArray[np.bool_]
 
     @property
     def amplification(self) -> FloatArray:
-        """Amplitude of the worst blade over that of the tuned ring; NaN where the latter is zero."""
+        """Amplitude of the worst blade over that of the tuned ring; NaN if the latter is zero."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.tuned > 0.0, self.amplitude / self.tuned, np.nan)
 
@@ -116,12 +116,12 @@ def blade_fields(response: Response) -> dict[str, Field]:
 
 
 def _counted(response: Response, places: Sequence[int]) -> list[int]:
-    """The curves that count in percentiles."""
+    """The curves that are included in percentiles."""
     return [i for i in places if response.curves[i].complete and response.curves[i].points]
 
 
 def add_to_summary(response: Response, data: dict[str, Any]) -> None:
-    """Add to what `fcm respond --json` prints: "blades" of each curve, and of the percentiles."""
+    """Add "blades" to each curve and to the percentiles in the output of `fcm respond --json`."""
     blades, worst = response.blades, worst_of(response)
     assert blades is not None
     at, before = (in_unit(one, response.frequency_unit) for one in (worst.frequency, worst.tuned_frequency))

@@ -1,4 +1,4 @@
-"""Why a curve is not complete, as what programs decide by; the reason in words is for people alone."""
+"""Why a curve is incomplete, as a code for programs; the reason in words is for people only."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Cause(Enum):
-    """Reason for which a curve is incomplete."""
+    """Reason why a curve is incomplete."""
 
     CALCULATION = "the calculation could not be completed"
     INTERRUPTED = "the run was interrupted"

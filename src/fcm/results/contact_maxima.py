@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 class Greatest(Frozen):
-    """Greatest contact loads of a curve, all (contact, 4): normal force, friction force, slip, energy.
+    """Greatest contact loads of a curve, arrays (contact, 4): normal force, friction force, slip, energy.
 
-    value; frequency [rad/s]; error, estimated, relative, NaN where it is not known; stable, 1 where small
-    disturbances die out there, 0 where not, NaN where that is not known.
+    value; frequency [rad/s]; error: estimated, relative, NaN if unknown; stable: 1 where small disturbances
+    die out, 0 where not, NaN if unknown.
     """
 
     value: FloatArray
@@ -43,7 +43,7 @@ def greatest_of(curve: Curve, error: FloatArray | None = None) -> Greatest:
     top = cycle.argmax(axis=0)
     here = np.ogrid[:contacts, :4]
     value = curve.cycle[top, here[0], here[1]]
-    there = np.isfinite(value)  # of a contact that was not traced nothing is known
+    there = np.isfinite(value)  # nothing is known of a contact that was not traced
     return Greatest(
         value=value,
         frequency=np.where(there, curve.frequency[top], np.nan),

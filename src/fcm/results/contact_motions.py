@@ -1,4 +1,4 @@
-"""The variables of motions across contacts in files, and the names of their directions."""
+"""The variables in files of motions across contacts, and the names of their directions."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from fcm.model.scene import FloatArray
 from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve
 
-DIRECTIONS = ("x", "y", "normal")  # in a plane,
+DIRECTIONS = ("x", "y", "normal")  # of contacts in a plane
 ON_A_LINE = ("tangential", "normal")
 LAW = ("mu", "k_u", "k_v", "n_0")
 
 
 def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
-    """Variables of the motions across contacts; of contacts in a plane their friction, too."""
+    """Variables of the motions across contacts; for contacts in a plane also of their friction."""
     known = next(one.across for one in curves if one.across is not None)
     _, contacts, directions, _ = known.motion.shape
     numbers = sorted({h for curve in curves if curve.across is not None for h in curve.harmonics})
@@ -83,7 +83,7 @@ def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
 
 
 def csv_columns(contacts: Sequence[str], planar: Sequence[str], force: str) -> list[str]:
-    """Heads of the columns of `csv_values`, with the unit of force."""
+    """Headers of the columns of `csv_values`, with the unit of force."""
     unit = f" [{force}]" if force else ""
     return [f"friction_{axis} {contact}{unit}" for contact in contacts if contact in planar for axis in "xy"]
 

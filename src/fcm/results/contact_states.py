@@ -1,4 +1,4 @@
-"""States of contacts over a cycle, reduced to one word of four."""
+"""State sequences of contacts over a cycle, reduced to one of four words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ STATES = ("sticks", "slips", "slips and opens", "open")
 
 
 def contact_states(sequences: Iterable[str]) -> npt.NDArray[np.intp]:
-    """Places among `STATES` of contacts that go through sequences of states, such as "SPEN".
+    """Indices into `STATES` of contacts with given state sequences, such as "SPEN".
 
     >>> contact_states(["E", "EPEN", "SEP", "S"]).tolist()
     [0, 1, 2, 3]

@@ -1,4 +1,4 @@
-"""Responses and tracked curves as CSV, a row for each point."""
+"""Responses and tracked curves as CSV, one row for each point."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from fcm.rotational_dofs import dof_unit
 from fcm.units import headed, in_unit
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
-ERRORS = ("error", "error_at_frequency")  # at a peak of its height; at the same frequency everywhere
+ERRORS = ("error", "error_at_frequency")  # at a peak of its height; everywhere at the same frequency
 ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
 
 
 def write_csv(response: Response, path: str | Path) -> None:
-    """Write the response as CSV, a row for each point; frequencies in the scene's unit.
+    """Write the response as CSV, one row for each point; frequencies in the scene's unit.
 
-    Of the degrees of freedom those that the scene asks for, or all where it does not say. Errors that are
-    unknown at all points have no column.
+    The degrees of freedom are those of the scene's output, or all if it has none. Errors that are unknown at
+    all points have no column.
     """
     shown = _shown(response)
     columns, unknown = _columns(response, [response.dofs[i] for i in shown]), _unknown_errors(response)
@@ -43,13 +43,13 @@ def write_csv(response: Response, path: str | Path) -> None:
 
 
 def _shown(response: Response) -> list[int]:
-    """Places of the degrees of freedom that the scene asks for."""
+    """Indices of the degrees of freedom of the scene's output, or of all if it has none."""
     asked = [i for i, dof in enumerate(response.dofs) if dof in response.output]
     return asked or list(range(len(response.dofs)))
 
 
 def _unknown_errors(response: Response) -> set[str]:
-    """Names of the columns of errors that are known at no point of any curve; none without points."""
+    """Names of the columns of errors that are unknown at all points of all curves; none without points."""
     names = [
         *(f"{kind} {dof}" for kind in ERRORS for dof in response.dofs),
         *(f"{kind}_error {name}" for name in response.contacts for kind, _ in CYCLE),
@@ -63,7 +63,7 @@ def _unknown_errors(response: Response) -> set[str]:
 
 
 def _known_errors(curve: Curve) -> npt.NDArray[np.bool_]:
-    """Whether each error of a curve is known at a point, in the order of `_unknown_errors`."""
+    """Mask of the errors that are known at some point of a curve, in the order of `_unknown_errors`."""
     of_contacts = curve.cycle_error.reshape(curve.frequency.size, -1)
     of_point = curve.table_error, curve.truncation_error
     every = np.column_stack((curve.error, curve.same_frequency_error, of_contacts, *of_point))
@@ -71,7 +71,7 @@ def _known_errors(curve: Curve) -> npt.NDArray[np.bool_]:
 
 
 def _columns(response: Response, dofs: Sequence[str]) -> list[str]:
-    """Names of what `_rows` gives of each point."""
+    """Names of the columns of `_rows`."""
     exact, unit = response.method == "exact", response.frequency_unit
     kinds = ("amplitude", "phase", "mean", "fundamental", *ERRORS, *(ORBIT_KINDS if exact else ()))
     swept = response.parameters[0] if response.parameters else ()

@@ -1,4 +1,4 @@
-"""Summaries over all points of a curve, and curves of which little more than a summary is kept."""
+"""Extracts from all points of a curve, and curves of which little more than the extract is kept."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ NO_ENDS = (np.nan, np.nan)
 
 
 class CurveExtract(Frozen):
-    """Numbers of a curve for which all its points are needed."""
+    """Numbers of a curve that need all its points."""
 
     points: int
-    ends: tuple[float, float]  # [rad/s] lowest and highest frequency sought; of one point, or none, NaN
-    stable: bool | None  # whether all of the curve is; None where that is not known
-    unstable: tuple[Stretch, ...]  # [rad/s] where nothing that was found is, the widest stretch first
+    ends: tuple[float, float]  # [rad/s] lowest and highest frequency sought; NaN below two points
+    stable: bool | None  # whether the whole curve is stable; None if unknown
+    unstable: tuple[Stretch, ...]  # [rad/s] where no stable motion was found, the widest stretch first
     swept: FrequencySweep  # of a slow upward and a slow downward sweep
-    table_error: float | None  # the largest that is known
+    table_error: float | None  # the largest known one
     truncation_error: float | None
-    truncation_error_at: float  # [rad/s] where it is the largest; NaN where it is not known
-    # [rad/s] where points have large errors, and the greatest of these, the widest range first
+    truncation_error_at: float  # [rad/s] where it is largest; NaN if unknown
+    # [rad/s] low and high end of ranges with large errors, and their greatest error; the widest range first
     inaccurate: tuple[tuple[float, float, float], ...]
-    # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one
+    # (dof, 3): amplitude, frequency [rad/s] and error of the greatest stable motion; NaN if there is none
     stable_peaks: FloatArray
     linear: str  # how the response is that of a linear structure; empty if it is not
     # (peak, 6): dof, amplitude, frequency [rad/s], error and stability of peaks that are not the highest, and
@@ -46,7 +46,7 @@ class CurveExtract(Frozen):
     highest_on_isolated: npt.NDArray[np.bool_]  # (dof,) whether the highest peak is on one of them
 
     def at(self, shown: npt.NDArray[np.bool_]) -> CurveExtract:
-        """The summary restricted to some of the degrees of freedom."""
+        """The extract restricted to some degrees of freedom."""
         lower = self.lower_peaks[shown[self.lower_peaks[:, 0].astype(np.intp)]]
         lower[:, 0] = (np.cumsum(shown) - 1)[lower[:, 0].astype(np.intp)]
         return replace(
@@ -81,12 +81,12 @@ def extract_of(curve: Curve) -> CurveExtract:
 
 
 def with_extracts(curve: Curve) -> Curve:
-    """A curve that is to be told of several times, with its extract."""
+    """The curve with its extract, for repeated use."""
     return curve if curve.extract is not None else replace(curve, extract=extract_of(curve))
 
 
 def without_points(curve: Curve, most: int = 0) -> Curve:
-    """A curve with its extract, and so many of its points: where displacements are greatest."""
+    """The curve with its extract, and at most `most` of its points: those of the greatest displacements."""
     at = np.flatnonzero(np.isfinite(curve.frequency))
     if at.size:
         at = distinct_values(at[curve.amplitude[at].argmax(axis=0)])[:most]
@@ -96,13 +96,13 @@ def without_points(curve: Curve, most: int = 0) -> Curve:
 
 
 def worst(errors: FloatArray) -> float | None:
-    """The largest error that is known."""
+    """The largest known error; None if none is known."""
     known = errors[np.isfinite(errors)]
     return float(known.max()) if known.size else None
 
 
 def _at_worst(curve: Curve) -> float:
-    """The frequency [rad/s] of the largest truncation error of a curve over the frequency."""
+    """The frequency [rad/s] of the largest truncation error; NaN unless the curve is over the frequency."""
     known = np.isfinite(curve.truncation_error)
     if not known.any() or curve.level is not None or curve.mode is not None:
         return float("nan")
@@ -110,9 +110,9 @@ def _at_worst(curve: Curve) -> float:
 
 
 def _inaccurate_ranges(curve: Curve) -> list[tuple[float, float, float]]:
-    """Ranges of frequency [rad/s] in which a branch has large errors, with the greatest error in each.
+    """Ranges of frequency [rad/s] with large errors, and the greatest error in each, the widest range first.
 
-    Of a curve over the frequency, the widest range first.
+    Empty unless the curve is over the frequency.
     """
     if curve.level is not None or curve.mode is not None:
         return []
@@ -137,8 +137,9 @@ def _stable(curve: Curve) -> bool | None:
 
 
 def _stable_peaks(curve: Curve) -> FloatArray:
-    """The greatest amplitude of each degree of freedom where the motion is stable, of a curve over the
-    frequency."""
+    """The greatest stable amplitude of each degree of freedom, its frequency and error.
+
+    NaN if there is none, or if the curve is not over the frequency."""
     found = np.full((curve.amplitude.shape[1], 3), np.nan)
     rows = np.flatnonzero(np.isfinite(curve.frequency) & (curve.stable == 1.0))
     if rows.size and curve.level is None and curve.mode is None:
@@ -165,8 +166,9 @@ def _highest_on_isolated(curve: Curve, on_isolated: npt.NDArray[np.bool_]) -> np
 
 
 def _lower_peaks(curve: Curve, on_isolated: npt.NDArray[np.bool_]) -> FloatArray:
-    """Peaks beside the highest, of a curve over all of the frequency; errors are those of the points, at
-    least what may be between them."""
+    """Peaks other than the highest, of a curve over the whole range of frequency.
+
+    Errors are those of the points, or the possible rise between points if that is greater."""
     if curve.level is not None or curve.mode is not None or _is_partial(curve):
         return np.empty((0, 6))
     d, k = lower_peaks(curve.amplitude).T
@@ -181,14 +183,15 @@ def _lower_peaks(curve: Curve, on_isolated: npt.NDArray[np.bool_]) -> FloatArray
 
 
 def _is_partial(curve: Curve) -> bool:
-    """Whether exact motions were visited at some frequencies alone, or sought at peaks and folds alone."""
+    """Whether exact motions were computed only at some frequencies, or only at peaks and folds."""
     orbits = curve.orbits
     return orbits is not None and (orbits.swept is not None or orbits.span is not None)
 
 
 def _linear(curve: Curve) -> str:
-    """Word for contacts that keep their states along a curve: all_stick, all_open or all_stick_or_open; else
-    ''."""
+    """Code for contacts that keep their states along a curve: all_stick, all_open or all_stick_or_open.
+
+    '' if a state changes or a contact slips."""
     states = curve.regime[np.isfinite(curve.frequency)]
     if not states.size or not np.isin(states, ("E", "S")).all() or (states != states[0]).any():
         return ""
@@ -197,10 +200,10 @@ def _linear(curve: Curve) -> str:
 
 
 def _unstable(curve: Curve) -> list[Stretch]:
-    """Frequency stretches of a complete curve in which no stable motion was found."""
+    """Stretches of frequency in which no stable motion was found, for a complete curve over the frequency."""
     if not curve.complete or _is_partial(curve) or curve.level is not None or curve.mode is not None:
         return []
     there = np.isfinite(curve.frequency)
     span = _ends(curve, curve.frequency[there])
-    between = np.where(there, curve.stable, 0.0)  # nothing is between two branches
+    between = np.where(there, curve.stable, 0.0)  # there is nothing between two branches
     return unstable_stretches([(curve.frequency, between)], span)

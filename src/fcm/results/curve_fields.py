@@ -20,7 +20,7 @@ from fcm.units import CF_UNIT, in_unit
 
 
 def condensed_fields(response: Response) -> dict[str, Field]:
-    """Variables that summarise all points of each curve, where the points are not written."""
+    """Variables that summarise all points of each curve, for files without points."""
     extracts = [curve.extract or extract_of(curve) for curve in response.curves]
     of_all = {
         "greatest_table_error": (
@@ -45,9 +45,9 @@ def condensed_fields(response: Response) -> dict[str, Field]:
 
 
 def _caveats(response: Response, extracts: Sequence[CurveExtract]) -> dict[str, Field]:
-    """Variables on what may be missing in curves, or lacking.
+    """Variables on what curves may lack.
 
-    A file with all points has this in its summary.
+    Files with all points have this in their summary.
     """
     curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
     in_file = {"units": CF_UNIT[unit]}
@@ -146,7 +146,7 @@ _AT_END = {
 
 
 def _peaks_at_end(curves: Sequence[Curve]) -> NDArray[np.int8]:
-    """Flags (curve, dof): 1 where the greatest amplitude is not a peak of the curve."""
+    """Flags (curve, dof): 1 if the greatest amplitude is at an end of the range, and not a peak."""
     every = [(curve, curve.extract or extract_of(curve)) for curve in curves]
     rows = [[at_edge(curve, one, extract) for one in curve.peaks.values()] for curve, extract in every]
     return np.array(rows, dtype=np.int8)
@@ -173,7 +173,7 @@ def _greatest_of_contacts(response: Response) -> dict[str, Field]:
 
 
 def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
-    """Percentiles over the curves that differ in drawn numbers alone."""
+    """Percentiles over the curves that differ only in drawn numbers."""
     of_dof, of_sweep = ("scatter", "percent", "dof"), ("scatter", "percent", "sweep_direction")
     peak, interval, frequency, jump = (
         np.stack([getattr(one, x) for one in found]) for x in ("peak", "interval", "frequency", "jump")
@@ -220,7 +220,7 @@ def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
 
 
 def sensitivity_fields(response: Response) -> dict[str, Field]:
-    """Derivatives of the peaks by the numbers of the scene; NaN where a curve has none."""
+    """Derivatives of the peaks by numbers of the scene; NaN for curves without them."""
     curves, dofs = response.curves, len(response.dofs)
     numbers = next(c.sensitivity.numbers for c in curves if c.sensitivity is not None)
     height, frequency = (np.full((len(curves), dofs, len(numbers)), np.nan) for _ in range(2))
@@ -254,7 +254,7 @@ def sensitivity_fields(response: Response) -> dict[str, Field]:
 
 
 def _level_folds(curves: Sequence[Curve]) -> dict[str, Field]:
-    """The folds of curves against the level of the forces; nothing for others."""
+    """The folds of curves over the force level; empty if there are no such curves."""
     if all(curve.level is None for curve in curves):
         return {}
     text = "levels of the forces at the folds in order along the curve"

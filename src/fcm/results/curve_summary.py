@@ -1,4 +1,4 @@
-"""A curve in the summary of a response: its peaks, folds and jumps in words that JSON knows."""
+"""A curve in the summary of a response: its peaks, folds and jumps as JSON entries."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from fcm.sensitivity.peaks import Sensitivities
 
 
-_ON_ISOLATED = "on_isolated_branch"  # key of a peak that is
+_ON_ISOLATED = "on_isolated_branch"  # key of a peak on an isolated branch
 
 
 def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
-    """The curve as `fcm respond --json` prints it, frequencies in unit; what it does not have is left out."""
+    """The curve as `fcm respond --json` prints it, frequencies in unit; missing entries are omitted."""
     extract = curve.extract or extract_of(curve)
     swept, dofs = extract.swept, tuple(curve.peaks)
     out: dict[str, Any] = {
@@ -129,7 +129,7 @@ def _motions_at_level_1(curve: Curve, dofs: Sequence[str]) -> list[dict[str, Any
 
 
 def _unjudged(curve: Curve) -> bool:
-    """Whether an interruption came before the stability of any point was looked for."""
+    """Whether an interruption came before the stability of any point was examined."""
     cut_off = not curve.complete and curve.cause is Cause.INTERRUPTED
     return cut_off and bool(np.isnan(curve.stable).all())
 
@@ -155,7 +155,7 @@ def _unknown(one: UnknownStability, dofs: tuple[str, ...], unit: str) -> dict[st
 
 
 def _peak(curve: Curve, peak: Peak, extract: CurveExtract, unit: str) -> dict[str, Any]:
-    """A peak, and whether it is where the range ends."""
+    """Entries of a peak, including whether it is at an end of the range."""
     return {
         "amplitude": peak.amplitude,
         "frequency": float(in_unit(peak.frequency, unit)),
@@ -169,7 +169,7 @@ def _peak(curve: Curve, peak: Peak, extract: CurveExtract, unit: str) -> dict[st
 
 
 def at_edge(curve: Curve, peak: Peak, extract: CurveExtract) -> bool:
-    """Whether a peak is where the range of frequencies, or of levels, ends: it is none of the curve's own."""
+    """Whether a peak is at an end of the range of frequencies or levels, and so is not a true maximum."""
     if not (peak.amplitude > 0.0 and curve.complete):
         return False
     if curve.level is None:
@@ -178,9 +178,9 @@ def at_edge(curve: Curve, peak: Peak, extract: CurveExtract) -> bool:
 
 
 def _error_there(curve: Curve, d: int) -> dict[str, float]:
-    """The error of the motion at the frequency of the peak, where that of the peak is not known; if it is.
+    """The error of the motion at the frequency of a peak, if it is known while that of the peak is not.
 
-    More harmonics may have their own peak elsewhere, or a higher one.
+    With more harmonics the peak may be elsewhere, or higher.
     """
     column, peak = curve.amplitude[:, d], list(curve.peaks.values())[d]
     visited = curve.orbits is not None and curve.orbits.visited
@@ -208,7 +208,7 @@ def _every_peak(
 
 
 def _stable_peak(peak: Peak, stays: Sequence[float], unit: str) -> dict[str, Any]:
-    """The greatest stable motion (amplitude, frequency, error), where the peak is not known to be one."""
+    """The greatest stable motion (amplitude, frequency, error), if the peak is not known to be stable."""
     amplitude, frequency, error = stays
     if peak.stable == 1.0 or np.isnan(amplitude):
         return {}
@@ -234,7 +234,7 @@ def _contacts(found: Greatest, contacts: Sequence[str], unit: str) -> dict[str, 
 
 
 def _sensitivity(curve: Curve, found: Sensitivities, unit: str) -> dict[str, Any]:
-    """Derivatives of each peak by each number; relative: share of the peak by share of the number."""
+    """Derivatives of each peak by each number; relative: for relative changes of peak and number."""
     out: dict[str, Any] = {}
     for dof, kind, why, height, frequency in zip(
         curve.peaks, found.kind, found.why, found.height, in_unit(found.frequency, unit), strict=True
@@ -286,7 +286,7 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
 
 
 def _unreached(curve: Curve, orbits: Orbits, unit: str) -> list[dict[str, Any]]:
-    """Motions at visited frequencies to which neither sweep came, those without a period too (repeats 0)."""
+    """Motions at visited frequencies that neither sweep reached, also those without a period (repeats 0)."""
     frequency = in_unit(curve.frequency, unit)
     return [
         {

@@ -1,4 +1,4 @@
-"""Names of the directions of contacts that slide in a plane, and places of contacts, in a scene."""
+"""Names of the directions of contacts that slide in a plane, and positions of contacts, in a scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def directions_of(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def positions_of(scene: Scene) -> dict[str, FloatArray]:
-    """Coordinates (3,) midway between the nodes of each contact whose pair of nodes has places.
+    """Midpoint (3,) between the nodes of each contact whose nodes have known positions.
 
     >>> import fcm
     >>> positions_of(fcm.load_scene("yang1998"))
@@ -41,7 +41,7 @@ def positions_of(scene: Scene) -> dict[str, FloatArray]:
 
 
 def _combination(direction: FloatArray, names: Sequence[str]) -> str:
-    """A direction in words, as "ax - bx", or "0.6 ax + 0.8 ay"."""
+    """A direction as text, such as "ax - bx" or "0.6 ax + 0.8 ay"."""
     text = ""
     for i in np.flatnonzero(direction).tolist():
         weight = float(direction[i])

@@ -1,4 +1,4 @@
-"""The variables of a response file: of every point here, of every curve in `curve_fields`."""
+"""The variables of a response file: those of points here, those of curves in `curve_fields`."""
 
 from __future__ import annotations
 
@@ -105,12 +105,12 @@ def fields_of(response: Response) -> dict[str, Field]:
 
 
 def swept_names(response: Response) -> dict[str, str]:
-    """The variable of each swept value, by its key in the scene."""
+    """The variable name of each swept value, by its key in the scene."""
     return variable_names(response.parameters[0] if response.parameters else ())
 
 
 def _with_units(fields: dict[str, Field], units: tuple[str, str], turning: list[str]) -> dict[str, Field]:
-    """The variables with the units of length and force that the scene names, where it does."""
+    """Add the scene's units of length, force and energy to the variables, if it names them."""
     work = " ".join(reversed(units)) if all(units) else ""
     for names, unit in zip((LENGTHS, FORCES, ENERGIES), (*units, work), strict=True):
         for name in set(names) & set(fields) if unit else ():
@@ -121,7 +121,7 @@ def _with_units(fields: dict[str, Field], units: tuple[str, str], turning: list[
 
 
 class _Points:
-    """Variables of the points of curves, as they are added."""
+    """Variables of the points of curves, collected by `add`."""
 
     def __init__(self, curves: Sequence[Curve], unit: str) -> None:
         self.curves, self.unit = curves, unit
@@ -150,7 +150,7 @@ def _point_fields(response: Response) -> dict[str, Field]:
 
 
 def _add_followed(found: _Points) -> None:
-    """Adds the variables in which the curves are followed: frequency and force level."""
+    """Add the variables along which the curves are followed: frequency and force level."""
     unit, excitation = found.unit, "excitation frequency"
     found.add("frequency", lambda c: in_unit(c.frequency, unit), long_name=excitation, units=CF_UNIT[unit])
     if any(c.level is not None for c in found.curves):
@@ -159,7 +159,7 @@ def _add_followed(found: _Points) -> None:
 
 
 def _add_mode(found: _Points) -> None:
-    """Nonlinear modes, and where the scene's forces give their amplitudes."""
+    """Add the variables of nonlinear modes, and of the scene's forces that give their amplitudes."""
     found.out["frequency"].attrs["long_name"] = "frequency of the nonlinear mode"
     levels = next(c.mode.levels for c in found.curves if c.mode is not None)
     for name, (picked, dims, about) in MODE.items():
@@ -177,7 +177,7 @@ def _add_mode(found: _Points) -> None:
 
 
 def _add_motion(found: _Points) -> None:
-    """Adds the variables of the displacements."""
+    """Add the variables of the displacements."""
     found.add("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
     found.add("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"
@@ -186,7 +186,7 @@ def _add_motion(found: _Points) -> None:
 
 
 def _add_contacts(found: _Points) -> None:
-    """Adds the variables of the contacts: states, loops and loads."""
+    """Add the variables of the contacts: states, loops and loads."""
     states = (
         "states over a cycle: E stick, P and N positive and negative slip (P any slip in planar scenes), "
         "S separation"
@@ -201,7 +201,7 @@ def _add_contacts(found: _Points) -> None:
 
 
 def _add_trust(found: _Points) -> None:
-    """Adds the variables of errors and stability."""
+    """Add the variables of errors and stability."""
     shift = (
         "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
     )
@@ -218,7 +218,7 @@ def _add_trust(found: _Points) -> None:
 
 
 def _add_exact(found: _Points) -> None:
-    """Adds the variables of exact motions, and adapts the meaning of the others."""
+    """Add the variables of exact motions, and adapt the meanings of others."""
     for name, meaning in EXACT.items():
         found.out[name].attrs["long_name"] = meaning
     for name, (dims, attrs) in ORBITS.items():
@@ -226,7 +226,7 @@ def _add_exact(found: _Points) -> None:
 
 
 def _harmonic_fields(curves: Sequence[Curve]) -> dict[str, Field]:
-    """Amplitude and phase of each harmonic, by its number; NaN for those that a curve has not."""
+    """Amplitude and phase of each harmonic, by its number; NaN for harmonics that a curve does not have."""
     numbers = sorted({h for curve in curves for h in curve.harmonics})
     dims = ("curve", "point", "harmonic", "dof")
 
@@ -242,7 +242,7 @@ def _harmonic_fields(curves: Sequence[Curve]) -> dict[str, Field]:
 
 
 def _by_number(curve: Curve, numbers: Sequence[int]) -> npt.NDArray[np.complex128]:
-    """(point, harmonic, dof) of one curve."""
+    """Harmonics (point, harmonic, dof) of one curve, with a place for every number."""
     points, dofs = curve.fundamental.shape
     out = np.full((points, len(numbers), dofs), np.nan, dtype=np.complex128)
     if curve.harmonic is None:
@@ -253,7 +253,7 @@ def _by_number(curve: Curve, numbers: Sequence[int]) -> npt.NDArray[np.complex12
 
 
 def _of_orbits(curve: Curve, name: str) -> npt.NDArray[Any]:
-    if curve.orbits is None:  # lost
+    if curve.orbits is None:  # a lost curve
         lost: dict[str, npt.NDArray[Any]] = dict.fromkeys(ORBIT_KINDS, curve.amplitude)
         return (lost | {"sweep": np.array([], dtype=str)}).get(name, curve.frequency)
     values: npt.NDArray[Any] = getattr(curve.orbits, name)
@@ -265,7 +265,7 @@ def _column(name: str, column: int) -> Callable[[Curve], FloatArray]:
 
 
 def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:
-    """Numbers on the dimension fitted; measured points on data, measured (padded)."""
+    """Variables of a fit: numbers on the dimension fitted; measured points on data, measured (padded)."""
     out: dict[str, Field] = {}
 
     def add(name: str, dims: tuple[str, ...], values: Any, meaning: str, **attrs: str) -> None:
@@ -335,7 +335,7 @@ def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:
 
 
 def _displacements(one: Measured) -> FloatArray:
-    """Amplitudes (point,) of the displacements of a response; NaN of a backbone."""
+    """Amplitudes (point,) of the displacements of a response; NaN for a backbone."""
     if one.damping is not None:
         return np.full(one.points, np.nan)
     found: FloatArray = one.amplitude / one.frequency ** QUANTITIES[one.quantity]

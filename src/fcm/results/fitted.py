@@ -13,11 +13,11 @@ from fcm.model.scene import FloatArray, Measured
 from fcm.units import in_unit
 
 _EACH = "are", "their standard errors are"
-Pair = tuple[int, int, float]  # of numbers told as one: i, j, p of i times j to the power p
+Pair = tuple[int, int, float]  # two numbers i, j that are determined only as i times j to the power p
 
 
 def _told(one: str, other: str, power: float) -> str:
-    """The combination of two numbers that data tell.
+    """The combination of two numbers that the data determine.
 
     >>> _told("mu", "n_0", 1.0), _told("mu", "n_0", -1.0), _told("mu", "n_0", 0.52)
     ('mu * n_0', 'mu / n_0', 'mu * n_0^0.52')
@@ -27,8 +27,9 @@ def _told(one: str, other: str, power: float) -> str:
 
 
 def misfit(data: Measured, residual: FloatArray, error: FloatArray) -> float:
-    """Root mean square of the distances, relative to the greatest amplitude; of a backbone, of the
-    frequencies. Arrays as of `FittedData`."""
+    """Root mean square distance of the data, relative to the greatest amplitude.
+
+    For a backbone it is that of the frequencies, relative to them. For the arrays see `FittedData`."""
     square = residual[:, 0] ** 2 if data.damping is not None else (residual**2).sum(axis=1)
     size = data.frequency if data.damping is not None else data.amplitude.max()
     return float(np.sqrt((square * (error[:, 0] / size) ** 2).mean()))
@@ -44,7 +45,7 @@ def _listed(parts: list[str]) -> str:
 
 
 def _groups(pairs: tuple[Pair, ...]) -> list[list[Pair]]:
-    """Pairs of numbers that hang together; of each group as many as it takes to tell all others.
+    """Pairs of numbers in connected groups; of each group only as many as determine all others.
 
     >>> _groups(((0, 1, 1.0), (0, 2, 1.0), (1, 2, -1.0), (3, 4, 1.0)))
     [[(0, 1, 1.0), (0, 2, 1.0)], [(3, 4, 1.0)]]
@@ -62,22 +63,22 @@ def _groups(pairs: tuple[Pair, ...]) -> list[list[Pair]]:
 
 
 class FittedData(Frozen):
-    """A set of measured points beside the fitted model.
+    """A set of measured points compared with the fitted model.
 
-    residual (point, component): model less measured, at the nearest point, in units of the errors; error
-    (point, component): these, of the amplitude, or of frequency and damping ratio of a backbone.
-    modal_amplitude (point,): of a backbone's points on the mode of the model, NaN where it does not come to
-    them; None where no mode was followed.
+    residual (point, component): model minus data at the nearest point, in units of the errors. error (point,
+    component): errors of the amplitude, or of frequency and damping ratio of a backbone. modal_amplitude
+    (point,): that of a backbone's points on the mode of the model, NaN where the mode does not reach them;
+    None if no mode was followed.
     """
 
     measured: Measured
     residual: FloatArray
     error: FloatArray
-    unreached: int  # points that the model's curve does not come to
+    unreached: int  # points that the model's curve does not reach
     modal_amplitude: FloatArray | None = None
-    least: float = 1e-8  # misfit, relative: what is below is rounding
-    deviations: float = 3.0  # standard deviations from chance, from which a misfit is systematic
-    isolated: float = 8.0  # times as far off as half the points, and as its neighbours, a point stands alone
+    least: float = 1e-8  # relative misfit below which it is rounding
+    deviations: float = 3.0  # standard deviations from chance from which a misfit is systematic
+    isolated: float = 8.0  # an outlier is so many times as far off as the median and the neighbours
 
     @property
     def misfit(self) -> float:
@@ -94,13 +95,13 @@ class FittedData(Frozen):
 
     @property
     def scatter(self) -> float:
-        """The misfit that differences of neighbours tell: all of it, if points are off independently."""
+        """The misfit by the differences of neighbours: all of it if the points' errors are independent."""
         square, difference = self._squares()
         return self.misfit * float(np.sqrt(0.5 * difference / square)) if square > 0.0 else 0.0
 
     @property
     def systematic(self) -> bool:
-        """Whether neighbouring points are off to the same side more often than by chance."""
+        """Whether neighbouring points deviate to the same side more often than by chance."""
         square, difference = self._squares()
         count = self.measured.points
         return (
@@ -109,9 +110,9 @@ class FittedData(Frozen):
 
     @property
     def outliers(self) -> list[int]:
-        """Points that are off far more than most, and than both their neighbours: of an error of measurement.
+        """Points that deviate far more than most, and than both neighbours, as by an error of measurement.
 
-        What the model lacks shows at several neighbours.
+        A deficiency of the model shows at several neighbours.
         """
         off = np.linalg.norm(self.residual, axis=1)
         if off.size < 2 * self.isolated:
@@ -123,16 +124,16 @@ class FittedData(Frozen):
         return sorted(along[off[along] > limit].tolist())
 
     def _along(self) -> npt.NDArray[np.intp]:
-        """The points in order of their frequency, for each level, or of a backbone of their amplitude."""
+        """The points in order of their frequency, level by level; for a backbone in order of amplitude."""
         one = self.measured
         return np.lexsort((one.frequency, one.level)) if one.damping is None else np.argsort(one.amplitude)
 
     def _squares(self) -> tuple[float, float]:
         r"""Sums of r_i^2 and of (r_(i+1) - r_i)^2 over the points in order of their frequency or amplitude.
 
-        Their ratio is 2 of points that are off independently, with the standard deviation 2 / sqrt(N).
-        Source: von Neumann, "Distribution of the Ratio of the Mean Square Successive Difference to the
-        Variance", Annals of Mathematical Statistics 12 (1941).
+        For points with independent errors the ratio of the second to the first is 2, with the standard
+        deviation 2 / sqrt(N). Source: von Neumann, "Distribution of the Ratio of the Mean Square Successive
+        Difference to the Variance", Annals of Mathematical Statistics 12 (1941).
         """
         backbone = self.measured.damping is not None
         r = (self.residual if backbone else self.residual[:, 1:])[self._along()]
@@ -141,7 +142,7 @@ class FittedData(Frozen):
     def summary(self) -> dict[str, Any]:
         """Entries for JSON.
 
-        `error` is the least and the greatest of the points, relative as the misfit.
+        `error` holds the least and the greatest error of the points, relative as the misfit.
         """
         one = self.measured
         size = float((one.amplitude if one.damping is None else one.frequency).max())
@@ -163,7 +164,7 @@ class FittedData(Frozen):
 
 
 def _of_outliers(part: FittedData) -> str:
-    """Sentences on points that stand alone."""
+    """Sentences on outliers."""
     numbers, points = [str(1 + i) for i in part.outliers], part.measured.points
     alone = (
         f"point {numbers[0]} of {points} stands alone"
@@ -178,44 +179,44 @@ def _of_outliers(part: FittedData) -> str:
 
 
 class FittedStart(Frozen):
-    """Begin and end of a search."""
+    """Begin and end of one search."""
 
     begin: FloatArray
     end: FloatArray
     cost: float
-    points: int  # that cost is of
+    points: int  # number of points in the cost
     finished: bool  # whether it was fitted to all points
     harmonics: tuple[int, ...]
 
 
 @dataclass
 class Fitted:
-    """The numbers of a scene with which its model is nearest to measured data."""
+    """Result of a fit: the numbers of a scene with which its model is nearest to measured data."""
 
     keys: tuple[str, ...]
-    begin: FloatArray  # (number,) in the scene
+    begin: FloatArray  # (number,) values in the scene
     values: FloatArray
-    error: FloatArray  # (number,) standard error, infinite where it has none
+    error: FloatArray  # (number,) standard error, infinite if there is none
     interval: FloatArray  # (number, 2), NaN for an end that the data do not determine
     confidence: float
-    poor: float  # misfit of data, relative, from which the model does not meet them
+    poor: float  # relative misfit from which the model does not fit the data
     correlation: FloatArray  # (number, number)
-    without_effect: FloatArray  # (number,) 1 where the data do not change with it
-    undetermined: FloatArray  # (number,) 1 where its standard error is as large as itself, nearly
-    at_bound: FloatArray  # (number,) 1 where a bound keeps it
-    alike: tuple[Pair, ...]  # those of which only a product is told
+    without_effect: FloatArray  # (number,) 1 if the data do not depend on it
+    undetermined: FloatArray  # (number,) 1 if its standard error is nearly as large as the number
+    at_bound: FloatArray  # (number,) 1 if a bound limits it
+    alike: tuple[Pair, ...]  # pairs of which only a product is determined
     data: list[FittedData]
     starts: list[FittedStart]
     harmonics: tuple[int, ...]
-    advice: list[str] = field(default_factory=list)  # measurements that would tell more
-    remedy: str = ""  # a change of the data by which the model would meet them
-    many: float = 10.0  # times a number: a standard error beyond is not given in percent
-    final: bool = True  # whether the search for the numbers is at its end
+    advice: list[str] = field(default_factory=list)  # measurements that would determine more
+    remedy: str = ""  # a change of the data with which the model would fit
+    many: float = 10.0  # standard errors above this multiple of the number are not given in percent
+    final: bool = True  # whether the search for the numbers is finished
     settled: bool = True  # whether it ended at a minimum
     interrupted: bool = False
 
     def problems(self) -> list[str]:
-        """Sentences on what keeps a reader from relying on the numbers."""
+        """Sentences on why the numbers may be unreliable."""
         said = []
         if not self.final:
             said.append("the numbers are the best so far: their standard errors are not those of a minimum")
@@ -268,7 +269,7 @@ class Fitted:
         return [*said, self.remedy] if self.remedy else said
 
     def _relative(self, k: int) -> str:
-        """How large the standard error of a number is, beside the number."""
+        """Standard error of a number relative to the number, as text."""
         size = self.error[k] / abs(self.values[k]) if self.values[k] else np.inf
         return f"{100.0 * size:.0f} %" if size < self.many else "many times as large"
 

@@ -1,4 +1,4 @@
-"""Slow sweeps of the frequency along a curve: where they jump, and where they may jump already."""
+"""Slow sweeps of the frequency along a curve: where they jump, and where they may have jumped."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ UNKNOWN = 0.5  # between unstable, 0, and stable, 1
 
 
 class Jump(Frozen):
-    """Jump of a slow sweep: the frequency at which it leaves a stable part of a curve, and what follows."""
+    """Jump of a slow sweep: the frequency where it leaves a stable part of a curve, and where it lands."""
 
     sweep: str  # 'up' or 'down'
     frequency: float  # [rad/s]
     before: FloatArray  # (dof,) amplitude
-    after: FloatArray  # (dof,) amplitude; NaN where the curve has no stable part to land on
-    # of the force after which the motion repeats, before and after; 0 if it does not, or is not known
+    after: FloatArray  # (dof,) amplitude; NaN if the curve has no stable part to land on
+    # forcing periods after which the motion repeats, before and after; 0 if it does not repeat, or is unknown
     periods: tuple[int, int] = (1, 1)
     known: bool = (
         True  # whether the motion after it is known to be stable, and not only not known to be unstable
@@ -34,16 +34,16 @@ class Jump(Frozen):
 
 
 class UnknownStability(Frozen):
-    """A way of a slow sweep on which it is not known whether the motion is stable: it may jump already."""
+    """A stretch of a slow sweep with motions of unknown stability: the sweep may jump within it."""
 
     sweep: str  # 'up' or 'down'
-    start: float  # [rad/s] up to which it is known that it is stable
-    end: float  # [rad/s] from which on that is known again, or where the sweep jumps or ends
+    start: float  # [rad/s] up to which the motion is known to be stable
+    end: float  # [rad/s] from which that is known again, or where the sweep jumps or ends
     before: FloatArray  # (dof,) amplitude at the start
 
 
 class FrequencySweep(Frozen):
-    """Jumps of a slow upward, then a slow downward sweep, and where stability was unknown."""
+    """Jumps of a slow upward, then a slow downward sweep, and stretches of unknown stability."""
 
     jumps: list[Jump]
     unknown: list[UnknownStability]
@@ -60,7 +60,7 @@ class FrequencySweep(Frozen):
         return replace(self, jumps=kept)
 
     def at(self, shown: BoolArray) -> FrequencySweep:
-        """The sweep restricted to some of the degrees of freedom."""
+        """The sweep restricted to some degrees of freedom."""
         jumps = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
         return FrequencySweep(jumps, [replace(one, before=one.before[shown]) for one in self.unknown])
 
@@ -73,10 +73,10 @@ def swept(
 ) -> FrequencySweep:
     """Jumps of slow sweeps along a curve; amplitude (point, dof), stable 1, 0, or NaN where unknown.
 
-    repeats : (point,) periods of the force after which each motion repeats, by default 1
+    repeats : (point,) forcing periods after which each motion repeats, by default 1
 
-    A sweep begins at the first frequency with a motion that is not known to be unstable, stays on such
-    motions, and says where it did not know.
+    A sweep begins at the first frequency with a motion that is not known to be unstable. It stays on such
+    motions, and records where stability is unknown.
 
     >>> w = np.array([1.0, 2.0, 3.0, 2.5, 2.0, 3.0, 4.0])
     >>> found = swept(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], np.ones(7))
@@ -92,7 +92,7 @@ def swept(
     >>> [(one.sweep, one.start, one.end) for one in found.unknown]
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
 
-    A sweep that jumps onto such a motion says so:
+    A sweep that jumps onto a motion of unknown stability records that:
 
     >>> w = np.array([1.0, 2.0, 1.5, 1.0, 2.0, 3.0])
     >>> jumps = swept(w, np.arange(6.0)[:, None], np.array([1, 1, 0, np.nan, np.nan, 1])).jumps
@@ -108,7 +108,7 @@ def swept(
 
 
 class _Points(NamedTuple):
-    """Points of a curve, as of `swept`."""
+    """Points of a curve, with the arrays of `swept`."""
 
     frequency: FloatArray
     amplitude: FloatArray
@@ -116,14 +116,15 @@ class _Points(NamedTuple):
     repeats: FloatArray
 
     def periods(self, point: int) -> int:
-        """Periods after which the motion at a point repeats; 0 where that is not known."""
+        """Forcing periods after which the motion at a point repeats; 0 if unknown."""
         return int(np.nan_to_num(self.repeats[point]))
 
 
 def _once(points: _Points) -> _Points:
-    """The points without those that are there twice, as a peak at a corner is.
+    """The points without duplicates, such as a peak at a corner.
 
-    Where stability changes there, one is stable and the other not: a way along the stable side leads to it.
+    If stability changes there, one point is stable and the other not; the stable one is kept, so that a walk
+    along the stable side reaches it.
     """
     frequency, amplitude, stable, repeats = points
     again = np.abs(np.diff(frequency)) <= JUMPS.frequency_tolerance * frequency[1:]
@@ -138,8 +139,8 @@ def _once(points: _Points) -> _Points:
 def _with_branch_points(points: _Points) -> _Points:
     """The curve with a stable point inserted where a stable branch leaves another branch.
 
-    That is between two points of the other branch, one of which is stable. The branch ends there, or just
-    beyond, in its mirror image: then its frequency turns back there, and it is stable on both sides.
+    That place is between two points of the other branch, of which one is stable. The branch ends there. Or it
+    continues there as its mirror image: then its frequency turns back, and it is stable on both sides.
     """
     frequency, amplitude, stable, repeats = points
     stays, rises = stable == 1.0, np.sign(np.diff(frequency))
@@ -147,7 +148,7 @@ def _with_branch_points(points: _Points) -> _Points:
     turns = 1 + np.flatnonzero((rises[:-1] * rises[1:] < 0.0) & stays[:-2] & stays[1:-1] & stays[2:])
     ends = distinct_values(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1, turns)
     changes = np.flatnonzero(np.diff(stays) & np.isfinite(frequency[:-1] + frequency[1:]))
-    places = list[tuple[int, int]]()  # after a point, what another is there
+    places = list[tuple[int, int]]()  # index after a point, and point to insert there
     for k in changes.tolist():
         share = (frequency[ends] - frequency[k]) / (frequency[k + 1] - frequency[k])
         for end, part in zip(ends.tolist(), share.tolist(), strict=True):
@@ -170,15 +171,15 @@ def _with_branch_points(points: _Points) -> _Points:
 def _sweep(points: _Points, sweep: str, found: FrequencySweep, same: float) -> None:
     """Walk along stable segments in the direction of the sweep, and jump where they end.
 
-    same: relative difference of amplitudes that are one.
+    same: relative difference up to which amplitudes are equal.
     """
     frequency, amplitude, stable, _ = points
     sign = 1.0 if sweep == "up" else -1.0
     rises = np.diff(sign * frequency)
     bears = stable != 0.0
     usable = bears[:-1] & bears[1:] & (rises != 0.0) & np.isfinite(rises)
-    onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a walk over single numbers of an array is slow
-    if not usable.any():  # there is no motion that could be lost
+    onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a list is faster, element by element
+    if not usable.any():  # no motion to follow
         return
     lowest = np.where(usable, np.minimum(sign * frequency[:-1], sign * frequency[1:]), np.inf)
     begin = int(lowest.argmin())
@@ -204,7 +205,7 @@ def _sweep(points: _Points, sweep: str, found: FrequencySweep, same: float) -> N
         share = (here - frequency[there]) / (frequency[there + 1] - frequency[there])
         landed = amplitude[there] + share[:, None] * (amplitude[there + 1] - amplitude[there])
         meets = np.isclose(landed, before, rtol=same, atol=same * float(before.max())).all(axis=1)
-        which = int(meets.argmax())  # where the beginning of a closed curve is its end, it goes on
+        which = int(meets.argmax())  # where a closed curve begins and ends, the sweep continues on it
         onto, after = int(there[which]), landed[which]
         start, told = (here, after), not unknown[onto : onto + 2].any()
         if not meets[which]:
@@ -214,7 +215,7 @@ def _sweep(points: _Points, sweep: str, found: FrequencySweep, same: float) -> N
 
 
 def _walked(at: int, onwards: list[float]) -> list[int]:
-    """Points along stable segments that lead onwards (1), or from their end to their start (-1)."""
+    """Points along stable segments that lead onwards from start to end (1), or from end to start (-1)."""
     walked = [at]
     while True:
         if at < len(onwards) and onwards[at] > 0.0:
@@ -234,7 +235,7 @@ def _note_unknown(
     told: bool,
     found: FrequencySweep,
 ) -> None:
-    """Note the ways on which stability is unknown, of a walk that begins before its first point."""
+    """Note the stretches of unknown stability of a walk that begins before its first point."""
     frequency, amplitude, there = curve
     unknown = np.array([not told, *there[walked].tolist()])
     if not unknown.any():
@@ -242,7 +243,7 @@ def _note_unknown(
     edges = np.diff(unknown.astype(int), prepend=0, append=0)
     sides = (np.flatnonzero(side).tolist() for side in (edges > 0, edges < 0))
     for first, end in zip(*sides, strict=True):
-        last = walked[min(end, len(walked)) - 1]  # the first that is told again, if one is
+        last = walked[min(end, len(walked)) - 1]  # the first that is known again, if any
         k = walked[max(first - 2, 0)]
         begin, before = start if first < 2 else (float(frequency[k]), amplitude[k])
         if begin != frequency[last]:
@@ -250,9 +251,9 @@ def _note_unknown(
 
 
 def _others(onwards: FloatArray, usable: BoolArray, at: int) -> npt.NDArray[np.intp]:
-    """Other stable segments that go on from the same frequency: the next along the curve first.
+    """Other stable segments that continue from the same frequency: first the next one along the curve.
 
-    Without a later one, the last of the earlier ones is first. Frequencies grow in the sweep's direction.
+    Without a later one, the last of the earlier ones is first. `onwards` grows in the sweep's direction.
     """
     ends = np.sort((onwards[:-1], onwards[1:]), axis=0)
     holds = usable & (ends[0] <= onwards[at]) & (onwards[at] < ends[1])

@@ -1,4 +1,4 @@
-"""The least of the peaks of a sweep, which it is made for."""
+"""The least of the peaks of a sweep, for sweeps that minimise a peak."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class LeastPeak(NamedTuple):
 def least_peak(
     amplitude: FloatArray, swept: FloatArray, counted: npt.NDArray[np.bool_], at_end: npt.NDArray[np.bool_]
 ) -> LeastPeak | None:
-    """The least of the peaks of the curves that count, all (curve,); None without any.
+    """The least of the peaks of the curves that count, all arrays (curve,); None if there is none.
 
-    at_end : whether a curve is greatest at an end of the range of frequencies, which is no peak.
+    at_end : whether the maximum of a curve is at an end of the range of frequencies, and so not a peak.
 
     >>> amplitude, n_0 = np.array([8.0, 6.0, 7.0]), np.array([0.0, 10.0, 20.0])
     >>> counted = np.ones(3, dtype=bool)

@@ -1,4 +1,4 @@
-"""Peaks of a curve beside its highest: the local maxima of each degree of freedom along it."""
+"""Peaks of a curve other than its highest: the local maxima of each degree of freedom along it."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from fcm.local_maxima import local_maxima, prominence
 from fcm.results.options import RESULTS
 
 _PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
-_SAMPLES = 129  # between two neighbours, the middle one among them
+_SAMPLES = 129  # number of samples between two neighbours, including the middle point
 
 
 def lower_peaks(amplitude: FloatArray) -> npt.NDArray[np.intp]:
-    """Places (peak, 2) of local maxima that are not the highest of their degree of freedom: dof and point.
+    """Dof and point (peak, 2) of local maxima that are not the highest of their degree of freedom.
 
-    amplitude (point, dof) has rows of NaN between branches, whose ends are no maxima.
+    amplitude (point, dof) has rows of NaN between branches; the ends of branches are not maxima.
 
     >>> u, v = [0.0, 2.0, 1.0, 5.0, 0.0], [0.0, 1.0, 2.0, 3.0, 4.0]
     >>> lower_peaks(np.transpose((u, v))).tolist()
@@ -41,8 +41,8 @@ def lower_peaks(amplitude: FloatArray) -> npt.NDArray[np.intp]:
 def rise_beside(frequency: FloatArray, amplitude: FloatArray, k: int) -> float:
     """Relative rise, above local maximum k, of polynomials through it and its neighbours.
 
-    Only the highest peaks are located on the curve: another may be between two points by about so much. That
-    is the greatest of a parabola and of the cubics with one more point on either side.
+    Only the highest peaks are located on the curve; others may rise between two points by about as much. The
+    result is the maximum of a parabola and of the cubics with one more point on either side.
 
     >>> x = np.array([0.0, 1.0, 3.0])
     >>> round(rise_beside(x, 4.0 - (x - 1.5) ** 2, 1), 3)
@@ -57,7 +57,7 @@ def rise_beside(frequency: FloatArray, amplitude: FloatArray, k: int) -> float:
 
 
 def _place_along(x: FloatArray, y: FloatArray, top: int) -> list[float]:
-    """The frequency where it goes one way, else, beside a fold, the length of the chords; 0 at the top."""
+    """Abscissa, 0 at the top: the frequency, or beside a fold, where that turns, the length of the chords."""
     steps = np.abs(np.diff(x))
     if not ((np.diff(x) > 0.0).all() or (np.diff(x) < 0.0).all()):
         steps = np.hypot(*(np.diff(one) / (np.ptp(one) or 1.0) for one in (x, y)))
@@ -67,8 +67,9 @@ def _place_along(x: FloatArray, y: FloatArray, top: int) -> list[float]:
 
 
 def _rise(x: list[float], y: list[float]) -> float:
-    """The greatest value between the neighbours of 0 of the polynomial through three or four points; not
-    where points are one, or not there."""
+    """The greatest value, between the neighbours of 0, of the polynomial through three or four points.
+
+    0 if points coincide or are missing."""
     if not all(one < other for one, other in pairwise(x)) or not all(map(isfinite, y)):
         return 0.0
     top, unit = x.index(0.0), x[-1] - x[0]

@@ -21,31 +21,32 @@ SINE = "amplitude * sin(harmonic omega t + phase)"
 class ResponseMotion(Frozen):
     """A steady motion, x = mean + Im(sum_h X_h exp(i h omega t)); arrays begin with the mean, which is real.
 
-    The forces of a contact are those of `fcm.periodic_forces` along its directions, friction before normal:
-    on the structure they act against these. The normal one is the whole load, its preload included.
+    The forces of a contact are those of `fcm.periodic_forces` along its directions, friction before normal.
+    On the structure they act against these directions. The normal force is the whole load, including the
+    preload.
     """
 
     curve: int
     parameters: dict[str, float]  # swept values of the curve
-    of: tuple[str, ...]  # the degrees of freedom that are greatest here; none at a chosen frequency
+    of: tuple[str, ...]  # degrees of freedom whose maximum is here; none at a chosen frequency
     frequency: float  # [rad/s]
-    stable: float  # 1 where small disturbances die out, 0 where not, NaN where that is not known
+    stable: float  # 1 where small disturbances die out, 0 where not, NaN if unknown
     harmonics: tuple[int, ...]
     force: ComplexArray  # (contact, direction, 1 + harmonic)
-    modal: ComplexArray | None  # (mode, 1 + harmonic), of modes of mass 1; None of a ring's sector
-    amplitude: float = np.nan  # modal, of a nonlinear mode
-    states: tuple[str, ...] = ()  # of each contact the sequence of its states over a cycle
+    modal: ComplexArray | None  # (mode, 1 + harmonic), of modes of mass 1; None for a ring's sector
+    amplitude: float = np.nan  # modal amplitude of a nonlinear mode
+    states: tuple[str, ...] = ()  # state sequence of each contact over a cycle
     contact_loads: FloatArray | None = None  # (contact, 4): greatest normal and friction force, slip, energy
 
     def at(self, harmonic: int) -> int:
-        """The place of a harmonic in the arrays; -1 if the motion has it not."""
+        """Index of a harmonic in the arrays; -1 if the motion does not have it."""
         return (
             0 if harmonic == 0 else 1 + self.harmonics.index(harmonic) if harmonic in self.harmonics else -1
         )
 
 
 class ResponseMotions(Frozen):
-    """Motions of a response, and what of them its netCDF file is to have."""
+    """Motions of a response, and which of their variables the netCDF file gets."""
 
     motions: tuple[ResponseMotion, ...]
     forces: bool
@@ -53,12 +54,12 @@ class ResponseMotions(Frozen):
 
 
 def harmonics_of(motions: Sequence[ResponseMotion]) -> list[int]:
-    """All harmonics that occur in some motions, in order."""
+    """All harmonics that occur in the motions, in order."""
     return sorted({h for one in motions for h in one.harmonics})
 
 
 def motion_fields(found: ResponseMotions, unit: str) -> dict[str, Field]:
-    """The variables of a file: where the motions are, and what was asked for of them."""
+    """The variables of a file: the places of the motions, and their forces and modes if requested."""
     motions = found.motions
     if not motions or not (found.forces or found.modes):
         return {}
@@ -112,7 +113,7 @@ def _waves(name: str, dims: tuple[str, ...], values: ComplexArray, what: str) ->
 
 
 def _by_number(values: ComplexArray, motion: ResponseMotion, numbers: Sequence[int]) -> ComplexArray:
-    """(..., 1 + harmonic) with a place for every number; NaN for those that the motion has not."""
+    """Values (..., 1 + harmonic) with a place for every number; NaN for harmonics that the motion lacks."""
     out = np.full((*values.shape[:-1], 1 + len(numbers)), np.nan, dtype=np.complex128)
     out[..., [0, *(1 + numbers.index(h) for h in motion.harmonics)]] = values
     return out

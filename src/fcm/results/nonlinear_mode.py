@@ -17,7 +17,7 @@ from fcm.units import in_unit
 class Resonance(NamedTuple):
     """Predicted resonance of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
 
-    level: float  # of the scene's forces
+    level: float  # level of the scene's forces
     frequency: float  # [rad/s] of the forces
     modal_amplitude: float
     amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
@@ -25,12 +25,12 @@ class Resonance(NamedTuple):
 
 
 class InternalResonance(NamedTuple):
-    """Points of a nonlinear mode at which much of its power is in further harmonics than the first."""
+    """Points of a nonlinear mode at which higher harmonics have much of its power."""
 
     modal_amplitude: tuple[float, float]  # the least and the greatest
     frequency: tuple[float, float]  # [rad/s] of these points, the lowest and the highest
-    harmonic: int  # the one with most power
-    share: float  # of the power, that further harmonics have at most
+    harmonic: int  # the harmonic with the most power
+    share: float  # greatest share of the power in higher harmonics
 
     def summary(self, unit: str) -> dict[str, Any]:
         """Entries for `fcm respond --json`, frequencies in unit."""
@@ -53,22 +53,22 @@ class NonlinearMode:
     number: int
     amplitude: FloatArray  # (point,) modal amplitude a, of modes of mass 1
     damping: FloatArray  # (point,) ratio
-    force: FloatArray  # (point,) p that the scene's forces do on the mode
-    resonant_level: FloatArray  # (point,) of the scene's forces, with which the resonance has the amplitude
-    levels: tuple[float, ...]  # of the scene's forces, at which the response is predicted
+    force: FloatArray  # (point,) modal force p of the scene's forces
+    resonant_level: FloatArray  # (point,) level of the scene's forces whose resonance has the amplitude
+    levels: tuple[float, ...]  # levels of the scene's forces at which the response is predicted
     flanks: FloatArray  # (point, level, 2) [rad/s] where they give the amplitude, below and above resonance
     folds: list[float]  # modal amplitudes at which the curve turns back
     resonances: list[Resonance]  # at these levels
     steady: npt.NDArray[np.bool_]  # (point,) False where nothing holds a rigid-body mode
     internal: InternalResonance | None = None
-    motions: tuple[MotionOfMode, ...] = ()  # that are to be exported
+    motions: tuple[MotionOfMode, ...] = ()  # motions to export
 
     def summary(
         self, frequency: FloatArray, unit: str, amplitude: Mapping[str, FloatArray]
     ) -> dict[str, Any]:
-        """Entries for `fcm respond --json`; amplitude (point,) is that of each degree of freedom.
+        """Entries for `fcm respond --json`; amplitude (point,) is given for each degree of freedom.
 
-        `displacement` is what a modal amplitude of 1 is of each at the least amplitude that was followed.
+        `displacement` is that of a modal amplitude of 1, at the least amplitude that was followed.
         """
         top, least = int(self.damping.argmax()), int(self.amplitude.argmin())
         return {
@@ -100,7 +100,7 @@ class NonlinearMode:
         }
 
     def _unmet(self, level: float) -> str:
-        """Why the mode has no resonance at a level of the forces, or not the greatest; empty if it has it."""
+        """Why the mode has no resonance at a force level, or not the greatest one; empty if it has it."""
         if not self.force.any():
             return "the forces do nothing on the mode"
         least, most = int(self.amplitude.argmin()), int(self.amplitude.argmax())

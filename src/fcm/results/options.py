@@ -1,4 +1,4 @@
-"""Tolerances and limits of what is reported of curves: jumps of slow sweeps, percentiles of random draws."""
+"""Tolerances and limits of reported results: jumps of slow sweeps, percentiles of random draws, peaks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fcm.frozen import Frozen
 
 
 class JumpOptions(Frozen):
-    """Options on jumps: when two points of a curve are the same, and what is no jump.
+    """Options on jumps: when two points of a curve are the same, and when a change is not a jump.
 
     Attributes
     ----------
@@ -20,8 +20,8 @@ class JumpOptions(Frozen):
     frequency_tolerance : float
         Relative difference of frequencies up to which they are the same.
     flip_tolerance : float
-        Relative change of an amplitude, from the last point before the period doubles to the first after it,
-        below which it is no jump.
+        Relative change of an amplitude, from the last point before a period doubling to the first after it,
+        below which it is not a jump.
     """
 
     amplitude_tolerance: float = 1e-6
@@ -31,17 +31,16 @@ class JumpOptions(Frozen):
 
 
 class DrawOptions(Frozen):
-    """Options on what is reported of random draws.
+    """Options on the results of random draws.
 
     Attributes
     ----------
     band_frequencies : int
-        Number of frequencies at which the percentiles of a band are taken.
+        Number of frequencies at which the percentiles of a band are computed.
     frequency_tolerance : float
-        Relative error of the frequency of a jump, by which it may be so much earlier. It is the default
-        accuracy.
+        Relative error of the frequency of a jump, by which it may be earlier; equal to the default accuracy.
     confidence : float
-        Probability of the intervals of percentiles, of which either tail has half of the rest.
+        Confidence of the intervals of percentiles; either tail has half of the rest.
     """
 
     band_frequencies: int = 600
@@ -55,9 +54,9 @@ class NetcdfOptions(Frozen):
     Attributes
     ----------
     chunk : int
-        [byte] Size of the part of a variable of many curves that is made and written at a time, about.
+        [byte] Approximate size of the part of a variable of many curves that is written at a time.
     contiguous : int
-        [byte] Size of a variable up to which it is not compressed: compressing would take longer than
+        [byte] Size of a variable up to which it is not compressed, as compression would take longer than
         writing.
     """
 
@@ -66,7 +65,7 @@ class NetcdfOptions(Frozen):
 
 
 class ListedPeakOptions(Frozen):
-    """Options on which local maxima of a curve are listed as peaks beside the highest.
+    """Options on which local maxima of a curve are listed as peaks besides the highest.
 
     Attributes
     ----------
@@ -82,7 +81,7 @@ class ListedPeakOptions(Frozen):
 
 
 class PointErrorOptions(Frozen):
-    """Options on ranges of frequency in which errors of points are told by themselves.
+    """Options on ranges of frequency whose errors of points are reported separately.
 
     Attributes
     ----------
@@ -90,8 +89,8 @@ class PointErrorOptions(Frozen):
         Error of a point, relative to the greatest amplitude there, above which it belongs to such a range:
         ten times the default accuracy.
     least_width : float
-        Width of a range, relative to its frequency, below which it is not told. A shift of a flank by less
-        than the default accuracy explains it.
+        Width of a range, relative to its frequency, below which it is not reported. A shift of a flank by
+        less than the default accuracy explains it.
     """
 
     least_error: float = 0.1
@@ -99,7 +98,7 @@ class PointErrorOptions(Frozen):
 
 
 class ResultOptions(Frozen):
-    """All options on what is reported of curves.
+    """All options on reported results.
 
     Attributes
     ----------
@@ -116,4 +115,4 @@ class ResultOptions(Frozen):
     point_errors: PointErrorOptions = field(default_factory=PointErrorOptions)
 
 
-RESULTS = ResultOptions()  # where nothing else is said
+RESULTS = ResultOptions()  # the defaults

@@ -1,4 +1,4 @@
-"""A response as netCDF and xarray dataset, both from one description; see `summary` and `csv_file`."""
+"""A response as netCDF file and xarray dataset, from one description; see also `summary` and `csv_file`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from fcm.results.tracked_fields import tracked_names
 if TYPE_CHECKING:
     import xarray
 
-LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
+LAYOUT = "fcm response 1"  # to be changed when a reader of older files would misread it
 
 
 def attributes(response: Response) -> dict[str, str]:
@@ -38,7 +38,7 @@ def attributes(response: Response) -> dict[str, str]:
 
 
 def _summary(response: Response) -> dict[str, Any]:
-    """The summary attribute of a file; for curves without points, which are variables, it omits them."""
+    """The summary attribute of a file; without curves if the file has no points, as variables hold them."""
     if not response.peaks_only:
         curves = [replace(curve, sensitivity=None) for curve in response.curves]
         return summary(replace(response, curves=curves))
@@ -69,7 +69,7 @@ def to_dataset(response: Response) -> xarray.Dataset:
 
 
 def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
-    """Variables that say what a curve or an instant is: swept values, and times if there are any."""
+    """Variables that identify a curve or an instant: swept values, and times if there are any."""
     swept = [*swept_names(response).values(), *tracked_names(response.tracking).values()]
     return [*swept, *(name for name in ("time", "cycles", "cycle_start") if name in fields)]
 
@@ -77,8 +77,8 @@ def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
 def write_netcdf(response: Response, path: str | Path, options: NetcdfOptions = RESULTS.file) -> None:
     """Write the response as netCDF-4; the file appears only when it is complete.
 
-    All variables are described before any is filled: between the one and the other the library goes through
-    all it has been told, which for each variable by itself took half of the time.
+    All variables are defined before any is filled: each switch between the two makes the library process all
+    definitions, which took half of the time.
     """
     import netCDF4
 
@@ -95,7 +95,7 @@ def write_netcdf(response: Response, path: str | Path, options: NetcdfOptions = 
 
 
 def _described(file: Any, name: str, field: Field, options: NetcdfOptions) -> Any:
-    """A variable of an open file, without values."""
+    """Define a variable of an open file, without values."""
     for dim, size in zip(field.dims, field.values.shape, strict=True):
         if dim not in file.dimensions:
             file.createDimension(dim, size)
@@ -107,12 +107,12 @@ def _described(file: Any, name: str, field: Field, options: NetcdfOptions) -> An
     step, (count, *rest) = field.values.step(options.chunk), field.values.shape
     chunks = (max(min(step, count), 1), *(max(one, 1) for one in rest))
     cache = 2 * options.chunk
-    # each chunk is written once, so that nothing is gained by keeping many of every variable
+    # each chunk is written once, so a large cache for every variable gains nothing
     return _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks, chunk_cache=cache)
 
 
 def _fill(variable: Any, values: npt.NDArray[Any] | Padded, chunk: int) -> None:
-    """Write the values; what is of many curves is made and written some curves at a time."""
+    """Write the values; padded arrays are made and written some curves at a time."""
     if not isinstance(values, Padded):
         variable[...] = _storable(values)
         return
@@ -127,7 +127,7 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], 
     if kind.kind == "f":
         options["fill_value"] = np.nan
     if not options.get("contiguous"):
-        # padding is what shrinks, the digits of numbers hardly do: more effort than the least gains nothing
+        # only padding compresses well, digits of numbers hardly: a higher level gains nothing
         options |= {"zlib": True, "complevel": 1}
     return file.createVariable(name, kind, dims, **options)
 

@@ -1,4 +1,4 @@
-"""Arrays over curves and points of which only a part is made at a time."""
+"""Arrays over curves and points that are made in parts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fcm.results.result import Curve
 
 
 class Padded:
-    """Array (curve, row, ...) of what is picked of each curve, rows padded with NaN, or '' for text.
+    """Array (curve, row, ...) of values picked from each curve, rows padded with NaN, or '' for text.
 
     >>> array = Padded([0, 2], lambda count: np.ones((count, 3)), 2)
     >>> array.shape, array.part(1, 2).tolist()
@@ -26,11 +26,11 @@ class Padded:
         self.shape = (len(curves), longest, *first.shape[1:])
 
     def step(self, chunk: int) -> int:
-        """Curves whose rows together take a chunk, of so many bytes about."""
+        """Number of curves whose rows together take about `chunk` bytes."""
         return max(chunk // max(8 * int(np.prod(self.shape[1:])), 1), 1)
 
     def part(self, begin: int, end: int) -> npt.NDArray[Any]:
-        """The rows of some of the curves."""
+        """The rows of curves `begin` to `end` - 1."""
         parts = [self.pick(curve) for curve in self.curves[begin:end]]
         nothing = "" if self.dtype.kind == "U" else np.nan
         out = np.full((len(parts), *self.shape[1:]), nothing, dtype=np.result_type(self.dtype, *parts))
@@ -43,12 +43,12 @@ class Padded:
 
 
 def by_point(curves: Sequence[Curve], pick: Callable[[Curve], npt.NDArray[Any]]) -> Padded:
-    """Padded array of what is picked at every point of the curves."""
+    """Padded array of values picked at every point of the curves."""
     return Padded(curves, pick, max((curve.frequency.size for curve in curves), default=0))
 
 
 def by_fold(curves: Sequence[Curve], pick: Callable[[Curve], npt.NDArray[Any]]) -> Padded:
-    """Padded array of what is picked of each curve, whose number of rows is its own."""
+    """Padded array of values picked from each curve, with a number of rows of its own."""
     return Padded(curves, pick, max((len(pick(curve)) for curve in curves), default=0))
 
 

@@ -15,25 +15,25 @@ class Peak(NamedTuple):
 
     amplitude: float
     frequency: float  # [rad/s]
-    error: float = np.nan  # estimated, relative, of the amplitude; NaN where it is not known
-    stable: float = np.nan  # 1 where small disturbances die out there, 0 where not, NaN where it is not known
+    error: float = np.nan  # estimated relative error of the amplitude; NaN if unknown
+    stable: float = np.nan  # 1 where small disturbances die out, 0 where not, NaN if unknown
     residual: float = (
         np.nan
-    )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
-    frequency_error: float = np.nan  # estimated, relative, of the frequency; NaN where it is not known
-    rounding: float = -1.0  # of the amplitude, relative; -1 where no contact is stiff
-    level: float = 1.0  # of the forces: 1 but on a curve over it
+    )  # greatest relative change by the residual friction of contacts that always stick; NaN: unknown
+    frequency_error: float = np.nan  # estimated relative error of the frequency; NaN if unknown
+    rounding: float = -1.0  # relative rounding of the amplitude; -1 if no contact is stiff
+    level: float = 1.0  # force level; 1 unless the curve is over the level
 
 
 def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
     """Whether the motion is stable at the greatest amplitude of each degree of freedom, (dof,).
 
-    Of several points that are the same height, relative, as where two branches meet, a stable one counts.
+    Among points of the same height, as where two branches meet, a stable one counts.
 
     >>> stability_at_top(np.array([[1.0, 1.0], [2.0, 0.5], [2.0, 2.0]]), np.array([np.nan, 1.0, 0.0]))
     array([1., 0.])
     """
-    top = np.fmax.reduce(amplitude, axis=0, initial=np.nan)  # NaN where there is no amplitude
+    top = np.fmax.reduce(amplitude, axis=0, initial=np.nan)  # NaN if there is no amplitude
     there = amplitude >= (1.0 - RESULTS.jumps.amplitude_tolerance) * top
     told = (there & (stable == 1.0)[:, None]).any(axis=0)
     if told.all():

@@ -1,17 +1,17 @@
-r"""Confidence intervals of quantiles from a sample whose values have errors, without a distribution.
+r"""Distribution-free confidence intervals of quantiles, from a sample whose values have errors.
 
-Of n independent draws, the number below the quantile of order p is binomial. So the quantile is between the
-ordered values of ranks l < u with the probability
+Among n independent draws, the number below the quantile of order p is binomial. So the quantile lies between
+the ordered values of ranks l < u with the probability
 
 .. math:: P(l \le B < u), \qquad B \sim \mathrm{Bin}(n, p).
 
-Ranks are the innermost with P(B < l) and P(B >= u) of half of what the confidence leaves at most. With few
-draws no rank is extreme enough: the least count is that of Wilks (1941), 59 for 5 or 95 % at a confidence of
-90 %.
+The ranks are the innermost for which P(B < l) and P(B >= u) are each at most half of 1 - confidence. With few
+draws there is no such rank. The least count is that of Wilks (1941), 59 for 5 or 95 % at a confidence of 90
+%.
 
-Errors of the values count beside it. Where each value is within an interval of its own, each ordered value is
+Errors of the values are included. If each value lies in an interval of its own, each ordered value lies
 between the ordered lower ends and the ordered upper ends. So the lower end is that of rank l among the lower
-ends, and the upper end that of rank u among the upper ones.
+ends, and the upper end that of rank u among the upper ends.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from fcm.results.options import RESULTS
 
 
 def ranks(count: int, percent: float, confidence: float = RESULTS.draws.confidence) -> tuple[int, int]:
-    """Ranks (l, u) of the ordered values that bound a percentile; 0 and count + 1 where none does.
+    """Ranks (l, u) of the ordered values that bound a percentile; 0 and count + 1 if none does.
 
     >>> ranks(10, 50.0), ranks(59, 95.0), ranks(58, 95.0)
     ((2, 9), (53, 59), (52, 59))
@@ -35,15 +35,15 @@ def ranks(count: int, percent: float, confidence: float = RESULTS.draws.confiden
 
 
 def _lower_rank(count: int, share: float, confidence: float) -> int:
-    """The greatest l with P(B < l) within the tail, 0 where there is none."""
-    from scipy.special import bdtr  # which most runs do without
+    """The greatest l with P(B < l) within the tail; 0 if there is none."""
+    from scipy.special import bdtr  # most runs do not need it
 
     below = bdtr(np.arange(count), count, share)  # P(B <= k)
     return int(np.searchsorted(below, 0.5 * (1.0 - confidence), side="right"))
 
 
 def draws_needed(percent: float) -> float:
-    """Least number of draws with which both ends of the interval of a percentile are known.
+    """Least number of draws for which both ends of the interval of a percentile are known.
 
     >>> [draws_needed(percent) for percent in (5.0, 25.0, 50.0, 95.0, 100.0)]
     [59, 11, 5, 59, inf]
@@ -56,10 +56,10 @@ def draws_needed(percent: float) -> float:
 def intervals(
     values: FloatArray, errors: FloatArray, percents: tuple[float, ...], confidence: float, left_out: int = 0
 ) -> FloatArray:
-    """Intervals (percent, 2) of percentiles of values with relative errors, NaN where an end is unknown.
+    """Intervals (percent, 2) of percentiles of values with relative errors; NaN for an unknown end.
 
-    Values that are NaN are left out; the error of a value may be NaN, unknown, and is none of a value of 0.
-    left_out: number of draws without a value, which may be any.
+    NaN values are left out. The error of a value may be NaN (unknown); a value of 0 has none. left_out:
+    number of draws without a value, which may have any.
 
     >>> intervals(np.arange(1.0, 12.0), np.zeros(11), (50.0,), 0.9).tolist()
     [[3.0, 9.0]]

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from fcm.sensitivity.peaks import Sensitivities
     from fcm.time_domain.histories import Histories
 
-DEFECT = "a defect of fcm"  # how the reason of a curve that was lost to one is worded,
-INTERRUPTED = "interrupted"  # and that of one which an interruption has cut off, or left out; see `Cause`
+DEFECT = "a defect of fcm"  # reason of a curve lost to a defect
+INTERRUPTED = "interrupted"  # reason of a curve that an interruption cut off or left out; see `Cause`
 NOT_BEGUN = f"{INTERRUPTED} before it was traced"
 
 
@@ -53,64 +53,62 @@ class Curve:
     regime: npt.NDArray[np.str_]  # (point, contact) sequence of the loop
     loop: FloatArray  # (point, contact, 5) n0_bar, b_bar, phi, tangential amplitude a, force k_u a
     cycle: FloatArray  # (point, contact, 4) greatest normal and friction force, slip, energy in a cycle
-    cycle_error: FloatArray  # (point, contact, 4) of these, estimated, each relative to itself
-    stable: FloatArray  # (point,) 1 where small disturbances die out, 0 where not, NaN where it is not known
-    table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
-    error: FloatArray  # (point, dof) of amplitude, estimated, relative; at a peak that of its height
-    truncation_error: (
-        FloatArray  # (point,) the greatest of these that matters, see `fcm.accuracy.embedded_pair`
-    )
+    cycle_error: FloatArray  # (point, contact, 4) their estimated relative errors
+    stable: FloatArray  # (point,) 1 where small disturbances die out, 0 where not, NaN if unknown
+    table_error: FloatArray  # (point,) relative shift of the response from table to closed form
+    error: FloatArray  # (point, dof) estimated relative error of the amplitude; at a peak that of its height
+    truncation_error: FloatArray  # (point,) the greatest relevant error, see `fcm.accuracy.embedded_pair`
     complete: bool
-    reason: str  # why it is not complete, in words, else ''
+    reason: str  # why it is incomplete, in words, or ''
     peaks: dict[str, Peak]  # of each dof
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
-    bifurcations: list[tuple[str, float]] = field(default_factory=list)  # others: which, and where [rad/s]
-    short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
+    bifurcations: list[tuple[str, float]] = field(default_factory=list)  # others: kind, frequency [rad/s]
+    short_of: str = ""  # why it misses the requested accuracy, or ''
     uncertain_at: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
-    folds_uncertain_at: list[float] = field(default_factory=list)  # [rad/s] from where no folds were followed
+    folds_uncertain_at: list[float] = field(default_factory=list)  # [rad/s] from which no folds were followed
     symmetry_lost: list[float] = field(default_factory=list)  # [rad/s] by harmonics that are not balanced
-    shakedown_at: float = np.nan  # [rad/s] where a contact that sticks would slip if it began unstressed
-    may_wedge: bool = False  # motions are unstable, and contacts may stick that friction presses together
-    levels: list[float] | None = None  # [rad/s] at which the level of the forces was followed, if known
-    folds_between: tuple[float, float] | None = None  # levels of the forces, see `fcm.branches.isolas`
-    not_confirmed: int = 0  # points of unknown stability, where those that may be looked at did not suffice
-    isolated: tuple[int, ...] = ()  # branches of a balance that are closed, and that no other one crosses
-    mirrored: int = 0  # branches whose mirror images are branches, too, and are not traced
+    shakedown_at: float = np.nan  # [rad/s] where a sticking contact would slip if it began unstressed
+    may_wedge: bool = False  # whether motions are unstable, and contacts pressed by friction may stick
+    levels: list[float] | None = None  # [rad/s] at which the force level was followed, if known
+    folds_between: tuple[float, float] | None = None  # force levels, see `fcm.branches.isolas`
+    not_confirmed: int = 0  # points of unknown stability, as the number of examined points is limited
+    isolated: tuple[int, ...] = ()  # numbers of closed branches of a balance that no other crosses
+    mirrored: int = 0  # number of branches whose mirror images are branches, too, and are not traced
     evaluations: int = 0  # of the equations, to follow it
-    level: FloatArray | None = None  # (point,) of the forces, where that is what is followed
-    level_folds: list[float] = field(default_factory=list)  # levels at which that curve turns back
+    level: FloatArray | None = None  # (point,) force level, if the curve is over the level
+    level_folds: list[float] = field(default_factory=list)  # levels at which such a curve turns back
     greatest: Greatest | None = None  # forces, slip and energy of the contacts along the curve
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
-    undetermined: int = 0  # points at which a contact never slips and another may feel it, if that is unknown
+    undetermined: int = 0  # points where a contact never slips, if it is unknown whether another one feels it
     extract: CurveExtract | None = (
-        None  # if that is known; in the place of most points, where only peaks and folds were asked for
+        None  # if known; it replaces most points if only peaks and folds are requested
     )
     mode: NonlinearMode | None = None
     sensitivity: Sensitivities | None = None  # of the peaks
-    across: ContactMotions | None = None  # motions of the contacts, see `contact_motions`
-    cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
-    error_at_frequency: FloatArray | None = None  # (point, dof) at peaks, too; None: as error
+    across: ContactMotions | None = None  # motions across the contacts, see `contact_motions`
+    cause: Cause = Cause.CALCULATION  # why it is incomplete, if it is
+    error_at_frequency: FloatArray | None = None  # (point, dof) also at peaks; None: same as error
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Restores a curve from another process or a file, sharing values equal in all curves."""
+        """Restore a curve from another process or a file, sharing values that are equal in all curves."""
         vars(self).update({name: _shared(value) for name, value in state.items()})
 
     @property
     def same_frequency_error(self) -> FloatArray:
-        """Error (point, dof) of the amplitude at the same frequency, at peaks, too."""
+        """Error (point, dof) of the amplitude at the same frequency, also at peaks."""
         return self.error if self.error_at_frequency is None else self.error_at_frequency
 
     @property
     def points(self) -> int:
-        """Number of points that were computed, be they kept or not."""
+        """Number of computed points, whether kept or not."""
         return int(np.isfinite(self.frequency).sum()) if self.extract is None else self.extract.points
 
     @property
     def branch(self) -> npt.NDArray[np.intp]:
-        """Number of the branch of each point, (point,); a row of NaN stands between branches."""
+        """Number (point,) of each point's branch; a row of NaN separates branches."""
         return np.cumsum(np.isnan(self.frequency))
 
     def swept(self) -> FrequencySweep:
@@ -145,13 +143,13 @@ def _shared(value: Any) -> Any:
 
 
 class Blades(Frozen):
-    """Data on the sectors of a mistuned ring beside its curves; frequencies in rad/s."""
+    """Data on the sectors of a mistuned ring, besides its curves; frequencies in rad/s."""
 
     names: tuple[str, ...]  # degrees of freedom of a sector
     factors: FloatArray  # (curve, sector) of the stiffness
-    tuned: FloatArray  # (curve, dof) greatest amplitude of the tuned ring; NaN where that is not known
+    tuned: FloatArray  # (curve, dof) greatest amplitude of the tuned ring; NaN if unknown
     tuned_frequency: FloatArray  # (curve, dof)
-    tuned_at_end: npt.NDArray[np.bool_]  # (curve, dof) whether that is at an end of the range, and no peak
+    tuned_at_end: npt.NDArray[np.bool_]  # (curve, dof) whether it is at an end of the range, and not a peak
 
     @property
     def sectors(self) -> int:
@@ -176,22 +174,22 @@ class Response:
     frequency_unit: str
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
-    without_stability: bool = False  # whether none was looked for on some curves, as `left_out` says
-    notes: list[str] = field(default_factory=list)  # of the scene: what was taken for what
+    without_stability: bool = False  # whether stability was not examined on some curves, as `left_out` says
+    notes: list[str] = field(default_factory=list)  # notes of the scene on how its input was interpreted
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
-    units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
+    units: tuple[str, str] = ("", "")  # of length and force, for labels; empty if not given
     histories: Histories | None = None  # of the scene's schedule
-    defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
-    peaks_only: bool = False  # whether the curves were asked for without their points
-    output: tuple[str, ...] = ()  # degrees of freedom that the scene asks for; none where it does not say
+    defects: list[str] = field(default_factory=list)  # tracebacks of curves that were lost to defects
+    peaks_only: bool = False  # whether the curves are without points, as requested
+    output: tuple[str, ...] = ()  # degrees of freedom that the scene requests; empty if it does not say
     directions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of contacts that slide in a plane
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
     fitted: Fitted | None = None  # numbers fitted to measured data
-    positions: dict[str, FloatArray] = field(default_factory=dict)  # (3,) of contacts of which that is known
+    positions: dict[str, FloatArray] = field(default_factory=dict)  # (3,) of contacts whose position is known
     motions: ResponseMotions | None = None  # at peaks or chosen frequencies, with contact forces and modes
     blades: Blades | None = None  # of a mistuned ring
-    in_time: InTime = InTime.COMPUTED  # whether the exact motion of the scene is
-    span: tuple[float, float] | None = None  # [rad/s] over which curves are traced; None for no such range
+    in_time: InTime = InTime.COMPUTED  # whether the exact motion of the scene is computed
+    span: tuple[float, float] | None = None  # [rad/s] over which curves are traced; None without a range
 
     @staticmethod
     def of(scene: Scene, curves: list[Curve], method: str) -> Response:
@@ -212,7 +210,7 @@ class Response:
 
     @property
     def complete(self) -> bool:
-        """Whether every curve reached the end of its range, and of the schedule if there is one."""
+        """Whether every curve, schedule, tracking and fit is complete."""
         simulated = self.histories is None or self.histories.complete
         tracked = self.tracking is None or self.tracking.complete
         fitted = self.fitted is None or not self.fitted.interrupted
@@ -220,7 +218,7 @@ class Response:
 
     @property
     def interrupted(self) -> bool:
-        """Whether curves, or parts of the schedule, are missing because the run was interrupted."""
+        """Whether curves, or other parts, are missing because the run was interrupted."""
         if any(one is not None and one.interrupted for one in (self.tracking, self.fitted)):
             return True
         simulated = [] if self.histories is None else self.histories.records
@@ -230,6 +228,6 @@ class Response:
 
     @property
     def parameters(self) -> list[dict[str, float]]:
-        """The swept values of each curve, be it traced or simulated."""
+        """The swept values of each curve, traced or simulated."""
         simulated = self.histories.records if self.histories is not None else []
         return [one.parameters for one in self.curves or simulated]

@@ -27,10 +27,10 @@ NONE = np.inf  # the frequency of a jump that does not occur
 class Scatter(Frozen):
     """Percentiles over the complete curves that differ only in drawn numbers.
 
-    Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves
-    that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is unknown,
-    that is not known: the share of such curves, too. A percentile is NaN of fewer curves than
-    `draws_beyond` says: it would be an extreme. The interval of a percentile of peaks is that of all
+    Frequencies are in rad/s. A jump is the first one of a slow sweep in a direction, over the curves that
+    have one; `jumping` (sweep,) is their share. If the sweep may have jumped before, as stability is unknown,
+    the jump is unknown; `unknown` is the share of such curves. A percentile of fewer curves than
+    `draws_beyond` is NaN, as it would be an extreme. The interval of a percentile of peaks holds for all
     possible draws, see `fcm.results.quantile_interval`.
     """
 
@@ -38,22 +38,22 @@ class Scatter(Frozen):
     curves: int
     left_out: int  # number of draws without a complete curve
     peak: FloatArray  # (percent, dof)
-    interval: FloatArray  # (percent, dof, end) of the peak; NaN where an end is unknown
-    greatest_error: FloatArray  # (dof,) of the peaks of the curves, relative; NaN where none is known
-    error_unknown: npt.NDArray[np.intp]  # (dof,) number of the curves whose peak has an unknown error
+    interval: FloatArray  # (percent, dof, end) of the peak; NaN for an unknown end
+    greatest_error: FloatArray  # (dof,) greatest relative error of the curves' peaks; NaN if none is known
+    error_unknown: npt.NDArray[np.intp]  # (dof,) number of curves whose peak has an unknown error
     frequency: FloatArray  # (percent, dof)
-    jump: FloatArray  # (percent, sweep); NaN where no curve jumps
+    jump: FloatArray  # (percent, sweep); NaN if no curve jumps
     peak_range: FloatArray  # (end, dof): the least and the greatest
     frequency_range: FloatArray  # (end, dof)
     jump_range: FloatArray  # (end, sweep)
     jumping: FloatArray  # (sweep,)
     unknown: FloatArray  # (sweep,)
     peak_unstable: FloatArray  # (dof,) share of the curves whose peak is not stable
-    peak_unknown: FloatArray  # (dof,) share of those of whose peak that is not known
+    peak_unknown: FloatArray  # (dof,) share of the curves whose peak has unknown stability
 
 
 def scatter(response: Response) -> list[Scatter]:
-    """Scatter for each combination of the swept values that are not drawn; empty where nothing is drawn."""
+    """Scatter for each combination of the swept values that are not drawn; empty if nothing is drawn."""
     curves = response.curves
     return [
         _of(
@@ -67,7 +67,7 @@ def scatter(response: Response) -> list[Scatter]:
 
 
 def groups(response: Response) -> list[tuple[dict[str, float], list[int]]]:
-    """Swept values that are not drawn, and the places of the curves with them; none if nothing is drawn."""
+    """Swept values that are not drawn, and the numbers of their curves; empty if nothing is drawn."""
     if not response.drawn:
         return []
     found: dict[tuple[float, ...], list[int]] = {}
@@ -99,14 +99,14 @@ def _of(parameters: dict[str, float], curves: Sequence[Curve], draws: int, dofs:
 
 
 def _stays(peak: Peak) -> float:
-    """Whether the motion is stable at a peak; what does not move has none that could be lost."""
+    """Stability of the motion at a peak; a degree of freedom that does not move counts as stable."""
     return 1.0 if peak.amplitude == 0.0 else peak.stable
 
 
 def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_tolerance) -> float:
-    """Frequency of the first jump in a direction; NONE if there is none, NaN where it may be an earlier one.
+    """Frequency of the first jump in a direction; NONE if there is none, NaN if it may be an earlier one.
 
-    That no motion is stable where the sweep begins is no jump.
+    If no motion is stable where the sweep begins, that is not a jump.
     """
     extract, ahead = curve.extract or extract_of(curve), 1.0 if sweep == "up" else -1.0
     met, begin = extract.swept, extract.ends[0 if sweep == "up" else 1]
@@ -120,7 +120,7 @@ def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_toler
 
 
 def draws_beyond(percent: float) -> int:
-    """Least number of draws of which one lies beyond a percentile; of fewer it is no more than an extreme.
+    """Least number of draws of which one lies beyond a percentile; with fewer it would be an extreme.
 
     >>> [draws_beyond(percent) for percent in PERCENTS]
     [20, 4, 2, 4, 20]
@@ -129,7 +129,7 @@ def draws_beyond(percent: float) -> int:
 
 
 def percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
-    """Percentiles (percent, column) of each column, ignoring NaN; NaN where there are too few values.
+    """Percentiles (percent, column) of each column, ignoring NaN; NaN if there are too few values.
 
     >>> percentiles(np.arange(5.0)[:, None]).T.tolist()
     [[nan, 1.0, 2.0, 3.0, nan]]

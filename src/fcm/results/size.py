@@ -1,4 +1,4 @@
-"""Estimates the size of a scene's results from its numbers of curves, contacts and outputs."""
+"""Estimate the size of a scene's results from its numbers of curves, contacts and outputs."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ NUMBER = 8  # bytes
 
 
 class SizeOptions(Frozen):
-    """Options on the counts of numbers and bytes from which the size of results is estimated."""
+    """Options on the numbers and bytes from which the size of results is estimated."""
 
     of_curve: int = 3000  # bytes of a curve without its points: names, peaks and arrays
-    of_point: int = 4  # numbers of a point itself: frequency, stability, two errors
+    of_point: int = 4  # numbers of a point: frequency, stability, two errors
     # numbers of each degree of freedom at a point: amplitude, fundamental, phase, mean, two errors
     of_dof: int = 6
     # numbers of each contact at a point: five of its loop, four of its cycle, its states
     of_contact: int = 12
-    kept_of_peaks: int = 6  # about the points kept of a curve of which only peaks are kept
+    kept_of_peaks: int = 6  # about the points kept of a curve without its points
     of_cycle: int = 3  # numbers of a cycle of a schedule, and as many for each degree of freedom
     matrices: int = 3  # matrices (unknown, unknown) of a balance: derivatives, a copy, factors
     few_modes: float = 0.5  # modes over ports below which the balance's matrices are condensed to the modes
@@ -29,7 +29,7 @@ class SizeOptions(Frozen):
 def least_points(
     scene: Scene, peaks_only: bool, options: SizeOptions | None = None, curves: int | None = None
 ) -> int:
-    """Points of all curves that are kept, at the least; of as many curves where they are not made yet.
+    """Least number of points that are kept of all curves; curves: their number, if they are not made yet.
 
     >>> from fcm import load_scene
     >>> least_points(load_scene("yang1998"), peaks_only=False)
@@ -51,7 +51,7 @@ def bytes_of_results(
 ) -> float:
     """Lower bound of the bytes of curves and motions, in memory and as many again in a file.
 
-    The curves are those of the scene, or as many where they are not made yet.
+    curves is their number, if they are not made yet.
 
     >>> from fcm import load_scene
     >>> scene = load_scene("yang1998")
@@ -73,7 +73,7 @@ def bytes_of_results(
 
 
 def bytes_of_matrices(scene: Scene, harmonics: Sequence[int], options: SizeOptions | None = None) -> float:
-    """Bytes of the matrices of the balance; 0 where they are condensed to the modes.
+    """Bytes of the matrices of the balance; 0 if they are condensed to the modes.
 
     >>> from fcm import load_scene
     >>> bytes_of_matrices(load_scene("yang1998"), (1, 2, 3))

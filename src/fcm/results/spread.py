@@ -1,4 +1,4 @@
-"""Median and scatter of what was computed over random draws, for each value that was not drawn."""
+"""Median and scatter of results over random draws, for each combination of values that are not drawn."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from fcm.results.scatter import OUTER, draws_beyond
 
 
 class Spread(Frozen):
-    """The middle of some draws, and how far they scatter."""
+    """The median of some draws, and their scatter."""
 
     count: int
     low: float
     median: float
     high: float
-    percents: bool  # whether the ends are the outer of `PERCENTS`; else they are the extremes
+    percents: bool  # whether the ends are the outer of `PERCENTS`; otherwise they are the extremes
 
 
 def spread_of(values: FloatArray) -> Spread:
-    """The spread of values (draw,), ignoring NaN: by percentiles, or of few draws from end to end.
+    """The spread of values (draw,), ignoring NaN: between percentiles, or for few draws between extremes.
 
     >>> spread_of(np.arange(3.0))
     Spread(count=3, low=0.0, median=1.0, high=2.0, percents=False)
@@ -57,9 +57,9 @@ def spreads_of(
     drawn : collection of str
         The keys whose values are random draws.
     quantities : sequence of (curve,) array
-        What the spreads are of.
+        Quantities of which the spreads are computed.
     counted : (curve,) array
-        Which curves count.
+        Mask of the curves that are included.
 
     >>> swept = {"mu": np.array([0.1, 0.1, 0.2]), "n_0": np.array([9.0, 11.0, 10.0])}
     >>> found = spreads_of(swept, ("n_0",), [np.array([3.0, 5.0, 7.0])], np.ones(3, dtype=bool))

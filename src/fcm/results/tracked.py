@@ -1,4 +1,4 @@
-"""Special points of a response as curves in a number of its scene, and optima: what runs of these yield."""
+"""Results of tracking: special points of a response as curves over a number of its scene, and optima."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from fcm.units import in_unit
 
 
 class TrackedError(Frozen):
-    """Estimated effect of the harmonics left out at a point of a tracked curve; NaN where unknown.
+    """Estimated effect of the harmonics left out at a point of a tracked curve; NaN if unknown.
 
-    relative is of the amplitude of a peak, else of the frequency; number, at a turn alone, is by how much
-    the number would be another there.
+    relative is the relative error of the amplitude of a peak, otherwise of the frequency. number, only at a
+    turn, is the error of the number there.
     """
 
     point: int
@@ -30,20 +30,20 @@ class TrackedError(Frozen):
 class TrackedCurve(Frozen):
     """One tracked curve, points in the order along it; frequencies in rad/s."""
 
-    parameters: dict[str, float]  # swept values of the curve of the scene that it belongs to
+    parameters: dict[str, float]  # swept values of the scene's curve to which it belongs
     what: str  # "fold", "peak of u", "slip of shroud", ...
     number: FloatArray  # (point,)
     frequency: FloatArray  # (point,)
     amplitude: FloatArray  # (point, dof)
-    corner: npt.NDArray[np.str_]  # (point,) where the point is a corner of the response: of what
+    corner: npt.NDArray[np.str_]  # (point,) which corner the point is, if it is one
     turn: npt.NDArray[np.bool_]  # (point,) where the number turns back
-    trough: npt.NDArray[np.bool_]  # (point,) of a peak that is none, but a least amplitude
-    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is unknown
-    closings: tuple[tuple[int, str], ...]  # points where it turns, and what they are
+    trough: npt.NDArray[np.bool_]  # (point,) where a tracked peak is a minimum of amplitude
+    stable: FloatArray  # (point,) 1 where the motion is stable, 0 where not, NaN if unknown
+    closings: tuple[tuple[int, str], ...]  # points where it turns, and their kind
     complete: bool
     reason: str
     errors: tuple[TrackedError, ...] = ()
-    undetermined: int = 0  # points at which a contact never slips and another may feel it
+    undetermined: int = 0  # points where a contact never slips and another may feel it
 
     def summary(self, unit: str) -> dict[str, Any]:
         """Entries of the tracked curve for JSON."""
@@ -79,7 +79,7 @@ class TrackedCurve(Frozen):
         }
 
     def _stability(self, unit: str) -> dict[str, Any]:
-        """Stretches of the curve on which the motion is not stable, or not known to be; troughs apart."""
+        """Stretches of the curve with unstable motions, or with unknown stability; without troughs."""
         fields = {"not_stable": self.stable == 0.0, "stability_untold": np.isnan(self.stable)}
         out = {}
         for name, where in fields.items():
@@ -96,10 +96,10 @@ class TrackedCurve(Frozen):
 
 
 class NearlyLeast(Frozen):
-    """Values of a number with which the greatest peak is at most a share above the least.
+    """Values of a number with which the greatest peak exceeds the least one by at most a share.
 
-    low_known, high_known : whether it is more beyond; else the peaks were not followed further.
-    higher : on either side the next value at which a higher peak ends, and how many times the least it is
+    low_known, high_known : whether it exceeds that beyond the end; otherwise the peaks were not followed on.
+    higher : on either side the next value at which a higher peak ends, and its ratio to the least
     """
 
     share: float
@@ -111,34 +111,34 @@ class NearlyLeast(Frozen):
 
 
 class Optimal(Frozen):
-    """The least of the greatest of some peaks."""
+    """The least value of the greatest of some peaks."""
 
     parameters: dict[str, float]
-    values: dict[str, float]  # of the numbers chosen
+    values: dict[str, float]  # of the chosen numbers
     minimised: tuple[str, ...]
     value: float
     active: tuple[tuple[str, float], ...]  # degrees of freedom with the greatest peaks, and their frequencies
     kind: str  # "smooth", "kink", "corner", "end", "bound", "flat", "trials", "unfinished"
     harmonics: tuple[int, ...]
-    error: float = np.nan  # of the value, estimated, relative
-    between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
-    tried: tuple[tuple[float, float], ...] = ()  # values, and the greatest peak there, likewise
-    stable: tuple[float, ...] = ()  # of each of the active, as of a `Peak`
-    residual: tuple[float, ...] = ()  # likewise
-    fewer: Optimal | None = None  # what was found with fewer harmonics before
+    error: float = np.nan  # estimated relative error of the value
+    between: tuple[float, float] | None = None  # neighbouring numbers, if it was found by trials
+    tried: tuple[tuple[float, float], ...] = ()  # numbers tried, and the greatest peak there, by trials
+    stable: tuple[float, ...] = ()  # stability of each of the active, see `Peak`
+    residual: tuple[float, ...] = ()  # residual of each of the active, see `Peak`
+    fewer: Optimal | None = None  # optimum found with fewer harmonics before
     flat: dict[str, tuple[float, float]] = field(
         default_factory=dict
     )  # between which the peaks do not depend
     higher: tuple[str, float] | None = (
-        None  # what of the minimised the response there has higher, not followed
+        None  # which minimised quantity is higher in the response there, unfollowed; and its value
     )
-    # estimated, relative, of the number at which a higher peak ends; by trials, of a higher peak next to the
-    # least. 0 where there is none
+    # estimated relative error of the number at which a higher peak ends; by trials, of a higher peak next to
+    # the least; 0 without one
     end_error: float = 0.0
-    beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
-    leaves_range: float = np.nan  # [rad/s] where that peak, or the least, leaves the range of frequencies
+    beside: dict[str, float] = field(default_factory=dict)  # numbers at which that peak still exists
+    leaves_range: float = np.nan  # [rad/s] where that peak, or the least, leaves the frequency range
     nearly: NearlyLeast | None = None  # the numbers around it with which the peak is hardly greater
-    # ranges of the number in which the greatest tracked peak is higher and unstable, and that peak
+    # ranges of the number in which the greatest tracked peak is higher but unstable, and that peak
     unstable: tuple[tuple[float, float, float], ...] = ()
 
     def summary(self, unit: str) -> dict[str, Any]:
@@ -177,7 +177,7 @@ class Optimal(Frozen):
 
 @dataclass
 class Tracking:
-    """Result of tracking; `key` is the number over which the curves are followed."""
+    """Result of tracking; `key` is the number along which the curves are followed."""
 
     key: str
     what: str
@@ -187,18 +187,18 @@ class Tracking:
     optima: list[Optimal] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     interrupted: bool = False
-    # values of the number and frequencies [rad/s] where the ordinary curves begun from may lack branches
+    # values of the number and frequencies [rad/s] at which the initial response curves may lack branches
     uncertain_at: list[tuple[float, float]] = field(default_factory=list)
-    short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
+    short_of: str = ""  # why it misses the requested accuracy, or ''
 
     @property
     def complete(self) -> bool:
-        """Whether every curve was followed to its end; of an optimum, whether nothing is known against it."""
+        """Whether every curve was followed to its end; for an optimum, whether there are no problems."""
         followed = self.what == "optimum" or all(curve.complete for curve in self.curves)
         return followed and not self.problems
 
     def is_lower(self, one: TrackedCurve, dofs: Sequence[str]) -> bool:
-        """Whether a curve of peaks that ends early lies below complete ones of the same, all along it."""
+        """Whether an incomplete curve of peaks lies below complete curves of the same peak all along it."""
         dof = one.what.removeprefix("peak of ")
         if one.complete or dof == one.what or dof not in dofs:
             return False
@@ -208,7 +208,7 @@ class Tracking:
         return all(any(_height(other, column, s) > height for other in same) for s, height in points)
 
     def summary(self, unit: str, dofs: Sequence[str] = ()) -> dict[str, Any]:
-        """Entries of the tracking for JSON; dofs: those that amplitudes are of."""
+        """Entries of the tracking for JSON; dofs: names of the columns of amplitudes."""
         return {
             "what": self.what,
             "over": self.key,
@@ -226,7 +226,7 @@ class Tracking:
 
 
 def _height(curve: TrackedCurve, column: int, s: float) -> float:
-    """The greatest amplitude of a curve at a number, by its chords, troughs apart; -inf where it has none."""
+    """The greatest amplitude of a curve at a number, by its chords without troughs; -inf if there is none."""
     first, last = curve.number[:-1], curve.number[1:]
     over = (np.minimum(first, last) <= s) & (s <= np.maximum(first, last))
     over &= ~(curve.trough[:-1] | curve.trough[1:])

@@ -1,4 +1,4 @@
-"""Meanings of the variables of tracked curves and optima: dimensions, values and units."""
+"""The variables of tracked curves and optima: dimensions, values, meanings and units."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcm.units import CF_UNIT, in_unit, unit_of_number
 
 KINDS = "smooth, kink of equal peaks, corner of the response, end of a higher peak"
 WHAT = "what of the response is tracked"
-MEANINGS = {  # of what is known of each point of a tracked curve
+MEANINGS = {  # of the variables of points of a tracked curve
     "number": "tracked value of {key}",
     "frequency": "excitation frequency of the tracked point",
     "amplitude": "half the peak-to-peak displacement at the tracked point",
@@ -28,7 +28,7 @@ MEANINGS = {  # of what is known of each point of a tracked curve
 
 
 def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Field]:
-    """The curves on dimensions track, tracked (padded); optima on optimum, varied."""
+    """Variables of the curves on dimensions track, tracked (padded); of the optima on optimum, varied."""
     out: dict[str, Field] = {}
     if tracking.curves:
         out |= _curves(response, tracking)
@@ -66,20 +66,20 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
 
 
 def tracked_names(tracking: Tracking | None) -> dict[str, str]:
-    """The variable of each swept value of the tracked curves, by its key in the scene."""
+    """The variable name of each swept value of the tracked curves, by its key in the scene."""
     curves = [] if tracking is None else tracking.curves
     names = variable_names(curves[0].parameters) if curves else {}
     return {key: f"track_{name}" for key, name in names.items()}
 
 
 def _unit_of(key: str, response: Response) -> dict[str, str]:
-    """The attribute of a number's unit, where it is known."""
+    """The attribute of a number's unit, if it is known."""
     unit = unit_of_number(key, *response.units, CF_UNIT[response.frequency_unit])
     return {"units": unit} if unit else {}
 
 
 def _errors(tracking: Tracking, unit: dict[str, str]) -> dict[str, Field]:
-    """Variables of the estimated effect of the harmonics left out, where it was estimated."""
+    """Variables of the effect of the harmonics left out, where it was estimated."""
     told = [np.full((3, curve.number.size), np.nan) for curve in tracking.curves]
     for out, curve in zip(told, tracking.curves, strict=True):
         for one in curve.errors:
@@ -146,7 +146,7 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
 
 
 def padded(values: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Arrays of different lengths as rows of one, with NaN, or empty text, at their ends."""
+    """Arrays of different lengths as rows of one, padded with NaN, or with empty text."""
     longest = max(len(one) for one in values)
     text = values[0].dtype.kind == "U"
     kind: Any = np.result_type(*values) if text else np.float64

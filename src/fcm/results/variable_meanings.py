@@ -29,7 +29,7 @@ CYCLE = (  # of Curve.cycle
 )
 CYCLE_ERROR = "estimated error of {}, relative; inf where it is 0 and with more harmonics is not"
 
-EXACT = {  # meanings that differ where the curves are of exact periodic solutions
+EXACT = {  # meanings that differ for curves of exact periodic solutions
     "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
     "S separation",
     "table_error": "0: no table was used",
@@ -37,7 +37,7 @@ EXACT = {  # meanings that differ where the curves are of exact periodic solutio
     "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle; "
     "nan where repeats is 0",
 }
-ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
+ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables of such curves only
     "closure_error": (
         (),
         {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
@@ -84,15 +84,15 @@ FORCES = (
 ENERGIES = ("dissipated_energy", "peak_dissipated_energy")
 
 
-_KEPT = re.compile(r"[A-Za-z][A-Za-z0-9_.+@-]*")  # netCDF's own rule, before it took other signs as well
+_KEPT = re.compile(r"[A-Za-z][A-Za-z0-9_.+@-]*")  # netCDF's own rule, before it admitted other characters
 _OTHER = re.compile(r"[^A-Za-z0-9_.+@-]")
 
 
 def variable_names(keys: Iterable[str]) -> dict[str, str]:
-    """A name for each key, all different, that netCDF, CF and a list of names parted by blanks can hold.
+    """A distinct name for each key that is valid in netCDF, in CF, and in a list separated by blanks.
 
-    A key that is such a name stays as it is. Else each other sign becomes an underscore, and a number ends
-    what would be there twice; the key itself belongs in an attribute then. A letter begins every name.
+    A key that is such a name is unchanged. Otherwise each invalid character becomes an underscore, a number
+    distinguishes equal names, and a letter begins the name; the key itself then belongs in an attribute.
 
     >>> variable_names(["contact.left shroud.n_0", "contact.left_shroud.n_0", "1/x"])
     {'contact.left shroud.n_0': 'contact.left_shroud.n_0_2', 'contact.left_shroud.n_0': \

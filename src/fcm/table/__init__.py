@@ -1,4 +1,4 @@
-"""Tables of the Fourier coefficients: an atlas of coordinates; built, stored, looked up, measured."""
+"""Tables of the Fourier coefficients on an atlas of coordinates: building, storing, looking up, measuring."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Table", "TableError", "build_table", "open_table"]
 
-_HOME = {"Table": "lookup", "build_table": "build"}  # what opening a table does not need
+_HOME = {"Table": "lookup", "build_table": "build"}  # not needed to open a table
 
 __getattr__ = on_demand(__name__, _HOME)
 
 
 class TableError(ValueError):
-    """A file that is not a sound table; the message says which file and why."""
+    """Raised for a file that is not a sound table; the message says which file and why."""
 
 
 def open_table(path: str | Path | None = None) -> Table:

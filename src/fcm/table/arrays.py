@@ -1,9 +1,9 @@
-"""The arrays of a table file, and the reduced coefficients that they stand for.
+"""The arrays of a table file, and their conversion from and to reduced coefficients.
 
-A table is one grid of nodes (level, variation, phase). Levels run from fully open (n0_bar = -b_bar) through
+A table is one grid of nodes (level, variation, phase). Levels go from fully open (n0_bar = -b_bar) through
 separation to its onset (n0_bar = b_bar), and on through slip to the slip limit. At every node the file has
-n0_bar, b_bar, phi and the coefficients F_b, F_s, F_c. Where F over the factor that `atlas` takes out cannot
-be had from these, because both vanish, the file has it besides: ``ratio`` on b_bar = 0 and ``slope`` in slip.
+n0_bar, b_bar, phi and the coefficients F_b, F_s, F_c. Reduced coefficients are F over the factor of `atlas`.
+Where both vanish, the file has the reduced ones as well: ``ratio`` on b_bar = 0 and ``slope`` in slip.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ for _k, _what in COEFFICIENTS.items():
 def encode(separation: FloatArray, slip: FloatArray, part: TablePart | None = None) -> Arrays:
     """The arrays of the file, from the reduced coefficients of the two charts, shapes (3, nu, nx, nz).
 
-    A chart of which the part has no node has no arrays of its own.
+    A chart without nodes in the part has no arrays of its own.
     """
     from fcm.contact import fourier_coefficients
     from fcm.table.nodes import all_nodes
@@ -66,7 +66,7 @@ def encode(separation: FloatArray, slip: FloatArray, part: TablePart | None = No
 
 
 def decode(arrays: Arrays, part: TablePart) -> tuple[FloatArray, FloatArray]:
-    """The reduced coefficients of the two charts: the inverse of `encode`, but for rounding."""
+    """The reduced coefficients of the two charts: the inverse of `encode`, up to rounding."""
     F = np.stack([arrays[f"F_{name}"] for name in COEFFICIENTS])
     levels = part.separation[1] - part.separation[0]
     separation = np.empty((3, levels, *F.shape[2:]))
@@ -83,7 +83,7 @@ def decode(arrays: Arrays, part: TablePart) -> tuple[FloatArray, FloatArray]:
 
 
 def expected(part: TablePart) -> set[str]:
-    """The variables that a file with these nodes has."""
+    """The variables of a file with the nodes of a part."""
     left_out = {"ratio": part.variation[0] > 0 or part.separation[1] == 0, "slope": part.slip[1] == 0}
     return {key for key in VARIABLES if not left_out.get(key.split("_")[0], False)}
 

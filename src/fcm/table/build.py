@@ -18,7 +18,7 @@ from fcm.table.options import ERROR_OPTIONS
 from fcm.table.partial_table import TablePart
 from fcm.table.tabulated import Resolution
 
-BUILT, MEASURED = 0.25, 0.95  # shares of the work done, for the progress
+BUILT, MEASURED = 0.25, 0.95  # shares of the work that are then done
 
 Progress = Callable[[float, str], None]
 
@@ -36,23 +36,23 @@ def build_table(
     Parameters
     ----------
     path : str or Path
-        The file to write, netCDF. It is there whole or not at all.
+        The netCDF file to write. It is written completely or not at all.
     resolution : tuple of int
         Nodes along u in separation, along u in slip, along x, along z (see `fcm.table.atlas`), each 5 or
         more.
     points : int
-        At how many points the error is measured.
+        Number of points at which the error is measured.
     progress : callable, optional
-        Called with the share of the work done, from 0 to 1, and what is being done.
+        Called with the share of the work done, from 0 to 1, and a text.
     history : str
-        What made the table, for the file.
+        Origin of the table, recorded in the file.
     part : TablePart, optional
-        Only these nodes, of the same resolution; elsewhere the table then answers with the closed form.
+        The nodes to build, all by default. Elsewhere the table evaluates the closed form.
 
     Raises
     ------
     ValueError
-        If a table of the resolution cannot be made.
+        If no table of the resolution can be made.
     OSError
         If the file cannot be written.
     """
@@ -97,7 +97,7 @@ def charts(
 
 
 def _reduced_separation(nodes: Nodes, first: int) -> FloatArray:
-    """G = F (1 + b) / b; before the first x left undone, as x = 0 is the limit b -> 0."""
+    """G = F (1 + b) / b from the index `first` along x on; before it 0, as x = 0 is the limit b -> 0."""
     G = np.zeros((3, *nodes.b_bar.shape))
     n0, b, phi = (field[:, first:] for field in nodes)
     G[:, :, first:] = np.stack(fourier_coefficients(n0, b, phi)) * ((1.0 + b) / b)

@@ -10,14 +10,14 @@ from fcm.table.atlas import FloatArray
 def vanishing_variation(delta: FloatArray, phi: FloatArray) -> FloatArray:
     r"""Limit of (F_b, F_s, F_c) / b_bar as b_bar -> 0 at fixed n0 / b = cos(delta), shape (3, ...).
 
-    The load is so small that the contact slips whenever it is closed, f = sign(cos(theta)) n. They are
-    integrals of nu + sin(theta + phi), nu = cos(delta), between the ends of contact and the turning points of
-    the motion.
+    The load is so small that the contact slips whenever it is closed, f = sign(cos(theta)) n. The
+    coefficients are integrals of nu + sin(theta + phi), nu = cos(delta), between the ends of contact and the
+    turning points of the motion.
 
     Parameters
     ----------
     delta : ndarray
-        pi less half the contact duration, 0 (the onset of separation) to pi (fully open) [rad].
+        pi minus half the contact duration, 0 (the onset of separation) to pi (fully open) [rad].
     phi : ndarray
         Phase in [0, pi], of the same shape [rad].
 

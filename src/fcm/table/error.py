@@ -17,12 +17,12 @@ from fcm.table.options import ERROR_OPTIONS, MAP_OPTIONS
 REGIMES = ("open", "separation", "slip", "stick")
 NAMES = ("F_b", "F_s", "F_c")
 
-Progress = Callable[[float], None]  # with the share done
+Progress = Callable[[float], None]  # called with the share done
 Sampler = Callable[[int, int], tuple[FloatArray, FloatArray, FloatArray]]  # of so many points, with a seed
 
 
 class Interpolant(Protocol):
-    """Protocol of what can be measured: a `Table`, or anything that is called like one."""
+    """Protocol of tables whose error can be measured: a `Table`, or anything callable like one."""
 
     def __call__(
         self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
@@ -30,11 +30,12 @@ class Interpolant(Protocol):
 
 
 def sample(count: int, seed: int = ERROR_OPTIONS.seed) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Points n0_bar, b_bar, phi over all regimes, a part of them crowded into every corner.
+    """Points n0_bar, b_bar, phi over all regimes, some of them crowded into every corner.
 
-    b is uniform in b/(1+b), uniform in log from 1e-6 to 1e6, or within 1e-6 to 1 of b = 1; phi is uniform in
-    (-pi, pi) or within 1e-6 to 1 of a multiple of pi; n0 lies between -b and b (uniform in the contact
-    angle), between b and the slip limit, or within 1e-9 to 1 of one of the three boundaries, or beyond them.
+    b is uniform in b/(1+b), uniform in its logarithm from 1e-6 to 1e6, or within 1e-6 to 1 of b = 1. phi is
+    uniform in (-pi, pi) or within 1e-6 to 1 of a multiple of pi. n0 lies between -b and b (uniform in the
+    contact angle), between b and the slip limit, or within 1e-9 to 1 of one of the three boundaries, on
+    either side.
     """
     random = np.random.default_rng(seed)
     b = _variation(count, random)
@@ -80,14 +81,14 @@ def error_of(
     progress: Progress | None = None,
     drawn: Sampler = sample,
 ) -> dict[str, Any]:
-    """Error of a table at `sample(points, seed)`, or at points drawn otherwise.
+    """Error of a table at the points of `sample(points, seed)`, or of another sampler.
 
     Returns
     -------
     dict
-        ``points``, ``seed``; ``max``, ``p999``, ``rms`` over all; and ``regimes``: for each of REGIMES
-        the number of points, and for each of F_b, F_s, F_c ``max``, ``p999`` (99.9 %), ``rms`` and ``worst``,
-        the point [n0_bar, b_bar, phi] of the greatest error. Errors are absolute [-].
+        ``points``, ``seed``; ``max``, ``p999``, ``rms`` over all points; and ``regimes``. For each of REGIMES
+        that has the number of points, and for each of F_b, F_s, F_c ``max``, ``p999`` (99.9 %), ``rms`` and
+        ``worst``, the point [n0_bar, b_bar, phi] of the greatest error. Errors are absolute [-].
     """
     n0, b, phi = drawn(points, seed)
     error = np.empty((3, points))
@@ -120,13 +121,13 @@ def _summary(error: FloatArray) -> dict[str, float]:
     }
 
 
-SAMPLED, SAMPLED_RMS = 2.0, 1.25  # factors by which another sample may find a greater maximum, and rms
+SAMPLED, SAMPLED_RMS = 2.0, 1.25  # factors by which maximum and rms may be greater in another sample
 
 
 def disagreement(recorded: dict[str, Any], again: dict[str, Any], fresh: dict[str, Any]) -> str:
-    """How a recorded error is not true: by one measured at the same points, and one at others; '' if it is.
+    """How a recorded error differs from one at the same points (again) or at others (fresh); '' if not.
 
-    Smaller errors than recorded are a disagreement too, at the same points.
+    At the same points a smaller error than recorded is a disagreement, too.
     """
     for path, was in _numbers(recorded):
         now = _at(again, path)
@@ -156,10 +157,10 @@ def _at(error: Any, path: tuple[str, ...]) -> float | None:
 
 
 def seam(table: Table) -> FloatArray:
-    """The greatest jumps of F_b, F_s, F_c (3,) where separation begins, at n0_bar = b_bar.
+    """The greatest jumps of F_b, F_s, F_c (3,) at the onset of separation, n0_bar = b_bar.
 
-    There the splines of two charts meet: of F / beta, and of (F - F_edge) / E, see `table.atlas`. At nodes
-    both give the same F; between nodes each errs in its own way. The closed form has no jump.
+    The splines of two charts meet there: of F / beta, and of (F - F_edge) / E, see `table.atlas`. At nodes
+    both give the same F; between nodes their errors differ. The closed form has no jump.
     """
     _, _, nodes_x, nodes_z = table.resolution
     x, z = (

@@ -13,11 +13,11 @@ from fcm.table.atlas import FloatArray
 from fcm.table.error import Interpolant
 from fcm.table.options import MAP_OPTIONS
 
-CORNER = np.geomspace(1e-4, 0.1, 25)  # and more of them, at so much from b_bar = 1
+CORNER = np.geomspace(1e-4, 0.1, 25)  # distances from b_bar = 1 of additional points
 
 
 class ErrorMap(Frozen):
-    """Absolute difference of one coefficient from its closed form, in the middle of each cell of a plane."""
+    """Absolute error of one coefficient against its closed form, at the midpoint of each cell of a plane."""
 
     coefficient: str
     plane: ParameterPlane
@@ -32,7 +32,7 @@ class ErrorMap(Frozen):
 def error_map(
     coefficient: str, plane: ParameterPlane, table: Interpolant, steps: tuple[int, int] = CELLS
 ) -> ErrorMap:
-    """The error of a table in one of COEFFICIENTS; its greatest is sought between the cells' middles too."""
+    """The error of a table in one of COEFFICIENTS; its maximum is also sought between the midpoints."""
 
     def error_at(n0: FloatArray, b: FloatArray) -> FloatArray:
         index = COEFFICIENTS.index(coefficient)
@@ -54,7 +54,7 @@ def _zoomed(
     at: tuple[float, float],
     step: tuple[float, float],
 ) -> tuple[tuple[float, float], float]:
-    """The greatest error near a point, within a step of it and then within smaller ones."""
+    """The greatest error near a point, within a step of it and then within ever smaller ones."""
     largest = 0.0
     for shrink in MAP_OPTIONS.finer ** -np.arange(float(MAP_OPTIONS.zooms)):
         axes = (
@@ -67,7 +67,7 @@ def _zoomed(
 
 
 def _points_near_boundaries(plane: ParameterPlane) -> tuple[FloatArray, FloatArray]:
-    """Points (j, i) that crowd towards b_bar = 1 and the lines between the regimes, where ridges are."""
+    """Points (j, i) graded towards b_bar = 1 and the lines between the regimes, where errors have ridges."""
     low, high = plane.b_range
     rows = np.concatenate([np.linspace(low, high, MAP_OPTIONS.rows), 1.0 + CORNER, 1.0 - CORNER])
     rows = np.unique(np.clip(rows, low, high))
@@ -79,7 +79,7 @@ def _points_near_boundaries(plane: ParameterPlane) -> tuple[FloatArray, FloatArr
 
 
 def _peaks(error: FloatArray, n0: FloatArray, b: FloatArray) -> list[tuple[float, float]]:
-    """The greatest errors of rows of points, of those rows that are worse than their neighbours."""
+    """Places of the greatest error in those rows of points that are worse than their neighbours."""
     of_row = error.max(axis=1)
     padded = np.pad(of_row, 1)
     rows = np.flatnonzero((of_row >= padded[:-2]) & (of_row >= padded[2:]))

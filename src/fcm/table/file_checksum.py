@@ -1,7 +1,7 @@
 """A seal on a file: the checksum of all its bytes, in a line after them.
 
-HDF5 takes no notice of what follows its own end of a file. It does take a damaged file for what it says, and
-may then return other numbers, or never return; so the seal is checked before the library sees the file.
+HDF5 ignores what follows its own end of a file. It does not notice damage, and may then return wrong numbers
+or never return. So the seal is checked before the library reads the file.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ def attach(path: Path) -> None:
 
 
 class BrokenSealError(ValueError):
-    """The bytes of a file are not those that were sealed."""
+    """Raised if the bytes of a file are not those that were sealed."""
 
 
 def check(path: Path) -> bytes | None:
-    """The content of a sealed file without its seal; None if it has no seal, as a file of another program.
+    """The content of a sealed file without its seal; None for a file without a seal, of another program.
 
     Raises
     ------
     BrokenSealError
-        If there is a seal, and the bytes before it have changed.
+        If there is a seal but the bytes before it have changed.
     OSError
         If the file cannot be read.
     """
@@ -50,7 +50,7 @@ def check(path: Path) -> bytes | None:
 
 
 def of(path: Path) -> str:
-    """The seal of a file; whatever is in its place if it has none."""
+    """The seal of a file, or the last bytes of a file without one."""
     with path.open("rb") as file:
         file.seek(max(file.seek(0, 2) - LENGTH, 0))
         return file.read().decode("latin-1")

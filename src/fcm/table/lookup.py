@@ -1,4 +1,4 @@
-"""Look-up: the three coefficients and the exact derivatives of their interpolant, anywhere."""
+"""Look-up of the three coefficients, and of the exact derivatives of their interpolant, at any point."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Table:
     error : dict
         The absolute error [-] measured when the table was built, see `fcm.table.error`.
     part : TablePart
-        The nodes that the table has; of one for a certain scene, not all.
+        The nodes of the table; a table for one scene has only a part of them.
     outside : int
-        Points looked up so far that these nodes do not answer for: they are from the closed form.
+        Number of points looked up so far outside the part, for which the closed form was evaluated.
 
     Examples
     --------
@@ -38,7 +38,7 @@ class Table:
     0.5000 0.3183
     """
 
-    coefficients: Coefficients  # of the splines, as from `spline.stack`
+    coefficients: Coefficients  # of the splines, see `spline.stack`
 
     def __init__(
         self,
@@ -47,7 +47,7 @@ class Table:
         error: dict[str, Any] | None = None,
         part: TablePart | None = None,
     ) -> None:
-        """Makes a table from reduced coefficients G of the two charts, shapes (3, n, nx, nz)."""
+        """Make a table from reduced coefficients G of the two charts, shapes (3, n, nx, nz)."""
         _, nodes_1, nodes_x, nodes_z = separation.shape
         self.part = TablePart.all_of((nodes_1, slip.shape[1], nodes_x, nodes_z)) if part is None else part
         self.resolution: Resolution = self.part.resolution
@@ -64,7 +64,7 @@ class Table:
 
     @classmethod
     def of_splines(cls, coefficients: Coefficients, error: dict[str, Any], part: TablePart) -> Table:
-        """Makes a table from the spline coefficients and attributes of another."""
+        """Make a table from the spline coefficients and attributes of another."""
         table = cls.__new__(cls)
         table.__setstate__(
             {
@@ -102,7 +102,7 @@ class Table:
         return numbers[:3], numbers[3:].reshape(3, 3, *numbers.shape[1:])
 
     def __getstate__(self) -> dict[str, Any]:
-        """State for another process: the arrays only, from which the rest is made there."""
+        """State for another process: only the arrays, from which the rest is made again."""
         return {name: value for name, value in vars(self).items() if name not in ("_cubic", "_frame")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -110,7 +110,7 @@ class Table:
         self._cubic, self._frame = Cubic(self.coefficients), frame(self.part)
 
     def law(self) -> Tabulated:
-        """The table as a law for one thread."""
+        """The table as a coefficient law for one thread."""
         return Tabulated(self._cubic, self.resolution, self._frame)
 
     def _many(
@@ -123,6 +123,6 @@ class Table:
 
 
 def _ends(nodes: tuple[int, int], count: int) -> tuple[str, str]:
-    """G is flat at the ends of an axis of so many nodes, not where a part of them is cut off."""
+    """End conditions of an axis with `count` nodes: flat at its ends, but free where nodes are cut off."""
     first, end = nodes
     return spline.FLAT if first == 0 else spline.FREE, spline.FLAT if end == count else spline.FREE

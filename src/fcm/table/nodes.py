@@ -13,7 +13,7 @@ from fcm.table.partial_table import TablePart
 from fcm.table.tabulated import Resolution
 
 PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}
-LEAST, MOST = 5, 2000  # nodes on an axis: what a spline needs, and more than anybody does
+LEAST, MOST = 5, 2000  # nodes on an axis: needed by a spline, and more than any use needs
 
 
 class Nodes(NamedTuple):
@@ -30,7 +30,7 @@ def unit(count: int) -> FloatArray:
 
 
 def problem(resolution: Resolution) -> str:
-    """Why no table can be made of a resolution; empty if one can."""
+    """Why no table of a resolution can be made; empty if it can."""
     nu_1, nu_2, nx, nz = resolution
     if not all(LEAST <= count <= MOST for count in resolution):
         return f"each axis has from {LEAST} to {MOST} nodes"
@@ -52,7 +52,7 @@ def separation_nodes(u: FloatArray, x: FloatArray, z: FloatArray) -> Nodes:
 
 
 def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = False) -> Nodes:
-    """Nodes of the slip chart; if resolved, moved to where its width is above the rounding errors of b."""
+    """Nodes of the slip chart; if resolved, moved to where its width exceeds the rounding errors of b."""
     U, X, Z = np.meshgrid(u, x, z, indexing="ij")
     phi = atlas.phi_phase(Z)
     b = atlas.b_variation(X, phi)
@@ -72,7 +72,7 @@ def axes(part: TablePart) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
 
 
 def all_nodes(part: TablePart) -> Nodes:
-    """The nodes of both charts one after the other, n0 rising from -b to the slip limit."""
+    """The nodes of both charts in sequence, with n0 rising from -b to the slip limit."""
     u_1, u_2, x, z = axes(part)
     parts = separation_nodes(u_1[::-1], x, z), slip_nodes(u_2, x, z)
     return Nodes(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))

@@ -1,7 +1,7 @@
-"""A part of a table: the nodes around those points of the atlas that a calculation has looked up.
+"""A part of a table: the nodes around the points of the atlas that a calculation has looked up.
 
-Splines through a part differ from those through all nodes near its cut sides only: by a factor of 0.27 less
-with every node from there. So a part has `NODE_OPTIONS.guard` nodes more than it answers for.
+Splines through a part differ from those through all nodes only near its cut sides: the difference falls by a
+factor of 0.27 with every node. So a part has `NODE_OPTIONS.guard` more nodes than it answers for.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class TablePart(NamedTuple):
         return levels * nx * nz
 
     def sample(self, count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Points n0_bar, b_bar, phi that it answers for, uniform in the coordinates of the charts."""
+        """Points n0_bar, b_bar, phi for which the part answers, uniform in the coordinates of the charts."""
         random = np.random.default_rng(seed)
         _, _, nx, nz = self.resolution
         x, z = (_uniform(random, count, *axis) for axis in ((self.variation, nx), (self.phase, nz)))
@@ -61,7 +61,7 @@ class TablePart(NamedTuple):
 
 
 def frame(part: TablePart) -> Frame | None:
-    """Ranges of the nodes of a part, in each chart along each axis; None if it has them all."""
+    """Ranges of the nodes of a part, in each chart along each axis; None if it has all nodes."""
     if part.whole:
         return None
     nu_1, nu_2, nx, nz = part.resolution
@@ -78,7 +78,7 @@ def frame(part: TablePart) -> Frame | None:
 
 
 def _answered(nodes: Range, count: int) -> tuple[int, int]:
-    """The first and last of these nodes, of so many in all, but for the guards at cut sides."""
+    """The first and last node, of `count` in all, for which the part answers: without guards at cut sides."""
     first, end = nodes
     if first == end:
         return 0, -1
@@ -91,14 +91,14 @@ def _uniform(random: np.random.Generator, count: int, nodes: Range, of: int) -> 
 
 
 class ChartRanges:
-    """Ranges of the charts of a resolution in which a table is evaluated."""
+    """Records the ranges of the charts in which a table is evaluated."""
 
     def __init__(self, resolution: Resolution) -> None:
         self.resolution = resolution
         self._low, self._high = np.full((2, 3), np.inf), np.full((2, 3), -np.inf)
 
     def note(self, n0: FloatArray, b: FloatArray, phi: FloatArray) -> None:
-        """Look-ups at points (point,)."""
+        """Record look-ups at points (point,)."""
         place = locate(np.stack((n0, b, phi)), self.resolution)
         first_slip = self.resolution[0] - 1 + NODES_BETWEEN
         slips = place.q[0] > first_slip - 1
@@ -109,7 +109,7 @@ class ChartRanges:
             self._high[chart] = np.maximum(self._high[chart], q.max(axis=1, initial=-np.inf))
 
     def part(self) -> TablePart | None:
-        """The nodes that it takes to answer the same again; None if none are needed."""
+        """The nodes that are needed to answer the same look-ups again; None if none are needed."""
         if not np.isfinite(self._low).any():
             return None
         nu_1, nu_2, nx, nz = self.resolution
@@ -124,7 +124,7 @@ class ChartRanges:
 
 
 def _around(low: float, high: float, count: int) -> Range:
-    """Nodes of an axis around an interval of it, margin and guards included."""
+    """Nodes of an axis around an interval, including margin and guards."""
     if low > high:
         return 0, 0
     more = NODE_OPTIONS.margin + NODE_OPTIONS.guard

@@ -1,8 +1,8 @@
-"""The shipped table with its splines as they are looked up, so that it is opened without decoding anything.
+"""The shipped table with the coefficients of its splines, which opens without decoding.
 
-Beside the netCDF file, which others read, lies one with the coefficients of its splines: 6 MB, read in 2 ms,
-where the netCDF file takes 60. `make tables` writes both; a copy that is damaged or of another table is not
-used.
+Next to the netCDF file, which other programs read, is a file with the spline coefficients: 6 MB, read in 2
+ms, while the netCDF file takes 60 ms. `make tables` writes both. A copy that is damaged or of another table
+is not used.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from fcm.table.lookup import Coefficients, Table
 from fcm.table.partial_table import TablePart
 
 DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
-SPLINES = ".splines"  # ending of the name
-HEADER, CHECK = 4096, 8  # bytes before the numbers; of them those of the checksum of the others
+SPLINES = ".splines"  # suffix of the file
+HEADER, CHECK = 4096, 8  # bytes before the numbers; bytes of these for the checksum of the others
 
 
 def write(table: Table, path: Path) -> None:
@@ -39,7 +39,7 @@ def write(table: Table, path: Path) -> None:
 
 
 def read(path: Path) -> Table | None:
-    """The table whose netCDF file has this path; None if its splines are not there, or not those."""
+    """The table whose netCDF file has this path; None if its splines are missing or of another table."""
     try:
         with path.with_suffix(SPLINES).open("rb") as file:
             check, text = file.read(CHECK), file.read(HEADER - CHECK)
@@ -60,7 +60,7 @@ def _check(text: bytes) -> bytes:
 
 
 def _sum(numbers: Coefficients) -> int:
-    """Sum over the bits of all numbers and their count: differs if a bit changes or a number is missing."""
+    """Sum over the bits of all numbers, and their count: differs if a bit changes or a number is missing."""
     return int(numbers.view(np.uint32).sum(dtype=np.uint64)) + numbers.size
 
 

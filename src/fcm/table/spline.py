@@ -33,7 +33,7 @@ def interpolate(values: FloatArray, ends: tuple[tuple[str, str], ...]) -> FloatA
 def _along(axis: int, matrix: FloatArray, values: FloatArray) -> FloatArray:
     """Product of a matrix with one axis of values, in parts too small for BLAS to start threads.
 
-    Where several programs share the processor, threads that wait for each other take ten times as long.
+    If several programs share the processor, threads that wait for each other take ten times as long.
     """
     before, after = values.shape[:axis], values.shape[axis + 1 :]
     width = max(1, NODE_OPTIONS.serial_multiplications // matrix.size)
@@ -63,11 +63,10 @@ def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
 
 
 def stack(*parts: FloatArray) -> npt.NDArray[np.float32]:
-    """Coefficients of several splines one after the other along the first axis, the three of a node together.
+    """Coefficients of several splines in sequence along the first axis, the three of a node together.
 
-    In single precision, as the values are in the file: half of the memory that look-ups wait for.
-
-    A point on the last node of a row of cells reads beyond it, with weight 0: hence the zeros at the end.
+    They are in single precision, as the values in the file, which halves the memory traffic of look-ups. A
+    point on the last node of a row of cells reads beyond it with weight 0; hence the zeros at the end.
     """
     planes = sum(part.shape[1] for part in parts)
     stacked = np.zeros((planes + 2, *parts[0].shape[2:], 3), dtype=np.float32)

@@ -1,4 +1,4 @@
-"""The table file: netCDF-4 after the CF conventions, written whole or not at all, checked when read."""
+"""The table file: netCDF-4 with CF conventions, written completely or not at all, checked when read."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
 from fcm.table.partial_table import TablePart
 
-LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
-PART_LAYOUT = 2  # of a file with a part of the nodes, which fcm before it would have taken for all
+LAYOUT = 1  # increment whenever `decode` or `atlas` changes
+PART_LAYOUT = 2  # of files with a part of the nodes, which earlier versions would take for all
 TITLE = "Fourier coefficients of the friction force of a contact with variable normal load"
 COMMENT = (
     "Levels: the first level_open are with separation, from n0_bar = -b_bar (fully open) to n0_bar = b_bar. "
@@ -33,7 +33,7 @@ PART_COMMENT = (
     "past the last, along separation (from its onset), slip, variation and phase. Elsewhere fcm uses the "
     "closed form."
 )
-HDF5 = b"\x89HDF\r\n\x1a\n"  # begins every netCDF-4 file
+HDF5 = b"\x89HDF\r\n\x1a\n"  # first bytes of every netCDF-4 file
 REMEDY = "make it anew with fcm tabulate"
 
 
@@ -110,12 +110,12 @@ def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
 
 
 def _written(numbers: Iterable[int]) -> str:
-    """Numbers as text, as every table has had them written, whatever numpy's print options are."""
+    """Numbers as text, in the form that every table has, independent of numpy's print options."""
     return f"[{', '.join(f'np.int32({int(number)})' for number in numbers)}]"
 
 
 def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], TablePart]:
-    """The reduced coefficients of the two charts, the recorded error, and the nodes that the file has.
+    """The reduced coefficients of the two charts, the recorded error, and the nodes of the file.
 
     Raises
     ------
@@ -154,9 +154,9 @@ def _part(attributes: Mapping[str, Any]) -> TablePart:
 
 
 def _unsealed(path: Path) -> str:
-    """Sentence on a file without a valid seal.
+    """Text on a file without a valid seal.
 
-    The netCDF library may crash on such a file or run on without end, so it is not opened.
+    The file is not opened, as the netCDF library may crash on it or never return.
     """
     content = path.read_bytes()
     if TITLE.encode() in content:

@@ -1,8 +1,8 @@
-"""Layouts against each other: the error of a table, by its size and the time of a look-up.
+"""Comparison of layouts: the error of a table, by its size and the time of a look-up.
 
-*rectilinear*: a grid of F on a box in n0_bar, b_bar, phi, as everybody would make it; *regimes*: the atlas.
-Each with linear interpolation (scipy's) and cubic splines (ours), beside the closed form. All are measured at
-the same points, those of `fcm.table.error.sample` that lie in the box.
+*rectilinear* is the usual grid of F on a box in n0_bar, b_bar, phi; *regimes* is the atlas. Each is measured
+with linear interpolation (scipy's) and cubic splines (ours), and so is the closed form. All use the same
+points, those of `fcm.table.error.sample` that lie in the box.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ Progress = Callable[[float, str], None]
 
 
 class Row(NamedTuple):
-    """Result of one layout at one resolution: errors [-], and time [us] of a look-up and a point.
+    """Result of one layout at one resolution: errors [-], and time [us] of a small look-up and of a point.
 
-    The errors are the greatest, the 99.9 % and the rms one.
+    The errors are the maximum, the 99.9 % quantile and the rms.
     """
 
     layout: str
@@ -47,7 +47,7 @@ class Row(NamedTuple):
 
 
 def study(progress: Progress | None = None, options: StudyOptions = STUDY_OPTIONS) -> list[Row]:
-    """Measure every layout at every resolution; half a minute."""
+    """Measure every layout at every resolution; takes half a minute."""
     n0, b, phi = sample(options.points, seed=2024)
     inside = (np.abs(n0) <= options.box) & (b <= options.box)
     points = n0[inside], b[inside], phi[inside]
@@ -73,7 +73,7 @@ def study(progress: Progress | None = None, options: StudyOptions = STUDY_OPTION
 def _seconds(
     coefficients: Coefficients, points: tuple[FloatArray, ...], count: int, calls: int, repeats: int
 ) -> float:
-    """Least time of a look-up of this many points."""
+    """Least time [s] of a look-up of the first `count` points."""
     some = [x[:count] for x in points]
     best = np.inf
     for _ in range(repeats):
@@ -85,7 +85,7 @@ def _seconds(
 
 
 def _candidates(options: StudyOptions) -> Iterator[tuple[str, str, int, Coefficients]]:
-    """Layout, interpolation, nodes, and how to look up; a resolution at a time."""
+    """Yield layout, interpolation, number of nodes and look-up function, resolution by resolution."""
     for share in options.shares:
         resolution = _scaled(PRESETS["default"], share)
         nodes = (resolution[0] + resolution[1]) * resolution[2] * resolution[3]
@@ -105,7 +105,7 @@ def _scaled(resolution: Resolution, share: float) -> Resolution:
 
 
 def _box_shape(nodes: int) -> tuple[int, int, int]:
-    """Odd numbers of nodes, in the ratio of 4 to 2 to 1, of which there are about so many."""
+    """Odd numbers of nodes in the ratio of 4 to 2 to 1, with about `nodes` nodes in all."""
     side = (nodes / 8.0) ** (1.0 / 3.0)
     first, second, third = (2 * round(factor * side / 2) + 1 for factor in (4, 2, 1))
     return first, second, third
@@ -132,7 +132,7 @@ def _linear(axes: list[FloatArray], values: FloatArray) -> Callable[[FloatArray]
 
 
 def _fold(phi: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """phi modulo pi, and the sign that F_b takes with it."""
+    """phi modulo pi, and the sign of F_b that belongs to it."""
     turns, folded = np.divmod(phi, np.pi)
     return folded, 1.0 - 2.0 * np.mod(turns, 2.0)
 
@@ -166,7 +166,7 @@ def _box_cubic(values: FloatArray, box: float) -> Coefficients:
 
 
 def _regimes_linear(resolution: Resolution, separation: FloatArray, slip: FloatArray) -> Coefficients:
-    """The charts one behind the other along u, with a gap between them that nothing falls into."""
+    """The charts in sequence along u, with a gap between them that contains no point."""
     gap = np.zeros_like(separation[:, : NODES_BETWEEN - 1])
     values = np.concatenate((separation, gap, slip), axis=1)
     at = _linear([np.arange(float(count)) for count in values.shape[1:]], values)
@@ -181,7 +181,7 @@ def _regimes_linear(resolution: Resolution, separation: FloatArray, slip: FloatA
 
 
 def order(rows: list[Row], layout: str, interpolation: str) -> float:
-    """Power of the number of nodes along an axis with which the rms error falls."""
+    """Order of convergence of the rms error in the number of nodes along an axis."""
     chosen = [row for row in rows if (row.layout, row.interpolation) == (layout, interpolation)]
     nodes: npt.NDArray[np.float64] = np.log([row.nodes for row in chosen]) / 3.0
     return float(-np.polyfit(nodes, np.log([row.rms for row in chosen]), 1)[0])

@@ -1,12 +1,12 @@
 """Kernel: the coefficients of a table as a law, with the exact derivatives of their interpolant.
 
-A point is located on the atlas, whose coordinates are those of `atlas`, which has their inverses and says
-what they are for (`AtlasPoint`). Three tensor-product cubic B-splines are evaluated with their derivatives,
-see `spline`: for q = i + f a spline is the sum of c_k B(q - k) over k from i - 1 to i + 2, with the weights
+A point is located on the atlas by its coordinates (`AtlasPoint`); `atlas` explains these and has their
+inverses. `Cubic` evaluates three tensor-product cubic B-splines with their derivatives, see `spline`: for q =
+i + f a spline is the sum of c_k B(q - k) over k from i - 1 to i + 2, with the weights
 
     B = (1-f)^3/6, (4 - 6f^2 + 3f^3)/6, (1 + 3f + 3f^2 - 3f^3)/6, f^3/6
 
-(`Cubic`). The chain rule leads back to (n0_bar, b_bar, phi) (`Tabulated`).
+The chain rule leads back to (n0_bar, b_bar, phi) (`Tabulated`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ else:
     from fcm.contact.closed_form import PI, ClosedForm, CoefficientLaw
 
 Resolution = tuple[int, int, int, int]  # nodes along u in separation, u in slip, x, z
-NODES_BETWEEN = 3  # from the last node of separation to the first of slip in the stacked coefficients
+NODES_BETWEEN = 3  # distance of the last separation node and the first slip node in the stacked coefficients
 
 FOLD_Z = cython.declare(cython.double, constants.FOLD_Z)
 FOLD_U = cython.declare(cython.double, constants.FOLD_U)
@@ -38,17 +38,17 @@ LARGEST_B = cython.declare(cython.double, constants.LARGEST_B)
 HUGE_B = cython.declare(cython.double, constants.HUGE_B)
 SIN_FOLD_Z = cython.declare(cython.double, sin(constants.FOLD_Z))
 SIN_FOLD_U = cython.declare(cython.double, sin(constants.FOLD_U))
-TINY = cython.declare(cython.double, 1e-300)  # a divisor is at least that: none is 0
+TINY = cython.declare(cython.double, 1e-300)  # least divisor, in place of 0
 
 
 @cython.final
 @cython.cclass
 class AtlasPoint:
-    """F = base + scale G(u, x, z) at a point, base = (mean, closed, 0), and F_b to be multiplied by sign.
+    """A point of the atlas: F = base + scale G(u, x, z), base = (mean, closed, 0); F_b is multiplied by sign.
 
-    u, x and z are in nodes of the table, u through separation, then slip. ``u_n``, ``u_b``, ``u_phi`` and so
-    on are derivatives by n0_bar, b_bar, phi; those of u, x and z times scale. ``mean`` is the mean force of a
-    contact that does not slip, or just does, and ``closed`` is 1 where it does not open.
+    u, x and z are in nodes of the table, u through separation, then slip. ``u_n``, ``u_b``, ``u_phi`` and the
+    like are derivatives by n0_bar, b_bar, phi; those of u, x and z are multiplied by scale. ``mean`` is the
+    mean force of a contact at or above the slip limit; ``closed`` is 1 where the contact does not open.
     """
 
     def __init__(self, resolution: Resolution) -> None:
@@ -59,7 +59,7 @@ class AtlasPoint:
         self.near = NODE_OPTIONS.end_distance
 
     def find(self, n0: float, b: float, phi: float, gradient: bool) -> None:
-        """The place of a point, all finite, b not negative; the chain rule with the gradient only."""
+        """Locate a point (all finite, b not negative); with gradient, also for the chain rule."""
         phi = fmod(phi, 2.0 * PI)
         if phi < 0.0:
             phi += 2.0 * PI
@@ -80,13 +80,13 @@ class AtlasPoint:
             self.z_phi *= self.scale
 
     def set_phase(self, phi: float) -> None:
-        """Sines and cosines of the phase."""
+        """Set the sines and cosines of the phase."""
         self.sin_half, self.cos_half = sin(0.5 * phi), cosine(0.5 * phi)
         self.sin_phi = 2.0 * self.sin_half * self.cos_half
         self.cos_phi = (self.cos_half - self.sin_half) * (self.cos_half + self.sin_half)
 
     def geometry(self, b_bar: float) -> None:
-        """ell_1, ell_2 of (A9), low = ell_1 - b, high = ell_2 - b, width of slip (ell_1 + ell_2) / 2 - b.
+        """Set ell_1, ell_2 of (A9), low = ell_1 - b, high = ell_2 - b and width = (low + high) / 2 of slip.
 
         The width has full relative accuracy, however small it is.
         """
@@ -105,7 +105,7 @@ class AtlasPoint:
         self.width = total / (sum_1 + sum_2)
 
     def _variation(self, b: float) -> None:
-        """x, 0 at b = 0 and the last node at infinity, and its slopes; that by b is infinite at b = 0."""
+        """Set x (0 at b = 0, the last node at infinity) and its slopes; that by b is infinite at b = 0."""
         root: float = sqrt(min(b, LARGEST_B))
         s: float = atan(root) * (4.0 / PI) - 1.0
         cone: float = CONE * (self.sin_phi * self.sin_phi + TIP)
@@ -119,13 +119,13 @@ class AtlasPoint:
         self.x_phi = by_cone * self.sin_phi * self.cos_phi * self.span_x
 
     def _phase(self, phi: float) -> None:
-        """z and its slope, phi in [0, pi]."""
+        """Set z and its slope, for phi in [0, pi]."""
         sine: float = phi * (2.0 * SIN_FOLD_Z / PI) - SIN_FOLD_Z
         self.z = (asin(sine) * (0.5 / FOLD_Z) + 0.5) * self.span_z
         self.z_phi = SIN_FOLD_Z / (PI * FOLD_Z) / sqrt(1.0 - sine * sine) * self.span_z
 
     def _separation(self, n0: float, b: float, gradient: bool) -> None:
-        """n0 < b: F = b / (1 + b) G, and 0 for n0 <= -b; u is 0 at n0 = b, the last node at n0 = -b."""
+        """Set the place for n0 < b, where F = b / (1 + b) G; u is 0 at n0 = b, the last node at n0 = -b."""
         safe_b: float = max(b, TINY)
         bounded: float = max(n0, -safe_b)
         below: float = max((safe_b - bounded) / safe_b, self.near)  # 1 - n0 / b
@@ -153,7 +153,7 @@ class AtlasPoint:
             self.u_phi = self.scale_phi = self.mean_n = self.mean_b = self.mean_phi = 0.0
 
     def _slip(self, b: float, excess: float, gradient: bool) -> None:
-        """n0 = b + excess: F = F_edge + width G below the slip limit, F_edge above; t = sin(pi u / 2)^2."""
+        """Set u and F for n0 = b + excess: F_edge + width G in slip, F_edge above; t = sin(pi u / 2)^2."""
         share: float = min(excess, self.width) / max(self.width, TINY)
         t: float = min(max(share, self.near), 1.0 - self.near)
         root: float = sqrt(t)
@@ -161,7 +161,7 @@ class AtlasPoint:
         slips: cython.bint = excess < self.width
         self.u = atan2(root, rest) * (2.0 / PI) * self.span_2 + self.first_slip
         self.scale = self.width if slips else 0.0
-        # the mean force that is nearest to zero; below the slip limit that at the limit, for both bounds
+        # the admissible mean force nearest to zero; below the slip limit that at the limit, for both bounds
         reach: float = max(excess, self.width)
         least: float = self.high - reach
         self.mean, self.closed = min(max(0.0, least), max(reach - self.low, least)), 1.0
@@ -169,7 +169,7 @@ class AtlasPoint:
             self._slip_slopes(b, t, self.span_2 / (PI * root * rest) if slips else 0.0)
 
     def _slip_slopes(self, b: float, t: float, by_t: float) -> None:
-        """The chain rule in slip and stick; by_t is du/dt, 0 in stick."""
+        """Set the derivatives in slip and stick; by_t is du/dt, 0 in stick."""
         slips: cython.bint = by_t > 0.0
         b = min(b, HUGE_B)
         side: float = b * self.sin_phi
@@ -184,7 +184,7 @@ class AtlasPoint:
         self.u_phi = -t * width_phi * by_t
         self.scale_b = width_b if slips else 0.0
         self.scale_phi = width_phi if slips else 0.0
-        # how much of the mean force's derivative is that of the lower bound, and of the upper
+        # shares of the lower and of the upper bound in the derivative of the mean force
         at_low: float = 0.5 if slips else (1.0 if self.mean > 0.0 else 0.0)
         at_high: float = 0.5 if slips else (1.0 if self.mean < 0.0 else 0.0)
         self.mean_n = at_high - at_low
@@ -193,7 +193,7 @@ class AtlasPoint:
 
 
 class AtlasPoints(NamedTuple):
-    """Points of an atlas: F = base + scale G(q), F_b (not F_s, F_c) times sign."""
+    """Points of the atlas: F = base + scale G(q); F_b is multiplied by sign."""
 
     q: npt.NDArray[np.float64]  # (3, point), in nodes
     scale: npt.NDArray[np.float64]  # (point,)
@@ -202,7 +202,7 @@ class AtlasPoints(NamedTuple):
 
 
 def locate(points: cython.double[:, ::1], resolution: Resolution) -> AtlasPoints:
-    """Points as those of the atlas, rows (3, point) of n0_bar, b_bar, phi, all finite, b not negative."""
+    """Locate points on the atlas: rows (3, point) of n0_bar, b_bar, phi, all finite, b not negative."""
     i: cython.Py_ssize_t
     count: cython.Py_ssize_t = points.shape[1]
     rows = np.zeros((8, count))
@@ -256,7 +256,7 @@ class Cubic:
     def evaluate(
         self, u: float, x: float, z: float, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t
     ) -> None:
-        """Values of the three at (u, x, z), in nodes, to out[at:], then their derivatives by u, x and z."""
+        """Writes the three values at (u, x, z), in nodes, to out[at:], then the derivatives by u, x and z."""
         i: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, u)
         j: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, x)
         k: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, z)
@@ -319,15 +319,15 @@ class Cubic:
 
 
 LARGEST = cython.declare(cython.double, 1e300)  # of b_bar
-FARTHEST = cython.declare(cython.double, 2e300)  # of n0_bar: an infinite preload or gap is as this one
+FARTHEST = cython.declare(cython.double, 2e300)  # of n0_bar: an infinite preload or gap is limited to it
 
 
 @cython.final
 @cython.cclass
 class Frame:
-    """Ranges of chart coordinates for which a part of a table answers: low to high in nodes, rows (chart, 3).
+    """Ranges of chart coordinates, low to high in nodes (chart, 3), for which a part of a table answers.
 
-    ``here`` is added to nodes of all of the table (of the slip chart those from its first) for those of the
+    ``here`` converts nodes of the whole table (in the slip chart counted from its first) to nodes of the
     part.
     """
 
@@ -335,9 +335,9 @@ class Frame:
         self.low, self.high, self.here = low, high, here
 
     def within(self, place: AtlasPoint) -> cython.bint:
-        """Turns a place into one in the nodes of the part; whether it answers for it.
+        """Convert a place to the nodes of the part; return whether the part answers for it.
 
-        Where F needs no table, outside of both charts, any coordinates will do.
+        Outside of both charts F needs no table, and any coordinates serve.
         """
         chart: cython.Py_ssize_t = 1 if place.u > place.first_slip - 1 else 0
         u: float = place.u - chart * place.first_slip
@@ -355,10 +355,10 @@ class Frame:
 @cython.final
 @cython.cclass
 class Tabulated(CoefficientLaw):
-    """Look-up in splines over the nodes of a table, or of a frame of them, and then the closed form outside.
+    """Look-up in the splines of a table; outside the frame of a partial table, the closed form is evaluated.
 
-    Not to be used by two threads at a time: each makes its own from the same splines, which costs nothing.
-    ``outside`` counts the points that are from the closed form.
+    Two threads must not share it: each makes its own from the same splines, at no cost. ``outside`` counts
+    the points for which the closed form was evaluated.
     """
 
     def __init__(self, cubic: Cubic, resolution: tuple[int, int, int, int], frame: Frame | None) -> None:
@@ -392,7 +392,7 @@ class Tabulated(CoefficientLaw):
         out[at + 2] = self.place.scale * out[at + 2]
 
     def _chain(self, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
-        """Turns derivatives of G by the coordinates into derivatives of F by n0_bar, b_bar and phi."""
+        """Convert derivatives of G by the coordinates to derivatives of F by n0_bar, b_bar and phi."""
         by_u: cython.double[3] = [0.0, 0.0, 0.0]
         by_x: cython.double[3] = [0.0, 0.0, 0.0]
         by_z: cython.double[3] = [0.0, 0.0, 0.0]

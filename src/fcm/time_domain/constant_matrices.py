@@ -19,16 +19,17 @@ class Matrices(NamedTuple):
     Parameters
     ----------
     modal : tuple of arrays
-        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the steady forces, those of sin and cos
-        of each harmonic (2 waves, mode), and those that grow as omega^2 (2 waves, mode).
+        Squares of the modes' frequencies; 2 zeta omega_0; the steady forces, the forces of sin and cos of
+        each harmonic (2 waves, mode), and those that grow as omega^2 (2 waves, mode), all over the modal
+        masses.
     ports : tuple of arrays (contact, mode)
-        Shapes of u and of v, and the same divided by the modal masses.
+        Shapes of u and of v, then the same over the modal masses.
     law : array (5, contact)
-        mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
+        mu, k_u, k_v, n_0, and whether the contact can exert friction.
     springs : tuple of arrays (spring, mode)
-        Shapes of what springs resist, and the same times their stiffness divided by the modal masses.
+        Shapes along which springs act, and the same times stiffness over the modal masses.
     harmonics : tuple of int (waves,)
-        At which there are forces, after 1.
+        Harmonics of the forces, the first is 1.
     """
 
     modal: tuple[FloatArray, ...]
@@ -39,7 +40,7 @@ class Matrices(NamedTuple):
 
 
 def matrices_of(system: EquationsOfMotion) -> Matrices:
-    """The `Matrices` of a system, equal at every frequency."""
+    """The `Matrices` of a system, which are the same at every frequency."""
     modal, c = system.scene.modal, system.contacts
     law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
     return Matrices(
@@ -76,7 +77,7 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
         if one.open:  # the preload is missing
             steady += across * max(contact.n_0, 0.0)
             continue
-        steady -= across * min(contact.n_0, 0.0)  # a gap is not pressed
+        steady -= across * min(contact.n_0, 0.0)  # a gap does not press
         stretch, stiffness = [*stretch, across], [*stiffness, contact.k_v]
         if has_friction(contact):
             steady += along * (contact.k_u * one.rest)
@@ -86,9 +87,9 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def held_limits(system: EquationsOfMotion) -> FloatArray:
-    """Rows for the slip limit, or gap, of each held contact, and for its margin on either side.
+    """Rows for the slip limit (or gap) of each held contact, and for its margins on either side.
 
-    Rows of the state vector without the forces' angle, (3 held, linear).
+    The rows act on the state vector without the forces' angle, (3 held, linear).
     """
     rows = [_limits_of(system, one) for one in system.scene.held]
     return np.array(rows).reshape(3 * len(rows), system.linear)
@@ -113,7 +114,7 @@ def held_rows(system: EquationsOfMotion) -> FloatArray:
 
 
 def held_forces(system: EquationsOfMotion, one: HeldContact) -> tuple[FloatArray, FloatArray]:
-    """Rows of the state vector for the normal and friction force of a contact that is held closed."""
+    """Rows of the state vector for the normal and friction force of a contact held closed."""
     contact, shapes = one.contact, system.scene.modal.shapes
     load, force = np.zeros((2, system.linear))
     load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0

@@ -1,4 +1,4 @@
-"""The contact loads over cycles of an exact motion: greatest forces, way of the slip, energy."""
+"""The contact loads over cycles of an exact motion: greatest forces, slip path, energy."""
 
 from __future__ import annotations
 
@@ -12,20 +12,19 @@ from fcm.time_domain.cycle_measures import Scanned, scanned
 
 
 def contact_loads(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
-    """Greatest normal and friction force of each contact, its slip and its dissipated energy per period of
-    the force.
+    """Greatest normal and friction force of each contact, and its slip path and energy per forcing period.
 
     Parameters
     ----------
     cycles : sequence of Cycle
-        Those after which the motion repeats, or some of one that does not.
+        The cycles after which the motion repeats, or some cycles if it does not repeat.
     known : Scanned, optional
-        Extremes of the first.
+        Extremes over the first cycle.
 
     Returns
     -------
     (contact, 4) array
-        Two forces, a length, and the energy that the slip takes, each in the scene's units.
+        Two forces, a length, and the energy that the slip dissipates, in the scene's units.
 
     Examples
     --------
@@ -44,7 +43,7 @@ def contact_loads(cycles: Sequence[Cycle], known: Scanned | None = None) -> Floa
 
 
 def _of(cycle: Cycle, known: Scanned | None = None) -> FloatArray:
-    """Greatest forces of each contact, and its slip and energy over one whole cycle: (contact, 4)."""
+    """Greatest forces of each contact, and its slip path and energy, over one whole cycle: (contact, 4)."""
     system, each = cycle.system, len(cycle.system.contacts)
     least, greatest = (known or scanned(system, cycle.segments)).part(system.parts.forces)
     system.run(system.slips, cycle.segments)

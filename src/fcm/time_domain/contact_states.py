@@ -1,8 +1,8 @@
 """The linear flow for one combination of contact states, without forces: matrix, exits, powers and tables.
 
-The exits are rows g of y that stay positive while the states last. The conditions are (9), (10), (13) to
-(16), free of division. E lasts while mu n - f > 0 and mu n + f > 0, P and N while n > 0 and +-k_u times the
-slip velocity > 0, S while -n > 0.
+The exits are rows g with g y positive while the states last. They are the conditions (9), (10), (13) to (16)
+without division: E lasts while mu n - f > 0 and mu n + f > 0; P and N while n > 0 and +-k_u times the slip
+velocity > 0; S while -n > 0.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fcm.time_domain.flow import BLOCK, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEP
 if TYPE_CHECKING:
     from fcm.time_domain.equations_of_motion import EquationsOfMotion
 
-SLOWEST = 1e-300  # [1/s] a rate below is none
+SLOWEST = 1e-300  # [1/s] a lower rate counts as zero
 BLOCKS = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range((ORDER + 1) // 4)])
 Codes = npt.NDArray[np.int8]
 
@@ -29,24 +29,24 @@ class Flow(NamedTuple):
     """Data of one flow for `Flows.add`; matrices are transposed, for the part of y without the forces."""
 
     states: Codes  # (contact,)
-    step: float  # [s], the reciprocal of a bound of the rates of the motion
-    halved: bool  # whether it is shorter than that because the forces are faster
+    step: float  # [s] the reciprocal of a bound of the rates of the motion
+    halved: bool  # whether the step is shorter than that because the forces are faster
     rows: FloatArray  # (exit, linear)
-    owner: list[int]  # (exit,) the contact that it belongs to
-    goal: list[int]  # (exit,) the state to which it leads
-    power: FloatArray  # (linear, linear) what a step does
+    owner: list[int]  # (exit,) the contact of the exit
+    goal: list[int]  # (exit,) the state after the exit
+    power: FloatArray  # (linear, linear) effect of one step
     change: FloatArray  # (linear, linear) the matrix times the step
     series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
-    sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
+    sizes: FloatArray  # (linear, linear) sizes of the terms that add up to a step
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
     pushes: (
-        FloatArray  # (ORDER, 4 waves, linear) h (A h)**k B; B: of each harmonic the forces of sin, cos and
+        FloatArray  # (ORDER, 4 waves, linear) h (A h)**k B; B: for each harmonic the forces of sin, of cos,
     )
-    # omega^2 times these
+    # and the parts of these that grow as omega^2
 
 
 def made(system: EquationsOfMotion, states: Codes) -> Flow:
-    """The flow of a combination of contact states, with steps that resolve the forces as well."""
+    """The flow of a combination of contact states, with steps that also resolve the forces."""
     matrix = _matrix(system, states)
     step, halved = _step(system, matrix)
     change = matrix.T * step
@@ -79,9 +79,9 @@ def _matrix(system: EquationsOfMotion, states: Codes) -> FloatArray:
         push_u, push_v = system.tangential[j] / modal.mass, system.normal[j] / modal.mass
         a[n, system.p] = contact.k_v * system.normal[j]
         if state == SEPARATED:
-            a[system.p, -1] += push_v * max(contact.n_0, 0.0)  # the preload that is missing
+            a[system.p, -1] += push_v * max(contact.n_0, 0.0)  # the missing preload
             continue
-        a[system.p, -1] -= push_v * min(contact.n_0, 0.0)  # a gap is not pressed
+        a[system.p, -1] -= push_v * min(contact.n_0, 0.0)  # a gap does not press
         a[system.p, f], a[system.p, n] = -push_u, -push_v
         if state == STICKING:
             a[f, system.p] = contact.k_u * system.tangential[j] if contact.mu > 0.0 else 0.0
@@ -91,10 +91,9 @@ def _matrix(system: EquationsOfMotion, states: Codes) -> FloatArray:
 
 
 def _step(system: EquationsOfMotion, a: FloatArray) -> tuple[float, bool]:
-    """Step length [s], one over a bound of the rates of the motion; and whether it was halved for the forces.
+    """Step length [s], the reciprocal of a bound of the rates; and whether it was halved for the forces.
 
-    It is halved only as often as bounding the frequency of the forces takes, so that the step is the same
-    whenever it is made.
+    It is halved only until it resolves the forces, so that the step does not depend on when it is computed.
     """
     loads = slice(system.f.start, system.n.stop)
     root = np.sqrt(system.scene.modal.mass)
@@ -105,7 +104,7 @@ def _step(system: EquationsOfMotion, a: FloatArray) -> tuple[float, bool]:
         raise SimulationError("the stiffness overflows; use units in which its numbers are smaller")
     damping = 2.0 * system.scene.modal.damping * system.scene.modal.frequency
     rate = float(np.sqrt(np.linalg.norm(stiffness, 2)) + np.abs(damping).max(initial=0.0))
-    # where nothing has a rate, the forces alone bound the step: from a power of two that is long enough
+    # where nothing has a rate, only the forces bound the step: begin with a long enough power of two
     fastest = system.flows.highest * system.omega
     longest = 1.0 / rate if rate > SLOWEST else 2.0 ** np.ceil(1.0 - np.log2(fastest))
     step = longest
@@ -126,7 +125,7 @@ def _exponential(a: FloatArray) -> FloatArray:
 
 
 def _pushes(system: EquationsOfMotion, change: FloatArray, step: float) -> FloatArray:
-    """Products h (A h)**k B of the matrix with the forces of each harmonic, see `Flow.pushes`."""
+    """Products h (A h)**k B of the matrix with the forces of each harmonic; see `Flow.pushes`."""
     pushes, flows = np.zeros((ORDER, 4 * system.flows.waves, change.shape[0])), system.flows
     for b in (0, 1):
         pushes[0, b::4, system.p] = step * np.asarray(flows.constant)[b::2]
@@ -137,7 +136,7 @@ def _pushes(system: EquationsOfMotion, change: FloatArray, step: float) -> Float
 
 
 def _exits(system: EquationsOfMotion, states: Codes) -> tuple[FloatArray, list[int], list[int]]:
-    """Rows of the exits (by f, n and the rates of u and v), the contact and the next state of each."""
+    """Rows of the exits (of f, n and the rates of u and v), and the contact and next state of each."""
     rows: list[FloatArray] = []
     owner: list[int] = []
     goal: list[int] = []

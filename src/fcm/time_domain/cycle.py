@@ -19,17 +19,17 @@ class Cycle(Frozen):
     system: EquationsOfMotion
     start: float  # [s] from the start of the motion
     duration: float  # [s]
-    angle: float  # of the forces at its start [rad]
+    angle: float  # angle of the forces at its start [rad]
     segments: Segments
 
     @property
     def letters(self) -> list[str]:
-        """Contact states in each segment, as a word with one letter of EPNS for each contact."""
+        """Contact states in each segment, as a word with one letter of SEPN for each contact."""
         return ["".join(LETTERS[code] for code in row) for row in np.asarray(self.segments.states).tolist()]
 
     @property
     def states(self) -> tuple[str, ...]:
-        """State sequence of each contact, such as 'EPEN', as if the cycle repeated."""
+        """State sequence of each contact, such as 'EPEN', for a repeating cycle."""
         lasting = np.asarray(self.segments.states)[np.asarray(self.segments.length) > 0.0]
         return _sequences(lasting.tobytes(), lasting.shape[1])
 
@@ -45,19 +45,19 @@ class Cycle(Frozen):
 
 @lru_cache
 def _sequences(states: bytes, contacts: int) -> tuple[str, ...]:
-    """State sequences of all contacts, from their codes in each segment; cached, as most repeat."""
+    """State sequences of all contacts, from their codes in each segment; cached, as most of them repeat."""
     return tuple(_sequence(states[j::contacts]) for j in range(contacts))
 
 
 def _sequence(codes: bytes) -> str:
-    """Letters of a cycle without repetition, from separation on, or else from the stick before P.
+    """Letters of a cycle without repetitions, beginning with separation, else with the stick before P.
 
     >>> _sequence(bytes(map(LETTERS.index, "NEEPPEN")))
     'EPEN'
     """
     state, segment = np.frombuffer(codes, np.int8).astype(np.intc), np.arange(len(codes), dtype=np.intc)
     kept = "".join(LETTERS[code] for code in state[: join_states(state, segment, len(codes))])
-    if segment[0] > 0:  # the last goes on in the first
+    if segment[0] > 0:  # the last state continues in the first
         kept = kept[-1:] + kept[:-1]
     for first in ("S", "EP", "E"):
         at = (kept + kept[:1]).find(first)

@@ -26,7 +26,7 @@ class Measure(Frozen):
 
 
 def measure(cycle: Cycle, known: Displaced | None = None) -> Measure:
-    """Measures the displacements over a cycle, whose extremes may be given.
+    """Measures of the displacements over a cycle, from their extremes if these are known.
 
     The integrals are exact to rounding; each extreme is a root of the velocity.
     """
@@ -44,7 +44,7 @@ class Displaced(NamedTuple):
 
     least: FloatArray  # (dof,)
     greatest: FloatArray  # (dof,)
-    places: FloatArray  # (2 dof, 2) segment, and position in steps: of all the least, then of the greatest
+    places: FloatArray  # (2 dof, 2) segment, and position in steps: of all least, then of all greatest values
 
 
 def displaced(system: EquationsOfMotion, segments: Segments) -> Displaced:
@@ -55,9 +55,9 @@ def displaced(system: EquationsOfMotion, segments: Segments) -> Displaced:
 
 
 class Scanned(NamedTuple):
-    """Least and greatest value of every reported quantity of a motion, found in one pass."""
+    """Least and greatest value of every reported quantity of a motion, computed in one pass."""
 
-    least: FloatArray  # (row,) of the displacements, then of the rest, see `EquationsOfMotion.parts`
+    least: FloatArray  # (row,) displacements, then the others, see `EquationsOfMotion.parts`
     greatest: FloatArray  # (row,)
     displaced: Displaced
 

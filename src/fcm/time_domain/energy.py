@@ -22,11 +22,11 @@ class Energy(NamedTuple):
     slip: float  # dissipated by friction, integral of f dw
     damping: float  # dissipated by the modes
     stored: float  # change of the kinetic and elastic energy, contacts included
-    turnover: float  # sum of the magnitudes of all powers over time, to which the error is relative
+    turnover: float  # integral of the magnitudes of all powers, to which the error is relative
 
     @property
     def error(self) -> float:
-        """Imbalance of the energy relative to the turnover; absolute where the turnover is 0."""
+        """Imbalance of the energy relative to the turnover; absolute if the turnover is 0."""
         missing = abs(self.work - self.slip - self.damping - self.stored)
         return missing / self.turnover if self.turnover > 0.0 else missing
 
@@ -63,7 +63,7 @@ def powers_of(cycle: Cycle) -> Powers:
 
 
 def _stored(system: EquationsOfMotion, y: FloatArray) -> float:
-    """Kinetic and elastic energy with the potential of the preload, without what slips have dissipated."""
+    """Kinetic and elastic energy and the potential of the preload, without energy dissipated by slip."""
     modal = system.scene.modal
     q, p = y[system.q], y[system.p]
     total = 0.5 * float(modal.mass @ (p * p + (modal.frequency * q) ** 2))

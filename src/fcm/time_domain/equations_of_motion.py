@@ -25,7 +25,7 @@ from fcm.time_domain.segments import Segments, Steps, Walk
 from fcm.time_domain.variational import Derivative, Directional
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
-OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
+OWN = ("scene", "omega")  # attributes that systems of a scene do not share, or must not keep
 
 
 class ReportedRows(NamedTuple):
@@ -38,17 +38,17 @@ class ReportedRows(NamedTuple):
 
 
 class EquationsOfMotion:
-    """A scene at an excitation frequency omega [rad/s]; the flows serve every frequency.
+    """A scene at an excitation frequency omega [rad/s]; its flows serve all frequencies.
 
     Parameters
     ----------
     scene : Scene
     omega : float
     kept : FlowOptions, optional
-        How many flows, of a scene of which there are none yet.
+        How many flows are kept; used only if the scene has none yet.
 
-    level is that of the forces, by which all harmonic ones are multiplied: 1 of the scene as it is. Where it
-    is the parameter, motions are differentiated by it instead of the frequency.
+    level is the force level, by which all harmonic forces are multiplied; it is 1 for the scene itself. If
+    by_level is true, motions are differentiated by the level instead of the frequency.
     """
 
     level, by_level = 1.0, False
@@ -66,13 +66,13 @@ class EquationsOfMotion:
         self.size = self.linear + 2 * len(self.harmonics)
         self.q, self.p = slice(0, m), slice(m, 2 * m)
         self.f, self.n = slice(2 * m, 2 * m + c), slice(2 * m + c, 2 * m + 2 * c)
-        self.unknowns = 2 * m + c  # (q, q', f): the rest follows
+        self.unknowns = 2 * m + c  # (q, q', f): these determine the rest
         self.tangential = np.array([modal.shapes @ k.tangential for k in scene.contacts]).reshape(c, m)
         self.normal = np.array([modal.shapes @ k.normal for k in scene.contacts]).reshape(c, m)
         law = np.array([(k.mu, k.k_u, k.k_v, k.n_0) for k in scene.contacts]).reshape(c, 4)
         self.mu, self.k_u, self.stiffness, self.preload = law.T.copy()
         shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
-        self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its unit
+        self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # greatest displacement for a unit of each mode
         loads = loads_of(scene)
         self.constant, self.square = loads.constant @ modal.shapes.T, loads.square @ modal.shapes.T
         self.static: FloatArray = modal.shapes @ loads.static  # modal
@@ -86,7 +86,7 @@ class EquationsOfMotion:
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
         self._along, self.integrals = Directional(self.flows), MotionIntegrals(self.flows)
         none = np.zeros(m)
-        self.made = dict[str, Any]()  # what other packages make once for a scene
+        self.made = dict[str, Any]()  # results that other packages compute once for a scene
         self.slips = Powers(self.flows, none[None], none, none, everywhere=False)
         self.displaced, self.limits, self.reported, self.parts = self._scans()
         _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
@@ -99,14 +99,14 @@ class EquationsOfMotion:
         return other
 
     def at_level(self, level: float, by_level: bool = False) -> EquationsOfMotion:
-        """The same scene at another force level, with the same flows; the level may be the parameter."""
+        """The same scene at another force level, with the same flows; by_level makes it the parameter."""
         other = self.at(self.omega)
         other.level, other.by_level = level, by_level
         return other
 
     @property
     def wave(self) -> npt.NDArray[np.complex128]:
-        """Modal amplitudes of the forces at each harmonic h, of Im(wave exp(i h theta)): (waves, mode)."""
+        """Modal amplitudes (waves, mode) of the forces at each harmonic h, as in Im(wave exp(i h theta))."""
         wave: npt.NDArray[np.complex128] = self.level * (self.constant + self.omega**2 * self.square)
         return wave
 
@@ -121,22 +121,22 @@ class EquationsOfMotion:
         return self.flows
 
     def march(self) -> March:
-        """The march through the flows at this frequency; there is one for all frequencies."""
+        """The march at this frequency; all frequencies share one object."""
         self.tuned()
         return self._march
 
     def derivative(self) -> Derivative:
-        """The derivative of motions at this frequency; there is one for all frequencies."""
+        """The derivative of motions at this frequency; all frequencies share one object."""
         self.tuned()
         return self._derivative
 
     def derivative_along(self) -> Directional:
-        """The derivative along one direction; there is one for all frequencies."""
+        """The derivative along one direction at this frequency; all frequencies share one object."""
         self.tuned()
         return self._along
 
     def make(self, states: Codes) -> int:
-        """Makes the flow of a combination of states and puts it into the pool; returns its place."""
+        """Makes the flow of a combination of states, adds it to the pool, and returns its place."""
         return int(self.flows.add(made(self, states)))
 
     def steps(self, segments: Segments) -> Steps:
@@ -144,14 +144,14 @@ class EquationsOfMotion:
         return Steps(self.tuned(), segments)
 
     def run(self, kernel: Walk, segments: Segments) -> None:
-        """Runs a kernel through segments at this frequency, and makes the flows that are missing."""
+        """Runs a kernel through segments at this frequency, making missing flows."""
         self.tuned()
         kernel.begins(segments)
         while kernel.go() < 0:
             self.make(np.asarray(segments.states)[kernel.at + 1])
 
     def loads(self, y: FloatArray) -> FloatArray:
-        """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
+        """Normal loads n_0 + k_v v of the contacts (contact,), negative while they are open."""
         return self.preload + y[self.n]
 
     def _scans(self) -> tuple[Scan, Scan, Scan, ReportedRows]:
@@ -182,24 +182,24 @@ class EquationsOfMotion:
 
 
 class _Latest(local):
-    """What the systems of this thread's latest scene share, as flows are expensive to make.
+    """The parts shared by systems of this thread's latest scene, as flows are expensive to make.
 
-    It is dropped with the scene.
+    They are dropped with the scene.
     """
 
     of: Callable[[], Scene | None] = staticmethod(lambda: None)
     common: dict[str, Any] | None = None
 
     def known(self, scene: Scene) -> dict[str, Any] | None:
-        """What systems of a scene share, if it is the latest one; else None."""
+        """The parts that systems of a scene share, if it is the latest one; otherwise None."""
         return self.common if self.of() is scene else None
 
     def keep(self, scene: Scene, common: dict[str, Any]) -> None:
-        """Keeps what systems of a scene share, until the scene is deleted or another comes."""
+        """Keeps the shared parts of a scene until the scene is deleted or another comes."""
         self.of, self.common = ref(scene, lambda gone: self.drop(gone)), common
 
     def drop(self, gone: object) -> None:
-        """Drops what is kept of a deleted scene."""
+        """Drops the shared parts of a deleted scene."""
         if self.of is gone:
             self.common = None
 

@@ -6,21 +6,21 @@ The state vector is
 
 with the modal displacements and velocities q, q', the friction forces f, the changes n = k_v v of the normal
 loads from their preloads, and the phase angle theta = omega t of the forces at each of their harmonics h, of
-which the first is 1. Then y' = A y in every combination of states, forcing and preload included. The forces
-of the contacts are states of their own: k_u (u - w) of a stiff contact, computed from displacements, would
-lose as many digits as it is stiffer than the structure.
+which the first is 1. Then y' = A y in every combination of states, including forcing and preload. The contact
+forces are state components: for a stiff contact, k_u (u - w) from displacements would lose as many digits as
+the contact is stiffer than the structure.
 
-Over a step h = 1 / rate the series of exp(A h) is complete to rounding after `ORDER` terms, whatever A is:
-defective, singular, resonant without damping. Whole steps are powers of exp(A h). The functions that end a
-combination are known on `BLOCK` steps at once from a table of their rows times those powers. The frequency
-enters only the columns of the forces: everything else of a flow is made once for a scene (`FlowArrays`). A
-column is what sin(h theta) or cos(h theta) = 1 alone at the start has done after a step, or after 2**j, and
-its derivative by the frequency; there are four for each harmonic h (`ForcedFlows`). Within a step the motion
-of each combination is a power series by the position, which is counted in steps (`FlowSeries`).
+Over a step h = 1 / rate the series of exp(A h) is complete to rounding after `ORDER` terms for every A:
+defective, singular, or undamped in resonance. Whole steps are powers of exp(A h). A table of the exit
+functions' rows times these powers gives the functions on `BLOCK` steps at once. The frequency enters only the
+columns of the forces; all other parts of a flow are computed once for a scene (`FlowArrays`). A column is the
+response after one step, or 2**j steps, to an initial sin(h theta) = 1 or cos(h theta) = 1 alone, or its
+derivative by the frequency; there are four for each harmonic h (`ForcedFlows`). Within a step the motion of
+each combination is a power series in the position, which is counted in steps (`FlowSeries`).
 
-The exits of a combination are functions of the state vector that end it where they become negative
-(`ExitFunctions`). Like the motion itself they are known by columns: on the steps of a block, and as power
-series in one step.
+The exits of a combination are functions of the state vector; the combination ends where one becomes negative
+(`ExitFunctions`). Like the motion, they are computed by columns: on the steps of a block, and as power series
+in one step.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ from fcm.time_domain.constant_matrices import Matrices
 from fcm.time_domain.options import TIME, FlowOptions
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
-POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
-BLOCK = 8  # steps that are looked at together: a power of two
-WATCHED = 3  # g, g' h and g'''' h**4 of each exit
+POWERS = 8  # number of powers of exp(A h): 1, 2, 4 ... 128 steps
+BLOCK = 8  # steps that are examined together: a power of two
+WATCHED = 3  # for each exit g, g' h and g'''' h**4
 SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP = 0, 1, 2, 3  # states of a contact
-# of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
+# factors of (A h)**k in the response over a step to a force that grows as time**j, for k + j < ORDER
 PUSHED = np.array(
     [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
 )
 
 
-# the same in C, for this kernel and others
+# the same in C, for all kernels
 SERIES_ORDER = cython.declare(cython.int, ORDER)
 FLOW_POWERS = cython.declare(cython.int, POWERS)
 STATE_SEPARATED = cython.declare(cython.int, SEPARATED)
@@ -55,14 +55,14 @@ STATE_POSITIVE_SLIP = cython.declare(cython.int, POSITIVE_SLIP)
 STATE_NEGATIVE_SLIP = cython.declare(cython.int, NEGATIVE_SLIP)
 
 
-# arrays of the pool that are no floating-point numbers
+# arrays of the pool that are not of floating-point numbers
 KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
     ("exits", "owner", "first", "used", "reached", "watched", "spread", "squared", "spelled"), np.intp
 )
 
 
 def _shapes(n: int, contacts: int, waves: int, taylor_size: int) -> dict[str, tuple[int, ...]]:
-    """Shapes of the pool's arrays for one flow: n components of its state, `waves` force harmonics."""
+    """Shapes of the pool's arrays for one flow: n state components, `waves` force harmonics."""
     e = max(2 * contacts, 1)  # exits: of a contact two at most
     wide = (BLOCK + 1) * WATCHED * e
     return {
@@ -78,10 +78,10 @@ def _shapes(n: int, contacts: int, waves: int, taylor_size: int) -> dict[str, tu
 
 @cython.cclass
 class FlowArrays:
-    """Pool of the flows of a scene; when it is full, the least recently used flow is replaced.
+    """Pool of the flows of a scene; if it is full, the least recently used flow is replaced.
 
-    Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
-    and the Taylor coefficients, are made where they are needed.
+    Many flows are followed only for short segments, and without derivatives. So the powers for more than one
+    step, and the Taylor coefficients, are computed when they are needed.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
@@ -146,7 +146,7 @@ class FlowArrays:
         return k
 
     def spell(self, slot: int) -> None:
-        """Computes the Taylor coefficients (A h)**j / j! of a flow from j = 2 on."""
+        """Computes the Taylor coefficients (A h)**j / j! of a flow for j >= 2."""
         terms = self._pool["terms"][slot].reshape(ORDER + 1, self.linear, self.linear)
         for j in range(2, ORDER + 1):
             np.matmul(terms[j - 1], terms[1], out=terms[j])
@@ -154,7 +154,7 @@ class FlowArrays:
         self._pool["spelled"][slot] = 1
 
     def next_power(self, slot: int) -> None:
-        """Computes the power of a flow over twice as many steps as the last one."""
+        """Computes the power of a flow over twice as many steps as its last power."""
         power, j = self._pool["power"][slot], int(self._pool["squared"][slot])
         np.matmul(power[j], power[j], out=power[j + 1])
         self._pool["squared"][slot] = j + 1
@@ -174,11 +174,11 @@ class FlowArrays:
         self.negligible_power, self.max_step_angle = of.negligible_power, options.max_step_angle
 
     def _place(self) -> int:
-        """Place of a new flow: a free one, a new one, or that of the least recently used flow."""
+        """Place of a new flow: a free place, or that of the least recently used flow."""
         capacity = self.step.shape[0]
         most = max(int(self.max_bytes / (self.bytes() / capacity)), self.min_count)
         if self.count == capacity < most:
-            capacity = min(16 * capacity, most)  # what is not used of it takes no memory
+            capacity = min(16 * capacity, most)  # unused room takes no memory
             self._make_room(capacity)
         if self.count == capacity:
             return int(np.argmin(np.asarray(self.used)))
@@ -211,7 +211,7 @@ class FlowArrays:
     def find(self, states: cython.schar[:, ::1], k: cython.Py_ssize_t) -> cython.Py_ssize_t:
         """Place of the flow for the states in row k, with steps valid at the frequency; -1 if there is none.
 
-        Whichever flows there are, these steps are the same: the lengths of segments are counted in them.
+        The steps do not depend on which flows exist, as segment lengths are counted in steps.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -247,7 +247,7 @@ class FlowSeries(FlowArrays):
         z: cython.double[:, ::1],
         b: cython.Py_ssize_t,
     ) -> cython.void:
-        """Sets row b of z to A y, with y the row a."""
+        """Sets row b of z to A y, where y is row a."""
         i: cython.Py_ssize_t
         for i in range(self.size):
             self._own[0, i] = y[a, i]
@@ -267,9 +267,9 @@ class FlowSeries(FlowArrays):
         y: cython.double[:, ::1],
         graded: cython.bint,
     ) -> cython.void:
-        """Fills Taylor coefficients from row 0 of z on, by the position in a step of given length [s].
+        """Fills Taylor coefficients by the position in a step of a given length [s], from row 0 of z on.
 
-        If it is graded, those of the derivative by the frequency of the motion with the coefficients y:
+        If graded, z is the derivative by the frequency of the motion with the coefficients y:
         z[a + 1] = step / (a + 1) (A z[a] + dA / d omega y[a]).
         """
         a: cython.Py_ssize_t
@@ -312,7 +312,7 @@ def structure(
             series.drive[0, i] * sine + series.drive[1, i] * cosine + series.hold[i] * one
             - series.stiffness[i] * z[a, i] - series.damping[i] * z[a, m + i]
         )  # fmt: skip
-    for h in range(2, 2 * series.waves, 2):  # of most scenes there is none
+    for h in range(2, 2 * series.waves, 2):  # most scenes have only one harmonic
         sine, cosine = factor * z[a, end + h], factor * z[a, end + h + 1]
         for i in range(m):
             z[b, m + i] += series.drive[h, i] * sine + series.drive[h + 1, i] * cosine
@@ -329,7 +329,7 @@ def spring(
     a: cython.Py_ssize_t,
     factor: cython.double,
 ) -> cython.void:
-    """Adds the force of spring j."""
+    """Subtracts the force of spring j."""
     m: cython.Py_ssize_t = series.modes
     i: cython.Py_ssize_t
     u: cython.double = 0.0
@@ -352,7 +352,7 @@ def contact(
     a: cython.Py_ssize_t,
     factor: cython.double,
 ) -> cython.void:
-    """Adds the forces of contact j in a state, and the rates of its forces."""
+    """Adds the forces of contact j in a state, and sets the rates of its forces."""
     m: cython.Py_ssize_t = series.modes
     v: cython.double = factor * series.k_v[j] * velocity(series.normal, j, z, a)
     u: cython.double = 0.0
@@ -360,7 +360,7 @@ def contact(
     n: cython.double = z[a, 2 * m + series.contacts + j]
     if state == STATE_SEPARATED:  # the preload is missing
         f, n = 0.0, -max(series.n_0[j], 0.0) * z[a, series.linear - 1]
-    else:  # a gap is not pressed
+    else:  # a gap does not press
         n += min(series.n_0[j], 0.0) * z[a, series.linear - 1]
         if state != STATE_STICKING:
             u = series.mu[j] * v if state == STATE_POSITIVE_SLIP else -series.mu[j] * v
@@ -383,7 +383,7 @@ def grade(
     y: cython.double[:, ::1],
     factor: cython.double,
 ) -> cython.void:
-    """Adds the derivative of A by the frequency times the forces' phase in row a of y."""
+    """Adds the derivative of A by the frequency times the forces' phases in row a of y."""
     i: cython.Py_ssize_t
     h: cython.Py_ssize_t
     b: cython.Py_ssize_t = a + 1
@@ -410,7 +410,7 @@ def velocity(
     half: cython.Py_ssize_t = m // 2
     i: cython.Py_ssize_t
     one: cython.double = 0.0
-    other: cython.double = 0.0  # two sums, for one would wait for each addition
+    other: cython.double = 0.0  # two sums, as a single one would wait for each addition
     for i in range(half):
         one += shape[j, i] * z[a, m + i]
         other += shape[j, half + i] * z[a, m + half + i]
@@ -430,7 +430,7 @@ def push(
     z: cython.double[:, ::1],
     b: cython.Py_ssize_t,
 ) -> cython.void:
-    """Subtracts contact j's force, by its shape over the masses, from the accelerations in row b of z."""
+    """Subtracts contact j's force, times its shape over the masses, from the accelerations in row b of z."""
     m: cython.Py_ssize_t = shape.shape[1]
     i: cython.Py_ssize_t
     if force != 0.0:
@@ -440,9 +440,9 @@ def push(
 
 @cython.cclass
 class ForcedFlows(FlowSeries):
-    """`refresh` computes the force columns of a flow for `omega` [rad/s] and one step; see `FlowArrays`.
+    """Force columns of flows; `refresh` computes those of a flow for `omega` [rad/s] and one step.
 
-    Those for more are made where they are needed, by `fill_columns`.
+    `fill_columns` computes those for more steps when they are needed.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
@@ -453,7 +453,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def refresh(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Computes the columns of the forces for the present frequency, unless they are there."""
+        """Computes the columns of the forces for the present frequency, unless they are computed."""
         self.clock += 1
         self.used[slot] = self.clock
         if self.made_for[slot] == self.omega:
@@ -471,7 +471,7 @@ class ForcedFlows(FlowSeries):
     def _one_step(self, slot: cython.Py_ssize_t) -> cython.void:
         """Response over one step to sin(h theta) = 1 or cos(h theta) = 1 alone, and its derivative by omega.
 
-        The j-th derivative of the forces by time grows as (h omega)**j; what it does is known with the flow.
+        The j-th time derivative of the forces grows as (h omega)**j; its effect is stored with the flow.
         """
         h: cython.Py_ssize_t
         self.forced[slot, 0, :, :] = 0.0
@@ -482,7 +482,7 @@ class ForcedFlows(FlowSeries):
     @cython.nogil
     @cython.exceptval(check=False)
     def _sum_terms(self, slot: cython.Py_ssize_t, h: cython.Py_ssize_t) -> cython.void:
-        """Adds the one-step response to one harmonic, term by term until terms are negligible."""
+        """Adds the one-step response to one harmonic, up to negligible terms."""
         j: cython.int
         step: cython.double = self.harmonic[h] * self.step[slot]
         x: cython.double = self.omega * step
@@ -510,7 +510,7 @@ class ForcedFlows(FlowSeries):
         power: cython.double,
         slope: cython.double,
     ) -> cython.void:
-        """Adds the effect of the forces' j-th derivative, `power` times, and its derivative by omega.
+        """Adds `power` times the effect of the forces' j-th derivative, and its derivative by omega.
 
         `slope` is the derivative of `power` by omega.
         """
@@ -615,7 +615,7 @@ class ForcedFlows(FlowSeries):
     def free(
         self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t
     ) -> cython.void:
-        """Adds to `whole` the result of 2**j free steps (without forces) from row k of y."""
+        """Adds to `whole` the result of 2**j steps without forces from row k of y."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t = 0
@@ -623,7 +623,7 @@ class ForcedFlows(FlowSeries):
         b: cython.double
         c: cython.double
         d: cython.double
-        while p + 4 <= n:  # four together, to go through the sums less often
+        while p + 4 <= n:  # four together, to pass through the sums less often
             a, b, c, d = y[k, p], y[k, p + 1], y[k, p + 2], y[k, p + 3]
             for i in range(n):
                 self.whole[i] = (
@@ -640,9 +640,9 @@ class ForcedFlows(FlowSeries):
 
 @cython.cclass
 class ExitFunctions(ForcedFlows):
-    """`watch` evaluates the exits on the steps of a block, `leave` their series in a step; see `FlowArrays`.
+    """Exits of flows; `watch` evaluates them on the steps of a block, `leave` their series in a step.
 
-    What these need for a new frequency is made where it is needed, by `make_columns` and `expand`.
+    `make_columns` and `expand` compute the columns for a new frequency when they are needed.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
@@ -680,7 +680,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def _angles(self, slot: cython.Py_ssize_t) -> cython.void:
-        """Powers of each harmonic's angle of a step, signed as the derivatives of sin at 0."""
+        """Computes powers of each harmonic's angle of a step, signed as the derivatives of sin at 0."""
         h: cython.Py_ssize_t
         j: cython.int
         power: cython.double
@@ -695,7 +695,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def _of_exit(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t, a: cython.int) -> cython.void:
-        """Taylor coefficient a > 0 of an exit in a step, by the forces."""
+        """Computes Taylor coefficient a > 0 of an exit in a step, the part by the forces."""
         h: cython.Py_ssize_t
         b: cython.Py_ssize_t
         k: cython.int
@@ -726,7 +726,7 @@ class ExitFunctions(ForcedFlows):
     @cython.nogil
     @cython.exceptval(check=False)
     def expand(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.void:
-        """Computes all Taylor coefficients of an exit by the forces, unless they are there."""
+        """Computes all Taylor coefficients of an exit by the forces, unless they are computed already."""
         a: cython.int
         if self.spread[slot, e]:
             return
@@ -741,7 +741,7 @@ class ExitFunctions(ForcedFlows):
     def make_columns(self, slot: cython.Py_ssize_t, steps: cython.Py_ssize_t) -> cython.void:
         """Computes the missing columns of the table of exits up to a number of steps.
 
-        T[k + 1] = T[k] exp(A h).
+        The table T satisfies T[k + 1] = T[k] exp(A h).
         """
         g: cython.Py_ssize_t = 3 * self.exits[slot]
         begin: cython.Py_ssize_t = self.watched[slot] * g
@@ -758,7 +758,7 @@ class ExitFunctions(ForcedFlows):
             for w in range(begin + g, end + g):
                 self.table_forced[slot, b, w] = 0.0
             for i in range(self.linear):
-                x = self.forced[slot, 0, b + b // 2 * 2, i]  # of four rows of a harmonic the first two
+                x = self.forced[slot, 0, b + b // 2 * 2, i]  # the first two of the four rows of a harmonic
                 for w in range(begin, end):
                     self.table_forced[slot, b, w + g] += self.table[slot, i, w] * x
         for b in range(0, 2 * self.waves, 2):
@@ -825,7 +825,7 @@ class ExitFunctions(ForcedFlows):
         k: cython.Py_ssize_t,
         powers: cython.double[:, ::1],
     ) -> cython.void:
-        """Taylor coefficients (ORDER + 1,) of exit e in the step from row k of y, written to its row."""
+        """Computes Taylor coefficients of exit e in the step from row k of y, into row e of powers."""
         n: cython.Py_ssize_t = self.linear
         w: cython.Py_ssize_t = e * (SERIES_ORDER + 1)
         i: cython.Py_ssize_t
@@ -849,14 +849,14 @@ class ExitFunctions(ForcedFlows):
                     powers[e, j] += self.series[slot, i, w + j] * x
 
 
-_SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!, as many terms as make a step complete
+_SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!; so many terms make a step complete
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def value(powers: cython.double[::1], order: cython.int, x: cython.double) -> cython.double:
-    """Value of a polynomial or of one of its derivatives."""
+    """Value of a polynomial or of one of its first three derivatives at x."""
     j: cython.int
     factor: cython.double
     total: cython.double = 0.0
@@ -874,7 +874,7 @@ def value(powers: cython.double[::1], order: cython.int, x: cython.double) -> cy
 def root(
     powers: cython.double[::1], order: cython.int, low: cython.double, high: cython.double
 ) -> cython.double:
-    """Root of a derivative with different signs at low and high: Newton's method, bracketed."""
+    """Root of a derivative with different signs at low and high, by bracketed Newton steps."""
     sense: cython.double = value(powers, order, low)
     x: cython.double = 0.5 * (low + high)
     height: cython.double
@@ -901,7 +901,7 @@ def root(
 @cython.nogil
 @cython.exceptval(check=False)
 def needed(x: cython.double) -> cython.int:
-    """Number of terms beyond the first that a fraction x of a step needs, to rounding."""
+    """Number of terms after the first that a fraction x of a step needs, to rounding."""
     j: cython.int = 0
     size: cython.double = 1.0
     while size > _SERIES_END and j < SERIES_ORDER:
@@ -968,7 +968,7 @@ class Flows(ExitFunctions):
     def carry(
         self, slot: cython.Py_ssize_t, position: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
     ) -> cython.int:
-        """Advances row k of y by any number of steps, whole or not."""
+        """Advances row k of y by any number of steps."""
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
         j: cython.int
@@ -987,7 +987,7 @@ class Flows(ExitFunctions):
     def bound(
         self, slot: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t, out: cython.double[::1]
     ) -> cython.void:
-        """Sizes of the terms that sum up to each component of row k of y over a step."""
+        """Computes the sizes of the terms that add up to each component of row k of y over a step."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -1000,7 +1000,7 @@ class Flows(ExitFunctions):
             x, other = fabs(y[k, n + b]), fabs(y[k, n + b + 1])
             for i in range(n):
                 out[i] += self.sizes_forced[slot, b, i] * x + self.sizes_forced[slot, b + 1, i] * other
-            out[n + b] = out[n + b + 1] = 2.5  # of 1 + x + x**2 / 2, x <= 1 the angle of a step
+            out[n + b] = out[n + b + 1] = 2.5  # 1 + x + x**2 / 2, with x <= 1 the angle of a step
         for p in range(n):
             x = fabs(y[k, p])
             for i in range(n):
@@ -1016,7 +1016,7 @@ class Flows(ExitFunctions):
         k: cython.Py_ssize_t,
         terms: cython.double[:, ::1],
     ) -> cython.void:
-        """Taylor coefficients of the motion from row k of y, by the position in a step: (ORDER + 1, d)."""
+        """Computes Taylor coefficients (ORDER + 1, d) of the motion in the step from row k of y."""
         i: cython.Py_ssize_t
         for i in range(self.size):
             terms[0, i] = y[k, i]
@@ -1033,7 +1033,7 @@ class Flows(ExitFunctions):
         first: cython.Py_ssize_t,
         last: cython.Py_ssize_t,
     ) -> cython.void:
-        """Advances the rows from first to before last of y by a fraction x of a step."""
+        """Advances rows first to last - 1 of y by a fraction x of a step."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t

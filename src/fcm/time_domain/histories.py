@@ -1,4 +1,4 @@
-"""Simulates the schedule of a scene for each of its curves."""
+"""Simulate the schedule of a scene for each of its curves."""
 
 from __future__ import annotations
 
@@ -59,16 +59,16 @@ def histories(
     scene : Scene
         From `fcm.load_scene`, with a schedule.
     progress : optional
-        Called now and then with the finished fraction and a text.
+        Called after each cycle with the finished fraction and a text.
     kept : optional
-        What an interrupted run has finished, and where what is finished goes.
+        Saved results of an interrupted run; new results are saved to it.
 
     Raises
     ------
     SimulationError
         If the scene has no schedule.
     KeyboardInterrupt
-        If it is interrupted before its first cycle is finished; later, what is finished is returned.
+        If it is interrupted before its first cycle is finished; later, the finished part is returned.
 
     Examples
     --------
@@ -93,7 +93,7 @@ def histories(
 
 
 def _without_rounding(record: ScheduleRecord) -> ScheduleRecord:
-    """The record with amplitudes of 0 for degrees of freedom that move by rounding alone."""
+    """The record with amplitudes of 0 for degrees of freedom that move only by rounding."""
     if not record.phases:
         return record
     rest = at_rest(np.fmax.reduce([phase.amplitude for phase in record.phases]))
@@ -110,7 +110,7 @@ def _record(
     kept: SavedRecords | None,
     options: TimeOptions = TIME,
 ) -> ScheduleRecord:
-    """The record of a curve, continued from what is saved of it."""
+    """The record of a curve, continued from its saved phases."""
     if kept is None:
         return record(curve, plan, progress, options=options)
     if number in kept.finished:

@@ -1,4 +1,4 @@
-"""Writes histories as variables of a file, as CSV and as a summary."""
+"""Write histories as variables of a file, as CSV and as a summary."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def variables(found: Histories) -> dict[str, Variable]:
 
 
 def _common(found: Histories) -> dict[str, Variable]:
-    """Variables equal for every curve: the instants, the cycles, the phases."""
+    """Variables common to all curves: the instants, the cycles, the phases."""
     plan, phases = found.plan, found.scene.schedule
     units = CF_UNIT[found.scene.frequency_unit]
     frequency = in_unit([phase.frequency for phase in phases], found.scene.frequency_unit)
@@ -53,7 +53,7 @@ def _variable(dims: str, values: npt.NDArray[Any], text: str, **attributes: Any)
 
 
 def _of_records(found: Histories) -> dict[str, Variable]:
-    """Variables simulated for each curve: displacements, states, cycle measures and transitions."""
+    """Variables of each curve: displacements, states, cycle measures and transitions."""
     flags: dict[str, Any] = {
         "flag_values": np.arange(NOT_REACHED, len(LETTERS), dtype=np.int8),
         "flag_meanings": MEANINGS,

@@ -1,18 +1,18 @@
-"""Marches from transition to transition: finds the first exit passed and the states that follow.
+"""March from transition to transition: find the first exit that is passed, and the states that follow.
 
-Of the exits none is missed, and most steps are not looked at one by one. They are known on up to `BLOCK`
-steps at once; a cubic and a bound of what it leaves out say in which of these steps one may be passed, and
-only there its power series is searched.
+No exit is missed, and most steps are not examined individually. The exits are evaluated on up to `BLOCK`
+steps at once. A cubic and a bound of its error tell in which of these steps an exit may be passed; only there
+its power series is searched.
 
-There the first descent through zero on [0, 1] is found, none missed. The Bernstein coefficients of a
-polynomial enclose its values: where none is negative, neither is the polynomial; where their sign changes
-once, it has exactly one root. Otherwise the interval is halved. The way from powers to Bernstein coefficients
-is a sum with weights between 0 and 1, so it is accurate.
+The search finds the first descent through zero on [0, 1]. The Bernstein coefficients of a polynomial enclose
+its values: if none is negative, neither is the polynomial; if their sign changes once, it has exactly one
+root. Otherwise the interval is halved. The conversion from powers to Bernstein coefficients is accurate, as
+its weights are between 0 and 1.
 
-Which combination follows, or lasts from the start of a motion, is decided by the sign of the first derivative
-that does not vanish of each exit function. So coinciding transitions, grazing ones and contacts released at
-rest need no cases of their own. Up to that derivative the motion is the same in the old and the new state, so
-that the answer is unique (`Successor`).
+The states that follow, or that last from the start of a motion, are decided for each exit function by the
+sign of its first derivative that does not vanish. So coinciding or grazing transitions, and contacts released
+at rest, need no special cases. Up to that derivative the motion is the same in the old and the new state, so
+the answer is unique (`Successor`).
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ else:
     from fcm.time_domain.segments import Segments
 
 
-_DONE = cython.declare(cython.int, Stopped.DONE)  # as the loops know it, which have numbers alone
+_DONE = cython.declare(cython.int, Stopped.DONE)  # plain numbers, for loops without the interpreter
 _MISSING = cython.declare(cython.int, Stopped.MISSING)
 _UNDECIDED = cython.declare(cython.int, Stopped.UNDECIDED)
 
 
 def _weights(degree: int) -> FloatArray:
-    """Weights (power, coefficient) that turn powers into Bernstein coefficients of a degree."""
+    """Weights (power, coefficient) from powers to Bernstein coefficients of a degree."""
     weights = np.zeros((ORDER + 1, ORDER + 1))
     for i in range(degree + 1):
         weights[i, i : degree + 1] = [comb(j, i) / comb(degree, i) for j in range(i, degree + 1)]
@@ -81,12 +81,12 @@ def first_descent_of(powers: FloatArray, floor: float) -> float | None:
     ----------
     powers : (20,)
     floor : float
-        Depth that is rounding, >= 0.
+        Depth below zero that is rounding, >= 0.
 
     Returns
     -------
     float or None
-        The root in [0, 1], to rounding; None where there is none.
+        The root in [0, 1], to rounding; None if there is none.
 
     Examples
     --------
@@ -114,9 +114,9 @@ def first_descent(
     negligible: cython.double,
     work: cython.double[:, ::1],
 ) -> cython.double:
-    """Root of the first descent for row k of the powers, -1 where there is none.
+    """Root of the first descent for row k of the powers; -1 if there is none.
 
-    Powers above the last that is more than `negligible` of what they add up to are left out.
+    Highest powers up to `negligible` times the sum of their magnitudes are omitted.
     """
     i: cython.int
     j: cython.int
@@ -150,11 +150,10 @@ def _search(
     floor: cython.double,
     work: cython.double[:, ::1],
 ) -> cython.double:
-    """Finds the first descent by halving, depth first and left before right.
+    """Finds the first descent by bisection, depth first and left before right.
 
-    Row i of work has the coefficients of the interval that waits at depth i.
-
-    An interval at depth i begins at an even multiple of its length 2**-i if it is a left half.
+    Row i of work holds the coefficients of the interval that waits at depth i. An interval at depth i begins
+    at an even multiple of its length 2**-i if it is a left half.
     """
     depth: cython.int = 0
     low: cython.double = 0.0
@@ -162,14 +161,14 @@ def _search(
     while True:
         kind = _interval_kind(work, degree, depth, floor)
         if kind == 2 or (kind == 3 and depth >= work.shape[0] - 2):
-            return low  # it descends from rounding at the very start
+            return low  # it descends from within rounding at the very start
         if kind == 1:
             return _root(powers, k, degree, low, low + ldexp(1.0, -depth), work[depth])
         if kind == 3:
             _halve(work, degree, depth)
             depth += 1
             continue
-        # nothing here: to the right, on the depth of the nearest interval that is a left half
+        # no descent here: go right, at the depth of the nearest interval that is a left half
         while depth > 0 and _odd(low, depth):
             low -= ldexp(1.0, -depth)
             depth -= 1
@@ -222,7 +221,7 @@ def _interval_kind(
 @cython.nogil
 @cython.exceptval(check=False)
 def _halve(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -> cython.void:
-    """Sets row depth + 1 to the left half of row depth, which keeps the right one (de Casteljau)."""
+    """Sets row depth + 1 to the left half of row depth, which becomes the right half (de Casteljau)."""
     i: cython.int
     j: cython.int
     for j in range(degree + 1):
@@ -235,7 +234,7 @@ def _halve(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -
 @cython.nogil
 @cython.exceptval(check=False)
 def _mirror(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -> cython.void:
-    """Sets row depth to the right half that its parent keeps."""
+    """Sets row depth to the right half, which its parent holds."""
     i: cython.int
     for i in range(degree + 1):
         work[depth, i] = work[depth - 1, i]
@@ -252,10 +251,10 @@ def _root(
     high: cython.double,
     ends: cython.double[::1],
 ) -> cython.double:
-    """Newton's method, bracketed around the only root: positive at low, negative at high.
+    """Finds the only root, positive at low and negative at high, by bracketed Newton steps.
 
-    The first of `ends` and that of the degree are the values there, but for rounding; it begins on the line
-    between, away from low, where there may be a root as well, of a touch.
+    The first of `ends` and the one of index degree are the values at low and high, up to rounding. It begins
+    on the line between these, away from low, where there may be another root, of a grazing contact.
     """
     x: cython.double = low + (high - low) * min(max(ends[0] / (ends[0] - ends[degree]), 0.25), 1.0)
     value: cython.double
@@ -279,14 +278,14 @@ def _root(
         if not low < new < high:
             new = 0.5 * (low + high)
         elif fabs(bend) * (new - x) * (new - x) <= 1e-17 * fabs(slope):
-            return new  # the next step would be less than rounding
+            return new  # the next step would be below rounding
         if fabs(new - x) <= 1e-16 or not low < new < high:
             return new
         x = new
     return x
 
 
-UNSEEN = cython.declare(cython.double, 1e300)  # bound of what no step has been looked at for
+UNSEEN = cython.declare(cython.double, 1e300)  # initial `slack`, before any step is examined
 _WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 
 
@@ -294,10 +293,10 @@ _WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 class EventDetector:
     """Follows the flow `slot` until an exit is passed.
 
-    Of exits that are zero at its start, `touched`, the series are in `powers`.
+    `powers` holds the series of the exits that are zero at its start, `touched`.
 
-    Where the segment ends, `there` is the state before the last part of a step, which is `inside`, at the
-    position `base` + that part; `exit` is what ends it, or -1 where `left` steps have gone by. `slack` is a
+    At the end of the segment, `there` is the state before the last fraction of a step, `inside`; the end is
+    at the position `base`. `exit` is the exit that ends it, or -1 if `left` steps are over. `slack` is a
     lower bound of the exits of each contact over the segment.
     """
 
@@ -319,7 +318,7 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(check=False)
     def begin(self, y: cython.double[:, ::1], left: cython.double) -> cython.void:
-        """Begins a segment at y of at most `left` steps; the powers of the touched exits are known."""
+        """Begins a segment at y of at most `left` steps; the powers of the touched exits have to be set."""
         i: cython.Py_ssize_t
         e: cython.Py_ssize_t
         self.base, self.left, self._doubled = 0.0, left, self.flows.first_doublings
@@ -334,9 +333,9 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def block(self) -> cython.bint:
-        """Looks for an exit in the next block of steps; returns whether the segment has ended.
+        """Searches the next block of steps for an exit; returns whether the segment has ended.
 
-        Each block has more steps than the last.
+        Each block has twice the steps of the last, up to `BLOCK`.
         """
         k: cython.Py_ssize_t
         e: cython.Py_ssize_t
@@ -373,7 +372,7 @@ class EventDetector:
         """Whether exit e may be passed in step k of the block.
 
         Its values and slopes at both ends bound it from below. A step is at most a radian of the fastest
-        motion: inside it the fourth derivative is no more than twice the greater of its ends'.
+        motion. So the fourth derivative inside is at most twice the greater of those at the ends.
         """
         exits: cython.Py_ssize_t = self.flows.exits[self.slot]
         owner: cython.Py_ssize_t = self.flows.owner[self.slot, e]
@@ -413,7 +412,7 @@ class EventDetector:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _stand(self, steps: cython.int) -> cython.int:
-        """Advances to a number of steps from the start of the block."""
+        """Sets `there` to the state a number of steps after the start of the block."""
         i: cython.Py_ssize_t
         j: cython.int
         for i in range(self.flows.size):
@@ -448,7 +447,7 @@ class EventDetector:
 
 @cython.cclass
 class Successor:
-    """Sets `states` (1, contact) to those that last from `y` (1, d) on, and the flow of detector `ahead`."""
+    """Sets `states` (1, contact) to those that last from `y` (1, d) on, and the flow of `ahead`."""
 
     def __init__(self, ahead: EventDetector, y: FloatArray, states: npt.NDArray[np.int8]) -> None:
         self.flows, self.ahead, self.y, self.states = ahead.flows, ahead, y, states
@@ -478,7 +477,7 @@ class Successor:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def settle(self) -> cython.int:
-        """Finds the combination of states that lasts from y on; DONE when it is found."""
+        """Finds the combination of states that lasts from y on; returns DONE if it is found."""
         i: cython.Py_ssize_t
         slot: cython.Py_ssize_t
         while self._passes < self.flows.max_passes:
@@ -495,7 +494,7 @@ class Successor:
                 return _DONE
             self._switch(slot)
             for i in range(self.flows.size):
-                self._noise[i] *= 2.0  # states that take turns differ by rounding that was underrated
+                self._noise[i] *= 2.0  # states that alternate differ by rounding that was underestimated
             self._passes += 1
         return _UNDECIDED
 
@@ -503,11 +502,10 @@ class Successor:
     @cython.nogil
     @cython.exceptval(check=False)
     def _fails(self, slot: cython.Py_ssize_t) -> cython.bint:
-        """Marks exits whose first coefficient beyond rounding is negative; whether there is any.
+        """Marks exits whose first coefficient beyond rounding is negative; returns whether there are any.
 
-        Coefficients before it are set to zero.
-
-        The coefficients beyond the first are asked for only where that is rounding.
+        Coefficients before it are set to zero. Coefficients after the first are computed only if the first is
+        rounding.
         """
         e: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -533,7 +531,7 @@ class Successor:
     @cython.nogil
     @cython.exceptval(check=False)
     def _descends(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.void:
-        """Marks exit e, zero here, if the first further coefficient beyond rounding is negative."""
+        """Marks exit e, which is zero here, if its next coefficient beyond rounding is negative."""
         powers: cython.double[:, ::1] = self.ahead.powers
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
@@ -609,9 +607,9 @@ class March:
         self.lasts(duration, limit)
 
     def enters(self, x: cython.double[::1], angle: cython.double, level: cython.double) -> bool:
-        """Sets y and states from x = (q, q', f), the forces' angle and level; f is clipped to its limits.
+        """Sets y and states from x = (q, q', f) and the forces' angle and level; f is clipped to its limits.
 
-        Returns whether all of these numbers are finite.
+        Returns whether all these numbers are finite.
         """
         m: cython.Py_ssize_t = self.flows.modes
         c: cython.Py_ssize_t = self.flows.contacts
@@ -639,7 +637,7 @@ class March:
 
     @cython.cfunc
     def _enter(self, j: cython.Py_ssize_t) -> cython.void:
-        """Sets the state of a contact by its load and its friction force."""
+        """Sets the state of a contact from its load and its friction force."""
         f: cython.Py_ssize_t = 2 * self.flows.modes + j
         load: cython.double = self.flows.n_0[j] + self.y[0, f + self.flows.contacts]
         limit: cython.double = self.flows.mu[j] * load
@@ -661,7 +659,7 @@ class March:
         self._settled = False
 
     def go(self) -> int:
-        """Marches on; returns the reason for stopping, a `Stopped`."""
+        """Continues the march; returns the reason why it stops, a `Stopped`."""
         stopped: cython.int
         if self.segments.count == self.segments.start.shape[0]:
             self.segments = self.segments.room(2 * self.segments.count)
@@ -670,7 +668,7 @@ class March:
         return int(stopped)
 
     def rate(self) -> float:
-        """Rate of the present flow [1/s], one over its step."""
+        """Rate of the present flow [1/s], the reciprocal of its step."""
         return 1.0 / float(self.flows.step[self._ahead.slot])
 
     @cython.cfunc

@@ -1,17 +1,17 @@
-"""Measures of a motion: integrals of its modal displacements, extremes of any rows of its state, powers.
+"""Measures of a motion: integrals of its modal displacements, extremes of rows of its state, powers.
 
-The integrals are also those of products with sin and cos (`MotionIntegrals`). Over a step a displacement is
-the polynomial with its first `TERMS` Taylor coefficients at both ends; that and its integrals times exp(i
-theta) are exact to rounding: what is left out is of the order 1e-19. All that is linear in the state vector,
-so the vectors of all whole steps are summed before their coefficients are made.
+`MotionIntegrals` are integrals of displacements, also times sin and cos. Over a step, a displacement is the
+polynomial with the exact first `TERMS` Taylor coefficients at both ends. The polynomial and its integrals
+times exp(i theta) are exact to rounding, as its error is of the order 1e-19. All this is linear in the state
+vector. So the vectors of all whole steps are summed before their coefficients are computed.
 
-The integrals of all powers are by Gauss quadrature that is exact to rounding on a step (`Powers`).
+`Powers` integrates all powers by Gauss quadrature that is exact to rounding on a step.
 
-Extremes are roots of velocities (`Scan`). Only steps that may hold one are expanded in series. There the
-velocity changes its sign from end to end, or has an extreme of its own beyond zero between ends of one sign.
-And the extreme may be beyond the values at the ends of many steps, which are looked at before.
+`Scan` finds extremes as roots of velocities. It expands only steps that may contain one. In these the
+velocity changes sign between the ends, or has an extreme beyond zero between ends of the same sign. The
+extreme also has to exceed the values at the ends of the steps, which are evaluated first.
 
-The rows are those of numbers by which the state vector is multiplied, most of them zeros (`SparseRows`).
+`SparseRows` are rows that multiply the state vector, mostly zeros.
 """
 
 from __future__ import annotations
@@ -60,19 +60,19 @@ _POWER_NODES = cython.declare(cython.int, POWER_NODES)
 class Powers(Walk):
     """Work of the forces, dissipation by slip and by damping, and the sum of their magnitudes over a motion.
 
-    `slips` and `paths` (contact,): the dissipation by each contact, and the way that it slips.
+    `slips` and `paths` (contact,): the dissipation by each contact, and its slip path.
 
     Parameters
     ----------
     flows : Flows
     wave : (2 waves, mode)
-        Modal amplitudes of the forces: of sin(h theta) and cos(h theta) of each of their harmonics h.
+        Modal amplitudes of the forces: for sin(h theta) and cos(h theta) at each of their harmonics h.
     static : (mode,)
         Modal steady forces.
     damper : (mode,)
         2 m zeta omega of the modes.
     everywhere : bool
-        Or only while a contact slips, for what slip takes.
+        Whether to integrate everywhere; otherwise only while a contact slips, which suffices for slip.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class Powers(Walk):
         self._none()
 
     def begins(self, segments: Segments) -> None:
-        """Stands before the first segment, with all integrals zero."""
+        """Prepares for the segments, with all integrals zero."""
         Walk.begins(self, segments)
         self._none()
 
@@ -126,7 +126,7 @@ class Powers(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _add(self, weight: cython.double) -> cython.void:
-        """Adds the weighted powers at an instant; w' of a slipping contact is that of (6), (8)."""
+        """Adds the weighted powers at an instant; w' of a slipping contact follows from (6), (8)."""
         m: cython.Py_ssize_t = self.flows.modes
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
@@ -164,7 +164,7 @@ class Powers(Walk):
         self.turnover += weight * (fabs(power) + slip + loss)
 
 
-TERMS = 8  # of a step's displacements at either end: 8!**2 / (16! 17!) = 2e-19
+TERMS = 8  # Taylor coefficients of the displacements at each end of a step: 8!**2 / (16! 17!) = 2e-19
 NODES = 16  # integrate exactly polynomials of degree 31
 _TERMS = cython.declare(cython.int, TERMS)
 _NODES = cython.declare(cython.int, NODES)
@@ -197,7 +197,7 @@ class MotionIntegrals(Walk):
         self._there, self._sums = np.zeros((2, flows.size)), np.zeros((6, flows.size))
 
     def begins(self, segments: Segments) -> None:
-        """Stands before the first segment, with all sums zero."""
+        """Prepares for the segments, with all sums zero."""
         i: cython.Py_ssize_t
         b: cython.int
         Walk.begins(self, segments)
@@ -209,7 +209,7 @@ class MotionIntegrals(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Integrates along the present segment: over its whole steps, then over the last part of one."""
+        """Integrates along the present segment: over its whole steps, then over the rest."""
         h: cython.double = self.flows.step[slot]
         whole: cython.longlong = cython.cast(cython.longlong, self.segments.length[self.at])
         x: cython.double = self.segments.length[self.at] - whole
@@ -240,7 +240,7 @@ class MotionIntegrals(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _steps(self, slot: cython.Py_ssize_t, whole: cython.longlong) -> cython.int:
-        """Sums the states at both ends of whole steps, times 1, sin(theta) and cos(theta) of the first."""
+        """Sums the states at both ends of whole steps, times 1, and sin and cos of theta at the first."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         while self.span > 0 and whole >= self.span:
@@ -267,7 +267,7 @@ class MotionIntegrals(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _gather(self, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
-        """Adds the step from row k of y to the next row."""
+        """Adds the step from row k of y to row k + 1."""
         i: cython.Py_ssize_t
         sine: cython.double = y[k, self.flows.linear]
         cosine: cython.double = y[k, self.flows.linear + 1]
@@ -283,8 +283,9 @@ class MotionIntegrals(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _weigh(self, length: cython.double) -> cython.void:
-        """Sets the weights of the coefficients in the integrals of q times 1, sin(angle), cos(angle), over
-        steps of a length [s]."""
+        """Sets the weights of the coefficients in the integrals of q times 1, sin and cos.
+
+        They hold for steps of a length [s]; the angle is relative to the start of a step."""
         angle: cython.double = self.flows.omega * length
         i: cython.int
         j: cython.int
@@ -314,9 +315,9 @@ class MotionIntegrals(Walk):
         sine: cython.double,
         cosine: cython.double,
     ) -> cython.void:
-        """Adds what y gives at the first (0) or last (1) end of the steps weighed last.
+        """Adds the contribution of y at the first (0) or last (1) end of the steps weighed last.
 
-        y is a state vector, or a sum over steps of it times sin or cos of the forces' angle at the first end.
+        y is a state vector, or its sum over steps times sin or cos of the forces' angle at the first end.
         """
         i: cython.Py_ssize_t
         j: cython.int
@@ -340,7 +341,7 @@ class MotionIntegrals(Walk):
 
 @cython.cclass
 class SparseRows:
-    """Sparse rows (row, linear) acting on the state vector without the forces' phases."""
+    """Sparse rows (row, linear) that act on the state vector without the forces' phases."""
 
     def __init__(self, rows: FloatArray) -> None:
         places = np.nonzero(rows)
@@ -356,7 +357,7 @@ class SparseRows:
         """Product of row r with row k of y."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        other: cython.double = 0.0  # two sums, for one would wait for each addition
+        other: cython.double = 0.0  # two sums, as a single one would wait for each addition
         first: cython.Py_ssize_t = self.first[r]
         half: cython.Py_ssize_t = (self.first[r + 1] - first) // 2
         for i in range(first, first + half):
@@ -394,7 +395,7 @@ _SPAN = cython.declare(cython.int, SPAN)
 class Scan(Walk):
     """Extremes of rows @ y over a motion, in `greatest` and `least` (row,).
 
-    `place` (2 rows, 2) is where they are: segment and position of all the least, then of the greatest.
+    `place` (2 rows, 2) is where they are: segment and position of all least, then of all greatest values.
     """
 
     def __init__(self, flows: Flows, rows: SparseRows) -> None:
@@ -408,7 +409,7 @@ class Scan(Walk):
         self._first, self._length = 0.0, 0.0
 
     def begins(self, segments: Segments) -> None:
-        """Stands before the first segment, with no extreme so far."""
+        """Prepares for the segments, without extremes."""
         r: cython.Py_ssize_t
         Walk.begins(self, segments)
         for r in range(self._rows.count):
@@ -418,7 +419,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Scans the present segment, some steps at a time: first the step ends, then extremes between."""
+        """Scans the present segment, some steps at a time: first their ends, then their insides."""
         left: cython.double = self.segments.length[self.at]
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -442,7 +443,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _steps(self, slot: cython.Py_ssize_t, left: cython.double) -> cython.Py_ssize_t:
-        """Computes the next steps and the rows at their ends; returns how many steps."""
+        """Computes the next steps and the rows at their ends; returns the number of steps."""
         i: cython.Py_ssize_t
         count: cython.Py_ssize_t = 0
         if self.span > 0 and left >= self.span:
@@ -488,7 +489,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _spread(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.void:
-        """Fills the Taylor coefficients, by the position, at the start of step k up to the last wanted."""
+        """Fills the Taylor coefficients up to `last`, by the position, at the start of step k."""
         i: cython.Py_ssize_t
         for i in range(self.flows.size):
             self._there[0, i] = self._path[k, i]
@@ -498,7 +499,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _note_ends(self, count: cython.Py_ssize_t, last: cython.double) -> cython.void:
-        """Takes the values at the ends of `count` steps, the last one of length `last`."""
+        """Notes the values at the ends of `count` steps, the last of which has the length `last`."""
         k: cython.Py_ssize_t
         r: cython.Py_ssize_t
         for k in range(count + 1):
@@ -509,7 +510,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _step(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """Looks for extremes of all rows within step k."""
+        """Searches step k for extremes of all rows."""
         r: cython.Py_ssize_t
         expanded: cython.bint = False
         for r in range(self.greatest.shape[0]):
@@ -525,8 +526,8 @@ class Scan(Walk):
     def _may_exceed(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
         """Whether the motion within step k may exceed the extremes so far, by the slopes at its ends.
 
-        With r the greater slope per step at the ends, no slope within the step exceeds 2 r: the step is a
-        short part of the fastest motion. So the motion goes no further than r from the mean of its ends.
+        Let r be the greater slope per step at the ends. A step is a short part of the fastest motion, so no
+        slope within it exceeds 2 r. So the motion stays within r of the mean of its ends.
         """
         middle: cython.double = 0.5 * (self._values[0, k, r] + self._values[0, k + 1, r])
         reach: cython.double = max(fabs(self._values[1, k, r]), fabs(self._values[1, k + 1, r]))
@@ -538,7 +539,7 @@ class Scan(Walk):
     def _has_extreme(
         self, slot: cython.Py_ssize_t, r: cython.Py_ssize_t, k: cython.Py_ssize_t
     ) -> cython.bint:
-        """Whether step k may contain an extreme inside."""
+        """Whether step k may have an extreme of row r inside."""
         first: cython.double = self._values[1, k, r]
         bend: cython.double
         if first * self._values[1, k + 1, r] < 0.0:
@@ -554,7 +555,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _extremes(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """Takes the extremes of row r within step k, whose Taylor terms are known."""
+        """Notes the extremes of row r within step k, whose Taylor coefficients are in `_terms`."""
         first: cython.double = self._values[1, k, r]
         j: cython.int
         inflection: cython.double
@@ -574,7 +575,7 @@ class Scan(Walk):
     def _extreme_between(
         self, r: cython.Py_ssize_t, k: cython.Py_ssize_t, low: cython.double, high: cython.double
     ) -> cython.void:
-        """Takes the value where the velocity changes sign in a part of step k."""
+        """Notes the value where the velocity changes sign in a part of step k."""
         x: cython.double = root(self._powers, 1, low, high)
         self._note(r, k + x, value(self._powers, 0, x))
 
@@ -582,7 +583,7 @@ class Scan(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def _note(self, r: cython.Py_ssize_t, x: cython.double, here: cython.double) -> cython.void:
-        """Takes a value, x steps from the first step of the block, if it is an extreme so far."""
+        """Notes a value, x steps from the first step of the block, if it is an extreme so far."""
         if here > self.greatest[r]:
             self.greatest[r] = here
             self._put(self._rows.count + r, x)

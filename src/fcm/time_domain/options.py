@@ -1,4 +1,4 @@
-"""Limits of simulations, and of what is kept of them: `TimeOptions` has all."""
+"""Limits of simulations and of their records: `TimeOptions` has all of them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class SimulationOptions(Frozen):
     Attributes
     ----------
     max_transitions : int
-        Most transitions of contacts in one cycle; with more they chatter, and the simulation stops.
+        Greatest number of transitions in one cycle; with more the contacts chatter, and the simulation stops.
     """
 
     max_transitions: int = 200_000
@@ -23,13 +23,13 @@ class SettlingOptions(Frozen):
     Attributes
     ----------
     cycles : int
-        Number of cycles whose range of amplitudes is compared with that of as many before.
+        Number of cycles whose range of amplitudes is compared with that of as many cycles before.
     min_change : float
-        Range of amplitudes, relative to the last, up to which they no longer change.
+        Range of amplitudes, relative to the last one, up to which they no longer change.
     min_amplitude : float
-        Amplitude, relative to the greatest, that changes of smaller ones are referred to.
+        Amplitude relative to the greatest; changes of smaller amplitudes are relative to it.
     tolerance : float
-        Relative change of the amplitudes that is still to come, up to which the motion is periodic.
+        Estimated relative change of the amplitudes still to come, up to which the motion is periodic.
     """
 
     cycles: int = 10
@@ -46,7 +46,7 @@ class HistoryOptions(Frozen):
     max_samples, min_samples : int
         Most and fewest samples of a cycle.
     max_displacements : int
-        Most displacements that are sampled of all curves; 32 MB before compression.
+        Most displacements that are sampled in all curves together; 32 MB before compression.
     max_transitions : int
         Most transitions that are kept with their times; all are counted.
     max_letters : int
@@ -61,31 +61,31 @@ class HistoryOptions(Frozen):
 
 
 class TransitionOptions(Frozen):
-    """Options on how the transitions of contacts are found in a motion.
+    """Options on how the transitions of contacts are located in a motion.
 
     Attributes
     ----------
     rounding : float
-        Rounding error of a state after a step, relative to the terms that it is summed of.
+        Rounding error of a state after a step, relative to the sizes of its terms.
     depth : float
-        Distance past an exit, relative to its size, up to which the exit is not passed.
+        Depth of an exit below zero, relative to its size, up to which it is not passed.
     grazing : float
-        Rate of an exit where it is passed, relative to its terms, up to which the instant does not move with
+        Rate of an exit at the transition, relative to its terms, up to which the instant does not vary with
         the state.
     max_passes : int
         Most combinations of states that are tried at one instant until one is consistent.
     max_steps : float
         Most steps in one segment; with more the motion is given up as too long.
     max_blocks : int
-        Number of blocks of steps after which signals are looked at.
+        Number of blocks of steps after which signals are handled.
     max_halvings : int
-        Most bisections of a step in which an exit is looked for.
+        Most bisections of a step in the search for an exit.
     negligible_power : float
-        Size of a power in a series, relative to its sum, below which it and the higher powers are left out.
+        Size of a power in a series, relative to its sum, up to which it and the higher powers are omitted.
     first_doublings : int
-        Number of steps of a segment that are looked at first, as a power of two: many segments are short.
+        Steps in the first block of a segment, as a power of two: many segments are short.
     max_order : int
-        Highest derivative of an exit by which it is decided which combination of states follows.
+        Highest derivative of an exit that is used to decide which combination of states follows.
     """
 
     rounding: float = 3e-14
@@ -101,24 +101,24 @@ class TransitionOptions(Frozen):
 
 
 class FlowOptions(Frozen):
-    """The flows of a scene, each of one combination of contact states.
+    """Options on the flows of a scene, one for each combination of contact states.
 
     Attributes
     ----------
     min_count : int
         Number of flows that are kept in any case.
     max_bytes : float
-        [byte] Memory of the flows that are kept beyond them.
+        [byte] Memory for flows that are kept in addition.
     dense_size : int
-        Number of state components from which on matrices are multiplied by BLAS.
+        Number of state components from which on BLAS multiplies matrices.
     taylor_size : int
-        Number of state components up to which Taylor coefficients are kept.
+        Number of state components up to which Taylor coefficients are stored.
     few_rows : int
         Number of derivatives below which they are propagated one by one.
     max_step_angle : float
-        [rad] Angle of the highest harmonic of the forces in a step, at most: one, and rounding.
+        [rad] Greatest angle of the highest harmonic of the forces in a step: one, plus rounding.
     transitions : TransitionOptions
-        How transitions are found.
+        Options on how transitions are located.
     """
 
     min_count: int = 8
@@ -139,4 +139,4 @@ class TimeOptions(Frozen):
     flows: FlowOptions = FlowOptions()
 
 
-TIME = TimeOptions()  # where nothing else is said
+TIME = TimeOptions()  # the defaults

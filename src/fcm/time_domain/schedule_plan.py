@@ -1,4 +1,4 @@
-"""Plan of what is kept of a schedule: its cycles, and the instants of sampled displacements.
+"""Plan of the record of a schedule: its cycles, and the instants of sampled displacements.
 
 Both are known before anything is simulated, and are the same for every curve of a sweep.
 """
@@ -18,15 +18,15 @@ IntArray = npt.NDArray[np.intp]
 
 
 class Plan:
-    """The cycles of a schedule one after the other; the last of a phase may be incomplete.
+    """The cycles of a schedule in sequence; the last cycle of a phase may be incomplete.
 
     Parameters
     ----------
     phases : sequence of Phase
     columns : int
-        Displacements that are sampled at an instant: degrees of freedom times curves.
+        Number of displacements at an instant: degrees of freedom times curves.
     options : TimeOptions, optional
-        How many of them, at most.
+        Limits on the number of samples.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Simulates a schedule cycle by cycle, and keeps of each cycle only what is reported."""
+"""Simulate a schedule cycle by cycle, and keep only the reported quantities of each cycle."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class PhaseResult(Frozen):
     """Result of one phase of a schedule; displacements are those of its last whole cycle."""
 
     frequency: float  # [rad/s]
-    cycles: float  # that were simulated
+    cycles: float  # number of simulated cycles
     amplitude: FloatArray  # (dof,) half the peak-to-peak
     mean: FloatArray  # (dof,) time average
-    states: tuple[str, ...]  # (contact,) their sequence
-    transitions: int  # in all the phase
-    unsettled: float  # relative change of the amplitudes that is still to come, estimated; nan if unknown
+    states: tuple[str, ...]  # (contact,) state sequences
+    transitions: int  # in the whole phase
+    unsettled: float  # estimated relative change of the amplitudes still to come; nan if unknown
     energy: Energy
 
     @property
@@ -50,7 +50,7 @@ class PhaseResult(Frozen):
 
 @dataclass
 class ScheduleRecord:
-    """The simulated schedule of one curve; NaN and -1 stand for what was not reached."""
+    """The simulated schedule of one curve; parts that were not reached are NaN or -1."""
 
     parameters: dict[str, float]
     amplitude: FloatArray  # (cycle, dof) half the peak-to-peak
@@ -61,12 +61,12 @@ class ScheduleRecord:
     state: ByteArray  # (instant, contact) index into LETTERS
     transition_time: FloatArray  # (transition,) [s]
     transition_contact: npt.NDArray[np.int16]  # (transition,)
-    transition_state: ByteArray  # (transition,) index into LETTERS of the state that begins
+    transition_state: ByteArray  # (transition,) index into LETTERS of the new state
     phases: list[PhaseResult]
-    end: State  # from which another schedule can go on
-    reason: str  # why it is not complete, else ''
+    end: State  # from which another schedule can continue
+    reason: str  # why it is incomplete, or ''
     seconds: float
-    interrupted: bool = False  # whether an interruption has cut it off, or left it out
+    interrupted: bool = False  # whether an interruption cut it short or prevented it
 
     @property
     def complete(self) -> bool:
@@ -85,15 +85,15 @@ class ScheduleRecord:
 
 
 class CompletedPhase(Frozen):
-    """Results of a whole phase and the state at its end, from which the schedule can go on."""
+    """Results of a whole phase and the state at its end, from which the schedule can continue."""
 
     measures: FloatArray  # (4, cycle, dof) amplitude, mean, greatest and least displacement
     displacement: FloatArray  # (instant, dof)
     state: ByteArray  # (instant, contact)
     transitions: tuple[FloatArray, npt.NDArray[np.int16], ByteArray]  # times [s], contacts, states
-    letters: str  # the states of all contacts at the end
-    count: int  # transitions in all
-    states: tuple[str, ...]  # (contact,) of the last whole cycle
+    letters: str  # states of all contacts at the end
+    count: int  # number of all transitions
+    states: tuple[str, ...]  # (contact,) state sequences in the last whole cycle
     energy: Energy
     end: State
 
@@ -106,11 +106,11 @@ def record(
     save: Callable[[CompletedPhase], None] | None = None,
     options: TimeOptions = TIME,
 ) -> ScheduleRecord:
-    """Simulates the schedule of a scene, and keeps what is reported of it.
+    """Simulate the schedule of a scene, and keep the reported quantities.
 
-    An interruption, contacts that chatter without end, or static loads that nothing holds, leave it
-    incomplete with a reason. It goes on after the phases that are passed, to the same record; every further
-    one but the last is saved.
+    The record is incomplete, with a reason, after an interruption, if contacts chatter without end, or if
+    static loads are not held. It continues after the phases in `passed`, with an identical record; `save` is
+    called for every further phase but the last.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def record(
 
 
 def unfinished(scene: Scene, plan: Plan) -> ScheduleRecord:
-    """The record of a curve that was not begun."""
+    """The record of a curve that was not simulated."""
     return _Recorder(scene, plan).record(NOT_BEGUN, True)
 
 
@@ -160,20 +160,20 @@ def total(parts: Sequence[Energy]) -> Energy:
 class _Tally:
     """Running totals of a phase."""
 
-    first: int  # its first cycle
-    kept: int  # transitions before it that are kept with their times
+    first: int  # number of its first cycle
+    kept: int  # number of transitions before it that are kept with their times
     energy: Energy = field(default_factory=lambda: total([]))
     transitions: int = 0
     states: tuple[str, ...] | None = None  # of each contact in the last whole cycle
 
 
 class _Transitions:
-    """Counts all changes of contact states, and keeps their times while there is room."""
+    """Counts all changes of contact states, and keeps the times of the first `max_transitions`."""
 
     def __init__(self, options: TimeOptions) -> None:
         self.options = options
         self.times, self.contacts, self.states = array("d"), array("h"), array("b")
-        self.letters = ""  # the states until now
+        self.letters = ""  # the present states
 
     def count(self, cycle: Cycle, start: float) -> int:
         """Number of transitions of a cycle that begins at a time [s]."""
@@ -203,7 +203,7 @@ class _Recorder:
         self.tallies: list[_Tally] = []
 
     def add(self, phase: int, cycle: Cycle, end: State) -> None:
-        """Keeps what is reported of the next cycle; nothing of it if that is interrupted."""
+        """Keeps the reported quantities of the next cycle; none of them if measuring it is interrupted."""
         found = measure(cycle)
         balance = energy(Motion(self.scene, (cycle,), end))
         self._sample(cycle)
@@ -218,7 +218,7 @@ class _Recorder:
         self.end, self.done = end, self.done + 1
 
     def passed(self) -> CompletedPhase:
-        """The last phase as a `CompletedPhase`; it is whole, and not the last of the schedule."""
+        """The last phase as a `CompletedPhase`; it has to be whole, and not the last of the schedule."""
         tally, found = self.tallies[-1], self.transitions
         cycles, instants = slice(tally.first, self.done), self._instants(tally.first, self.done)
         times, contacts, states = (
@@ -279,7 +279,7 @@ class _Recorder:
         return [
             self._phase(phase, tally, slice(tally.first, bounds[number + 1]))
             for number, (phase, tally) in enumerate(zip(self.scene.schedule, self.tallies, strict=False))
-            if tally.states is not None  # else it is interrupted in its first cycle
+            if tally.states is not None  # otherwise it was interrupted in its first cycle
         ]
 
     def _phase(self, phase: Phase, tally: _Tally, cycles: slice) -> PhaseResult:
@@ -295,18 +295,18 @@ class _Recorder:
 def unsettled(amplitude: FloatArray, options: TimeOptions = TIME) -> float:
     """Estimated relative change of amplitudes still to come, extrapolated from the recent decay.
 
-    With the ranges d_1 and d_2 of the amplitude over the last WINDOW cycles and the ones before, what is
-    left of a transient that decays as a power is d_1 rho / (1 - rho), rho = d_1 / d_2.
+    d_1 and d_2 are the ranges of the amplitude over the last `SettlingOptions.cycles` cycles and over as many
+    before. The remainder of a transient that decays geometrically is d_1 rho / (1 - rho), rho = d_1 / d_2.
 
     Parameters
     ----------
     amplitude : (cycle, dof)
-        Of successive whole cycles.
+        Amplitudes of successive whole cycles.
 
     Returns
     -------
     float
-        The greatest over the dofs; nan for fewer than 2 WINDOW + 1 cycles, inf when nothing decays.
+        The greatest over the dofs; nan for fewer than 2 `cycles` + 1 cycles, inf if one does not decay.
 
     Examples
     --------

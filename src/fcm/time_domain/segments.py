@@ -1,6 +1,6 @@
 """The segments of a motion, each between two transitions.
 
-`Walk` goes through them, one after the other, `Steps` step by step, each step as a polynomial; `sample` has
+`Walk` goes through them one by one; `Steps` goes step by step, each step as a polynomial; `sample` evaluates
 the motion at given instants. `SegmentSequence` is their sequence of contact states.
 """
 
@@ -41,10 +41,10 @@ else:
     )
 
 
-TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
+TINY = cython.declare(cython.double, 1e-300)  # instead of zero sizes where nothing moves
 
 
-DOUBLINGS = 7  # of the steps that are made at once
+DOUBLINGS = 7  # 2**DOUBLINGS steps are computed at once
 SPAN = 2**DOUBLINGS
 
 
@@ -52,9 +52,9 @@ SPAN = 2**DOUBLINGS
 class Segments:
     """Arrays over segments, of which the first `count` are used.
 
-    A segment begins at the time `start` [s] with the state vector `y` (d,). It lasts for `length` steps of
-    the flow of its `states` (contact,). `ended` is the exit that ends it, -1 where the motion ends. While it
-    lasts, the exits of each contact are no less than `slack` (contact,).
+    A segment begins at the time `start` [s] with the state vector `y` (d,). Its length is `length` steps of
+    the flow of its `states` (contact,). `ended` is the exit that ends it, -1 at the end of the motion. During
+    the segment the exits of each contact are at least `slack` (contact,).
     """
 
     def __init__(self, size: int, contacts: int, capacity: int = 16) -> None:
@@ -65,7 +65,7 @@ class Segments:
 
     @cython.cfunc
     def _part(self, size: cython.Py_ssize_t) -> cython.void:
-        """Names the columns of the array of numbers; a single array is quick to allocate."""
+        """Assigns the columns of the array of numbers; a single array is quick to allocate."""
         wide: cython.Py_ssize_t = self._numbers.shape[1]
         self.y, self.slack = self._numbers[:, :size], self._numbers[:, size : wide - 3]
         self.start, self.length = self._numbers[:, wide - 3], self._numbers[:, wide - 2]
@@ -88,8 +88,9 @@ class Segments:
     def scale(self, per_unit: cython.double[::1], flows: FlowArrays) -> FloatArray:
         """Sizes of the displacements, velocities and friction forces: (2 modes + contacts,).
 
-        A mode's is the greatest displacement by the one that its shape gives, a contact's the greatest of its
-        force and of the smaller of its limit and of the force of that displacement.
+        For a mode: the greatest displacement of all modes over the displacement by one unit of it. For a
+        contact: the greatest friction force, or if it is greater, the lesser of the slip limit and k_u times
+        that displacement.
         """
         m: cython.Py_ssize_t = flows.modes
         c: cython.Py_ssize_t = flows.contacts
@@ -143,7 +144,7 @@ class Segments:
         return float(least)
 
     def seen(self) -> list[int]:
-        """States that each contact has been in, as the sum of 2**code."""
+        """States in which each contact has been, as the sum of 2**code."""
         found: list[int] = []
         seen: cython.int
         k: cython.Py_ssize_t
@@ -156,13 +157,13 @@ class Segments:
         return found
 
     def trim(self) -> Segments:
-        """Removes the spare room of these segments, and returns them."""
+        """Removes unused capacity, and returns the segments."""
         self._numbers, self.states = self._numbers[: self.count], self.states[: self.count]
         self._part(self.y.shape[1])
         return self
 
     def room(self, capacity: int) -> Segments:
-        """A copy of the segments with room for more."""
+        """A copy of the segments with another capacity."""
         made = Segments(self.y.shape[1], self.states.shape[1], capacity)
         k = made.count = self.count
         np.asarray(made._numbers)[:k], np.asarray(made.states)[:k] = (
@@ -174,9 +175,9 @@ class Segments:
 
 @cython.cclass
 class Walk:
-    """Base class of kernels that go through segments: `visit` is called along each one; `at` is its number.
+    """Base class of kernels that go through segments: `visit` is called for each; `at` is its number.
 
-    Of a large system `ahead` are the state vectors on a `span` of so many steps; else that is 0.
+    For a large system `ahead` holds the state vectors on `span` steps; otherwise span is 0.
     """
 
     def __init__(self, flows: Flows) -> None:
@@ -185,11 +186,11 @@ class Walk:
         self.ahead = np.zeros((self.span + 1, flows.size))
 
     def begins(self, segments: Segments) -> None:
-        """Stands before the first segment."""
+        """Prepares for the segments."""
         self.segments, self.at = segments, -1
 
     def go(self) -> int:
-        """Goes through all segments: 0 when done, -1 where the flow of the next one is missing."""
+        """Goes through all segments: 0 when done, -1 if the flow of the next segment is missing."""
         stopped: cython.int
         with cython.nogil:
             stopped = self._go()
@@ -213,7 +214,7 @@ class Walk:
         return 0
 
     def fill_ahead(self, slot: cython.Py_ssize_t) -> None:
-        """Fills the rows of `ahead` after the first, doubling the number of steps each time."""
+        """Fills the rows of `ahead` from the first, doubling the number of steps each time."""
         self.flows.fill_columns(slot, DOUBLINGS)
         n, y = self.flows.linear, np.asarray(self.ahead)
         powers, waves = np.asarray(self.flows.power)[slot], self.flows.waves
@@ -233,7 +234,7 @@ class Walk:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
-        """Hook called along the segment `at`, whose flow is at `slot` of the pool."""
+        """Hook called for the segment `at`, whose flow is at `slot` of the pool."""
         return 0
 
 
@@ -244,7 +245,7 @@ MISSING = -1
 class Steps:
     """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j.
 
-    x runs up to `length`, in units of `h` [s].
+    x runs from 0 to `length`, in units of `h` [s].
     """
 
     def __init__(self, flows: Flows, segments: Segments) -> None:
@@ -288,10 +289,10 @@ class Steps:
 def sample(
     steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
 ) -> int:
-    """Fills out from row `done` on with state vectors at increasing times [s]; returns how many rows are
-    filled.
+    """Fills `out` from row `done` on with state vectors at increasing times [s].
 
-    Fewer than all where a flow is missing; the last step serves later times too.
+    Returns the number of rows filled, which is less than all if a flow is missing. The last step also serves
+    later times.
     """
     with cython.nogil:
         done = _sample(steps, times, out, done)
@@ -332,16 +333,16 @@ def _sample(
 
 @cython.cclass
 class SegmentSequence(StateSequence):
-    """State sequence of a periodic motion, taken from its segments; angles run from their start to 2 pi.
+    """State sequence of a periodic motion, from its segments; angles run from their start to 2 pi.
 
-    The contacts that are held follow those that are computed, and never change their state.
+    The held contacts come after the computed ones, and never change state.
 
     Parameters
     ----------
     law : (contact, 4)
-        mu, k_u, k_v, n_0 of the computed contacts and of those that are held.
+        mu, k_u, k_v, n_0 of the computed contacts, then of the held ones.
     held : int
-        How many are.
+        Number of held contacts.
     tangential, normal : (contact, mode)
         Shapes of the displacements u and v of the computed contacts.
     """
@@ -357,7 +358,7 @@ class SegmentSequence(StateSequence):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def take(self, segments: Segments, duration: cython.double) -> cython.int:
-        """Takes segments that last for a duration [s]."""
+        """Takes the segments of a motion with a duration [s]."""
         k: cython.Py_ssize_t
         c: cython.int
         last: cython.Py_ssize_t = segments.count - 1
@@ -401,8 +402,8 @@ class SegmentSequence(StateSequence):
     ) -> cython.void:
         """Adds the change of a contact's state at the start of segment k.
 
-        `along` as of a `StateSequence`: at the end of a slip the place is a limit's. At a closing w = u where
-        the load vanishes, and that moves by -dn / n'.
+        `along` is that of a `StateSequence`: at the end of a slip the place follows a limit. At a closing w =
+        u where the load vanishes, and that instant moves by -dn / n'.
         """
         into: cython.int = self._state(segments, k, c)
         was: cython.int = self._state(segments, before, c)

@@ -1,4 +1,4 @@
-"""Simulates from a state: at one frequency, or through the phases of the scene's schedule."""
+"""Simulate from a state: at one frequency, or through the phases of the scene's schedule."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ def simulate(
     Parameters
     ----------
     scene : Scene
-        From `fcm.load_scene`; its own contacts, not those of its sweep.
+        From `fcm.load_scene`; with its own contacts, not those of its sweep.
     frequency : float
         Of the external forces [rad/s].
     cycles : float
         Periods of the force to simulate; need not be whole.
     state : State, optional
-        Where to start from: rest by default.
+        The state at the start; by default rest.
     options : TimeOptions, optional
-        Limits.
+        Limits of the simulation.
 
     Returns
     -------
@@ -53,8 +53,8 @@ def simulate(
     Raises
     ------
     SimulationError
-        If the frequency, the cycles or the state do not fit, or the contacts chatter without end; and of a
-        scene of which the exact motion is not computed (`fcm.model.scene.in_time`).
+        If the frequency, the cycles or the state are invalid, if the contacts chatter without end, or if the
+        exact motion of the scene is not computed (`fcm.model.scene.in_time`).
 
     Examples
     --------
@@ -73,8 +73,8 @@ def simulate_schedule(
 ) -> Motion:
     """The exact motion of a scene through its schedule, each phase continuing the last.
 
-    The state continues, and so does the phase angle of the forces: it does not jump when the frequency
-    does. By default it begins with the scene's own [start], or else at rest.
+    The state continues, and so does the phase angle of the forces: it does not jump when the frequency does.
+    By default the motion begins with the scene's [start], or at rest if it has none.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def march(
 def march_from(
     system: EquationsOfMotion, x: FloatArray, duration: float, options: TimeOptions = TIME
 ) -> tuple[Segments, FloatArray]:
-    """Segments from x = (q, q', f) at the forces' angle 0 on, with the state vector at their end."""
+    """Segments from x = (q, q', f) on, with the forces' angle 0 at the start; state vector at their end."""
     march = entered(system, x)
     march.lasts(duration, options.simulation.max_transitions)
     segments = _marched(system, march, options)

@@ -1,4 +1,4 @@
-"""The state of a scene at an instant: what a simulation starts from and ends with."""
+"""The state of a scene at an instant, from which a simulation starts or with which it ends."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from fcm.time_domain.integrator import March
 class State(Frozen):
     """The state at an instant: everything that the later motion depends on.
 
-    The slip motion of each contact is w = u - friction / k_u (2); its normal load follows from the
-    displacements. A friction force beyond the limit mu n is brought back to it.
+    The slip motion of each contact is w = u - friction / k_u (2); the displacements determine its normal
+    load. A friction force beyond the limit mu n is reduced to the limit.
 
     Examples
     --------
@@ -34,7 +34,7 @@ class State(Frozen):
 
     @staticmethod
     def rest(scene: Scene) -> State:
-        """The structure at rest in equilibrium with its preloads and static loads, which alone strain it.
+        """The structure at rest in equilibrium, strained only by its preloads and static loads.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class State(Frozen):
 
 
 def entry(system: EquationsOfMotion, state: State) -> tuple[FloatArray, Codes]:
-    """The state vector of a state, and contact states for the march to begin with."""
+    """The state vector of a state, and the contact states with which a march begins."""
     x = np.zeros(system.unknowns)
     try:
         x[system.q], x[system.p], x[system.f] = state.q, state.velocity, state.friction
@@ -81,7 +81,7 @@ def entry(system: EquationsOfMotion, state: State) -> tuple[FloatArray, Codes]:
 
 
 def entered(system: EquationsOfMotion, x: FloatArray, angle: float = 0.0) -> March:
-    """The march of a system, set to go on from x = (q, q', f) at an angle of the forces."""
+    """The march of a system, ready to continue from x = (q, q', f) at an angle of the forces."""
     march = system.march()
     if not march.enters(x, angle, system.level):
         raise SimulationError("the state to start from has numbers that are not finite")
@@ -94,6 +94,6 @@ def leave(system: EquationsOfMotion, y: FloatArray, angle: float) -> State:
 
 
 def set_angle(system: EquationsOfMotion, y: FloatArray, angle: float) -> None:
-    """Sets the phases of the forces in a state vector by their angle [rad]."""
+    """Sets the phases of the forces in a state vector to an angle [rad]."""
     angles = angle * np.array(system.harmonics)
     y[system.linear :: 2], y[system.linear + 1 :: 2] = np.sin(angles), np.cos(angles)

@@ -1,4 +1,4 @@
-"""Reasons for which a march from transition to transition stops."""
+"""Reasons why a march from transition to transition stops."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from enum import IntEnum
 
 
 class Stopped(IntEnum):
-    """Reason for which a march has stopped, and what lets it go on."""
+    """Reason why a march has stopped, and what lets it continue."""
 
     DONE = 0  # its time is over
     MISSING = 1  # the flow of a combination of states has to be made
-    FULL = 2  # of segments: there have to be more, or there are too many
+    FULL = 2  # the segments need more room, or are too many
     UNDECIDED = 3  # no combination of states lasts
-    PAUSED = 4  # for signals
-    LONG = 5  # a segment has more steps than can be waited for
+    PAUSED = 4  # to let signals be handled
+    LONG = 5  # a segment has too many steps

@@ -84,9 +84,9 @@ class Motion(Frozen):
         return out
 
     def measures(self, last: int | None = None) -> list[Measure]:
-        """Measures (amplitudes, means) of each cycle, or of the last ones only.
+        """Measures (amplitudes, means) of each cycle, or of the last cycles only.
 
-        A cycle that ends a phase early is measured as far as it goes.
+        An incomplete cycle at the end of a phase is measured as far as it goes.
         """
         chosen = self.cycles if last is None else self.cycles[-last:]
         return [measure(cycle) for cycle in chosen]

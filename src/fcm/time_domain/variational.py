@@ -1,23 +1,22 @@
-"""The derivative of the motion by its initial state, and by the frequency or the level of the forces.
+"""The derivative of the motion by its initial state, and by the frequency or the force level.
 
-Along a flow it is moved as by `VariationalFlow`. Across a transition whose instant moves with the start or
-with the frequency it is the saltation matrix
+Along one flow the derivative by the start is the exponential of the flow's matrix (`VariationalFlow`). Across
+a transition whose instant varies with the start or the frequency, it is multiplied by the saltation matrix
 
     S = R + (F+ - R F-) g / (g F-),    F = A y at the transition,
 
-with g the row that vanishes there and R the derivative of what the transition does to the state.
+with g the row that vanishes there, and R the derivative of the change of state at the transition.
 
-Along one flow the derivative by the start is the exponential of the flow's matrix (`VariationalFlow`). The
-frequency acts on the forces alone, whose amplitudes may also depend on it. At a fixed time t
+The frequency acts only on the forces, whose amplitudes may also depend on it. At a fixed time t
 
     d sin(h omega t) / d omega = h t cos(h omega t),    d cos(h omega t) / d omega = -h t sin(h omega t)
 
-and the derivative of the columns of the forces is known with the flow. Of the motion itself only the angle of
-the forces is needed. The level of the forces, a factor of sin and cos, acts as a start does at which they
-alone differ.
+and the derivative of the columns of the forces is stored with the flow. Of the motion itself only the phases
+of the forces are needed. The force level is a factor of sin and cos; its derivative is that by a start at
+which only these differ.
 
-Along one direction the derivative is known at many instants (`Directional`). Instants within one step share
-its series, as those of the extremes of many displacements do.
+`Directional` is the derivative along one direction at many instants. Instants within one step share its
+series, as the extremes of many displacements do.
 """
 
 from __future__ import annotations
@@ -54,11 +53,11 @@ else:
 
 @cython.cclass
 class VariationalFlow:
-    """`follow` moves the rows of `columns` (unknowns + 2, size) along a flow.
+    """Derivatives of the state vector along a flow: `follow` moves the rows of `columns`, (unknowns + 2, d).
 
-    Row k < unknowns is a derivative of the state vector by its start; the row after them that by the
-    frequency, at a fixed time, or by the level of the forces; of the last row, the state vector, only the
-    forces' angle is moved. paced: 1 for the derivative by the frequency, 0 for that by the level.
+    Row k < unknowns is the derivative by component k of the start. The next row is that by the frequency, at
+    a fixed time, or by the force level. The last row is the state vector, of which only the forces' phases
+    are moved. paced: 1 for the derivative by the frequency, 0 for that by the level.
     """
 
     def __init__(self, flows: Flows, unknowns: cython.Py_ssize_t) -> None:
@@ -73,7 +72,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.int:
-        """Moves the derivatives along a flow, by a position in steps."""
+        """Moves the derivatives along a flow by a position in steps."""
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
         j: cython.int
@@ -143,7 +142,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _times(self, matrix: cython.double[:, ::1], rows: cython.Py_ssize_t) -> cython.int:
-        """Multiplies the first so many derivatives by the matrix of a flow."""
+        """Multiplies the first `rows` derivatives by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         k: cython.Py_ssize_t
         done: cython.Py_ssize_t = 0
@@ -153,7 +152,7 @@ class VariationalFlow:
                 np.matmul(columns, matrix, out=room)
                 columns[:] = room
             return 0
-        if cython.compiled:  # four rows at once, see the .pxd: every number is the same either way
+        if cython.compiled:  # four rows at once, see the .pxd: the numbers are the same either way
             row, other = cython.address(self.columns[0, 0]), cython.address(matrix[0, 0])
             stride: cython.Py_ssize_t = self.columns.shape[1]
             done = fours_times(row, stride, rows, other, n, cython.address(self._room[0, 0]))  # type: ignore[name-defined]  # noqa: F821
@@ -165,7 +164,7 @@ class VariationalFlow:
     @cython.nogil
     @cython.exceptval(check=False)
     def _row_times(self, matrix: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
-        """Multiplies one of the derivatives by the matrix of a flow."""
+        """Multiplies derivative k by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t = 0
@@ -175,7 +174,7 @@ class VariationalFlow:
         d: cython.double
         for i in range(n):
             self._room[0, i] = 0.0
-        while p + 4 <= n:  # four together, to go through the sums less often
+        while p + 4 <= n:  # four together, to pass through the sums less often
             a, b, c, d = (
                 self.columns[k, p],
                 self.columns[k, p + 1],
@@ -203,7 +202,7 @@ class VariationalFlow:
     def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.int:
         """Moves the derivatives by the initial state over a fraction x of a step.
 
-        By its matrix or, where that is more work, row by row.
+        It uses the matrix of the fraction or, if that is more work, goes row by row.
         """
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
@@ -283,16 +282,13 @@ class VariationalFlow:
         return 0
 
 
-# an exit passed this slowly, relative to its terms, is touched
-
-
 @cython.cclass
 class Derivative(VariationalFlow):
-    """Derivative of a motion by its initial x = (q, q', f), and by the frequency or the level of the forces.
+    """Derivative of a motion by its initial x = (q, q', f), and by the frequency or the force level.
 
-    Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
-    them that by the frequency, at a fixed time, or by the level; the last row is the state vector itself;
-    `rate` is A y there.
+    Row k < unknowns of `columns` is the derivative of the state vector by component k of x. The next row is
+    that by the frequency, at a fixed time, or by the level. The last row is the state vector itself; `rate`
+    is A y there.
     """
 
     def __init__(self, flows: Flows, unknowns: int = 0) -> None:
@@ -301,7 +297,7 @@ class Derivative(VariationalFlow):
         self.rate, self._rates = np.zeros(flows.size), np.zeros((2, flows.size))
 
     def begins(self, segments: Segments, by_level: bool = False) -> None:
-        """Sets the derivative at the start of the segments; by the level, at the forces' angle 0."""
+        """Sets the derivative at the start of the segments; for the level, the forces' angle there is 0."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -322,7 +318,7 @@ class Derivative(VariationalFlow):
     @cython.nogil
     @cython.exceptval(check=False)
     def _stand(self, segments: Segments) -> cython.void:
-        """Sets the derivative at the start of the first segment, with the friction of its states."""
+        """Goes to the start of the first segment, with the friction derivatives of its states."""
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         self.at, self.position = 0, 0.0
@@ -334,7 +330,7 @@ class Derivative(VariationalFlow):
     def go(self, segments: Segments, last: int, position: float) -> int:
         """Moves the derivative to a position in a segment.
 
-        Returns the segment whose flow is missing, or -1 when it is there.
+        Returns the segment whose flow is missing, or -1 if it has arrived.
         """
         segment: cython.Py_ssize_t = last
         end: cython.double = position
@@ -350,12 +346,10 @@ class Derivative(VariationalFlow):
         by_state: cython.double[:, ::1],
         by_parameter: cython.double[::1],
     ) -> int:
-        """Fills the derivatives of x at the end of segments that last for periods.
+        """Fills the derivatives of x at the end of segments that last for a number of periods.
 
-        A higher frequency shortens the periods.
-
-        By x at their start, (unknown, unknown), and by the frequency or the level (unknown,); returns what
-        `go` does.
+        by_state (unknown, unknown): by x at the start. by_parameter (unknown,): by the frequency, which also
+        shortens the periods, or by the level. Returns what `go` returns.
         """
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -394,7 +388,7 @@ class Derivative(VariationalFlow):
     def _reach(
         self, segments: Segments, last: cython.Py_ssize_t, position: cython.double
     ) -> cython.Py_ssize_t:
-        """Moves the derivative to a position in a segment; of the state vector only the forces' angle."""
+        """Moves the derivative to a position in a segment; of the state vector only the forces' phases."""
         slot: cython.Py_ssize_t
         new: cython.Py_ssize_t
         while True:
@@ -418,7 +412,7 @@ class Derivative(VariationalFlow):
     @cython.nogil
     @cython.exceptval(-1, check=False)
     def _arrive(self, segments: Segments, slot: cython.Py_ssize_t) -> cython.int:
-        """Sets the state vector's row to the present position in the segment."""
+        """Sets the state vector's row to the state at the present position in the segment."""
         i: cython.Py_ssize_t
         u: cython.Py_ssize_t = self.unknowns
         for i in range(self.flows.size):
@@ -434,7 +428,7 @@ class Derivative(VariationalFlow):
     ) -> cython.void:
         """Carries the derivative across the transition that ends segment i.
 
-        The state is continuous there, only its rate jumps.
+        The state is continuous there; only its rate jumps.
         """
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
@@ -475,7 +469,7 @@ class Derivative(VariationalFlow):
         i: cython.Py_ssize_t,
         every: cython.bint,
     ) -> cython.void:
-        """Sets the friction in row k as segment i demands, for all contacts or those that changed."""
+        """Sets the friction in row k by the states of segment i: all contacts, or only those that changed."""
         j: cython.Py_ssize_t
         c: cython.Py_ssize_t = self.flows.contacts
         f: cython.Py_ssize_t = 2 * self.flows.modes
@@ -496,9 +490,7 @@ class Derivative(VariationalFlow):
 class Directional(Derivative):
     """Derivative along one direction of x = (q, q', f), while the frequency changes by `pace`.
 
-    It is the first row of `columns`.
-
-    `done` is how many instants have been come to.
+    It is the first row of `columns`. `done` is the number of instants evaluated.
     """
 
     def __init__(self, flows: Flows) -> None:
@@ -524,7 +516,7 @@ class Directional(Derivative):
     def at_places(self, segments: Segments, places: cython.double[:, ::1], out: cython.double[:, ::1]) -> int:
         """Fills rows of out with the change of q at ordered places (segment, position).
 
-        The segment whose flow is missing, or -1 when all are filled.
+        Returns the segment whose flow is missing, or -1 if all are filled.
         """
         missing: cython.Py_ssize_t
         with cython.nogil:
@@ -583,7 +575,7 @@ class Directional(Derivative):
     @cython.nogil
     @cython.exceptval(check=False)
     def _sum(self, x: cython.double, out: cython.double[:, ::1]) -> cython.void:
-        """Change of the displacements at a fraction x of the step."""
+        """Computes the change of the displacements at a fraction x of the step."""
         i: cython.Py_ssize_t
         j: cython.int
         k: cython.Py_ssize_t = self.done
