@@ -154,6 +154,26 @@ def test_rows_without_names_beside_named_ones_are_not_guessed(tmp_path):
     assert modal(tmp_path, stiffness="model.pch:KAAX", mass="M.matrix", dofs=list(ROWS)).dofs == ROWS
 
 
+@pytest.mark.parametrize("key", ["structure.damping", "cyclic.mistuning.stiffness"])
+def test_further_matrices_without_names_beside_named_ones_are_not_guessed(tmp_path, key):
+    write(tmp_path, model__pch=PUNCH)
+    rows = np.diag([2.0, 1.0, 1.0, 3.0]).tolist()
+    one = data(stiffness="model.pch:KAAX", mass="model.pch:MAAX")
+    if key == "structure.damping":
+        write(tmp_path, C__matrix=BOEING)
+        one["structure"]["damping"] = "C.matrix"
+    else:
+        one["cyclic"] = {
+            "sectors": 4,
+            "engine_order": 1,
+            "mistuning": {"stiffness": rows, "factors": [1.0] * 4},
+        }
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(one, "test.toml", tmp_path)
+    said = f"{key}: its rows have no names, as other matrices have; give structure.dofs in its order"
+    assert said in str(caught.value)
+
+
 def test_harwell_boeing_that_ends_within_a_number_is_cut_off(tmp_path):
     write(tmp_path, K__matrix=BOEING.rstrip()[:-6])
     assert "line 9 ends within a number" in refused(tmp_path, stiffness="K.matrix", dofs=list(ROWS))

@@ -21,6 +21,7 @@ LEVEL = "level"  # force level: a factor on all amplitudes
 TOTAL = "total"  # key of the totals of numbers given for each pair, if areas are given too
 STOP = "stop"  # of a contact without friction, which has no tangential direction
 _NO_FRICTION = "; as it has no tangential direction, it has no friction"
+_OF_FRICTION = "mu", "k_u", "tangential"  # keys of a contact that a stop does not have
 OF_SECTOR = re.compile(r"@\d+")  # suffix of the names of contacts of a mistuned ring
 NUMBERS = {  # keys of numbers by kind of table
     "contact": ("n_0", "gap", "mu", "k_u", "k_v"),
@@ -75,9 +76,9 @@ class Addresses:
     def _stop_meant(self, key: str) -> str:
         """Hint for a number of friction of a stop, which has none; or ''."""
         label, _, field = key.rpartition(".")
-        stops = [(i, one) for i, one in enumerate(self.parts["contact"]) if STOP in one]
+        stops = [(i, one) for i, one in enumerate(self.parts["contact"]) if _lacks(one, field)]
         labels = {f"contact.{one}" for i, draft in stops for one in (i, draft["name"], draft.get("group"))}
-        return _NO_FRICTION if label in labels and field in NUMBERS["contact"] else ""
+        return _NO_FRICTION if label in labels else ""
 
     def _forces_meant(self) -> str:
         """Hint for the key of the force level, which is not swept: sweep the amplitudes, or use --level."""
@@ -134,7 +135,7 @@ class Addresses:
             draft = self.parts[kind][index]
             if field not in NUMBERS[kind] or not _has(draft, field):
                 other = {"n_0": "gap", "gap": "n_0"}.get(field, "")
-                hint = f"; it is given by {other}" if other in draft else _NO_FRICTION * (STOP in draft)
+                hint = f"; it is given by {other}" if other in draft else _NO_FRICTION * _lacks(draft, field)
                 mistakes.add(path, f"{quoted(labels[kind, index])} has no {quoted(field)} to sweep{hint}")
                 return ()
         contacts = self._together(
@@ -269,7 +270,12 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
 
 def _has(draft: Mapping[str, Any], key: str) -> bool:
     """Whether a contact, force or load has a number or direction; a stop has none of friction."""
-    return key in draft and not (STOP in draft and key in ("mu", "k_u", "tangential"))
+    return key in draft and not _lacks(draft, key)
+
+
+def _lacks(draft: Mapping[str, Any], key: str) -> bool:
+    """Whether a contact is a stop and a number or direction is of friction, which a stop does not have."""
+    return STOP in draft and key in _OF_FRICTION
 
 
 def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:

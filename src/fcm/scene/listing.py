@@ -435,7 +435,7 @@ def _of_range(scene: Scene) -> list[str]:
     undamped = np.flatnonzero(inside & (modal.damping == 0.0)) + 1
     if undamped.size:
         said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")
-    if lacks_modes_above(scene, ranges[-1][1]):
+    if lacks_modes_above(scene, MESSAGES.range_above * ranges[-1][1]):
         where = f"{modal.frequency.max() / UNIT[unit]:.6g} {unit}"
         said.append(f"the highest mode is at {where}: a contact lacks the flexibility of all modes above")
     return said

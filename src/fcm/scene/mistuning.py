@@ -115,7 +115,7 @@ def read_blade(
         if matrices is not None and found["rows"] is not None:
             _check_apart(table, matrices, found["rows"])
     elif "stiffness" in table.data:
-        found["stiffness"] = _stiffness(table, files, dofs)
+        found["stiffness"] = _stiffness(table, files, dofs if matrices is None else matrices.dofs)
     elif of_matrices:
         table.wrong("blade", "missing; name the degrees of freedom of the blade, or give its stiffness")
 
@@ -159,7 +159,7 @@ def _stiffness(table: Section, files: Files, dofs: Names | None) -> Any:
     from fcm.scene.row_names import in_order
     from fcm.scene.structure_table import matrix_of
 
-    own = None if dofs is None else Names(name for name in dofs if not name.startswith(NEXT))
+    own = None if dofs is None else type(dofs)(name for name in dofs if not name.startswith(NEXT))
     matrix = in_order(table, "stiffness", matrix_of(table, "stiffness", table.data["stiffness"], files), own)
     if matrix is None or own is None:
         return None

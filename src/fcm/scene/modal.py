@@ -13,7 +13,6 @@ from fcm.scene.errors import choices, counted, kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.names import Names, checked_names
-from fcm.scene.options import MESSAGES
 from fcm.scene.ring_modes import complex_row, read_diameters, travelling
 from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
@@ -58,18 +57,21 @@ def read_modal(
 
 
 def lacks_modes_above(scene: Scene, high: float) -> bool:
-    """Whether modes above a frequency [rad/s] may be missing, which give a contact flexibility."""
+    """Whether the highest mode is below a frequency [rad/s], and modes above it may be missing.
+
+    Modes that are missing take flexibility from the contacts.
+    """
     modal = scene.modal
     known = modal.added or modal.complete or modal.frequency.size == 1 or not scene.contacts
-    return bool(not known and modal.frequency.max() < MESSAGES.range_above * high)
+    return bool(not known and modal.frequency.max() < high)
 
 
 def notes_of_modes_above(scene: Scene) -> list[str]:
     """A note that modes may be missing within the range; none for as many modes as degrees of freedom."""
     if not scene.has_range or scene.ring is not None or len(scene.modal.frequency) == len(scene.modal.dofs):
         return []
-    high, unit = scene.frequency_range[1] * max(one.harmonic for one in scene.forces), scene.frequency_unit
-    if not lacks_modes_above(scene, high / MESSAGES.range_above):
+    harmonic, unit = max((one.harmonic for one in scene.forces), default=1), scene.frequency_unit
+    if not lacks_modes_above(scene, scene.frequency_range[1] * harmonic):
         return []
     where = f"{scene.modal.frequency.max() / UNIT[unit]:.6g} {unit}"
     return [

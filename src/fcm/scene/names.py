@@ -69,6 +69,10 @@ class RowNames(Names):
         return "; one that is held has no row" if motion_of(name) else ""
 
 
+class RowNamesOfFiles(RowNames):
+    """Row names that the files of the matrices give, in the order of the first file."""
+
+
 def motion_of(name: str) -> str:
     """Node and direction of a name as `at_node`; empty for a number alone, which means a row."""
     return "" if name.isdecimal() else at_node(name)

@@ -42,7 +42,7 @@ def fault_of_number(text: str) -> str:
     >>> fault_of_number("30 %")
     '"30 %" has "%" behind the number: write 0.3'
     >>> fault_of_number("30deg")
-    '"30deg" has "deg" behind the number: write 0.523599'
+    '"30deg" has "deg" behind the number: write 0.523598775598'
     >>> fault_of_number("nan"), fault_of_number("1e999")
     ('"nan" is not a number', '"1e999" is too large for a number: 1.8e308 is the largest')
     """
@@ -54,6 +54,6 @@ def fault_of_number(text: str) -> str:
         return f"{quoted(text)} is hexadecimal: write it in decimals"
     if ((match := _BEHIND.fullmatch(text)) and match[2][0].isalpha()) or (match and match[2][0] in "%°[("):
         factor = {"%": 0.01, "deg": radians(1.0), "\u00b0": radians(1.0)}.get(match[2].strip(), 1.0)
-        meant = match[1] if factor == 1.0 else f"{(number_in(match[1]) or 0.0) * factor:.6g}"
+        meant = match[1] if factor == 1.0 else f"{(number_in(match[1]) or 0.0) * factor:.12g}"
         return f"{quoted(text)} has {quoted(match[2])} behind the number: write {meant}"
     return f"{quoted(text)} is not a number"

@@ -15,7 +15,7 @@ from fcm.scene.files import DataFileError, Files, UnreadableError
 from fcm.scene.formats.calculix import calculix_names
 from fcm.scene.formats.harwell_boeing import ansys_names
 from fcm.scene.formats.labelled import Labelled
-from fcm.scene.names import Names, RowNames, checked_names
+from fcm.scene.names import Names, RowNames, RowNamesOfFiles, checked_names
 from fcm.scene.section import Section
 
 _DIRECTION = re.compile(r"r?[xyz]|[1-6]", re.IGNORECASE)  # direction of a node
@@ -28,7 +28,7 @@ def row_names(section: Section, files: Files, labels: Sequence[str]) -> Names | 
         section.wrong("", "has both dofs and file; give the names of the rows once")
         return None
     if value is None and labels:
-        return RowNames(labels)
+        return RowNamesOfFiles(labels)
     if value is None:
         section.wrong("dofs", 'missing; give a list of the names of the rows, or a file such as "dofs.txt"')
         return None
@@ -66,8 +66,12 @@ def labels_of(matrices: Iterable[Labelled | None]) -> tuple[str, ...]:
 def in_order(section: Section, key: str, given: Labelled | None, dofs: Names | None) -> Any:
     """A matrix with its rows reordered to those of the structure; unchanged if its file names no rows.
 
-    Rows that the file lacks are zero, since programs omit rows without mass. None after a mistake.
+    Rows that the file lacks are zero, since programs omit rows without mass. None after a mistake, which is
+    also a matrix without names if the order of the rows is that of another file.
     """
+    if given is not None and not given.rows and isinstance(dofs, RowNamesOfFiles):
+        section.wrong(key, f"its rows have no names, as other matrices have; give {dofs.key} in its order")
+        return None
     if given is None or not given.rows or dofs is None:
         return None if given is None else given.matrix
     names = [dofs.find(one) for one in given.rows]

@@ -60,12 +60,6 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, StructureM
     given = {key: _matrix(section, key, files) for key in ("stiffness", "mass")}
     labels = labels_of(given.values())
     dofs = row_names(section, files, labels)
-    if labels and not {"dofs", "file"} & section.data.keys():
-        for key, one in given.items():
-            if one is not None and not one.rows:
-                section.wrong(
-                    key, "its rows have no names, as those of the other matrix have; give dofs in its order"
-                )
     K, M = (in_order(section, key, one, dofs) for key, one in given.items())
     rows = None if K is None else K.shape[0]
     if K is not None and M is not None and M.shape[0] != rows:
