@@ -189,6 +189,22 @@ def test_peaks_that_no_motion_stays_at_are_said_to_be_unstable(scatter_of, respo
     assert fields["peak_untold_share"].values.tolist() == [[0.25]]
 
 
+def test_percentiles_without_bounds_as_errors_are_unknown(scatter_of, response):
+    from fcm.cli.curves import as_table
+
+    curves = [curve_with([1] * 7) for _ in range(11)]
+    for height, curve in enumerate(curves, 1):
+        curve.peaks["u"] = curve.peaks["u"]._replace(
+            amplitude=float(height), error=0.125 if height < 3 else np.nan
+        )
+    one = scatter_of(curves)
+    printed = without_nan(
+        summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
+    )
+    said = "the bounds of 25, 50 and 75 % are unknown where there is a -: without the draws whose errors"
+    assert f"{said} are unknown, too few are left" in as_table(printed, "rad/s")
+
+
 def test_percentiles_of_peaks_have_bounds_by_errors_and_by_the_number_of_draws(scatter_of, response):
     """By hand: of peaks 1 to 11, an eighth in error, the quarter is between the first and the sixth."""
     from fcm.cli.curves import as_table

@@ -7,7 +7,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-import fcm as fcm_module
+from fcm import respond
 from fcm.cli.track import as_table
 from fcm.response.least_peak import PeakTask
 from fcm.response.optimum import optima, optimise
@@ -244,8 +244,6 @@ def test_a_peak_that_leaves_the_range_is_followed_with_more_harmonics_too(fcm, t
     )
     found = json.loads(fcm("respond", "scene.toml", "--json").out)["optimum"][0]
     swept = LEAVES + "[response]\nfrequency = [89.15, 119.08]\nharmonics = 4\n"
-    curves = fcm_module.respond(
-        scene_from_dict(tomllib.loads(swept + '[sweep]\n"contact.left.n_0" = [21, 30, 33]\n'))
-    )
+    curves = respond(scene_from_dict(tomllib.loads(swept + '[sweep]\n"contact.left.n_0" = [21, 30, 33]\n')))
     least = float(curves.peak_amplitude.sel(dof="rad").min())
     assert found["value"] < least

@@ -332,11 +332,8 @@ class FallsAndEnds(LowestPeakSearch):
 
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
-        self.visited_values, self.visited, self.setup = (
-            {},
-            set(),
-            SimpleNamespace(span=self.span, options=TRACKING),
-        )
+        self.visited_values, self.visited = {}, set()
+        self.setup = SimpleNamespace(span=self.span, options=TRACKING)
         self.pieces = [SimpleNamespace(s=np.array(self.span))]
 
     def best(self):

@@ -29,6 +29,7 @@ from fcm.cli.columns import (
 )
 from fcm.cli.jump_table import is_seen, jump_table, resolution_of, stable_table, unknown_stability_table
 from fcm.cli.limits import SENTENCES
+from fcm.quoting import listed
 from fcm.rotational_dofs import MOST_DOFS, dof_unit, greatest_first, is_rotation
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
@@ -227,7 +228,7 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
             for (low, needed), high in zip(beyond.items(), reversed(beyond), strict=True)
             if float(low) <= float(high)
         )
-        lines.append(f"- of {_in_words(lacking)}: a percentile of too few curves. It takes {needs}")
+        lines.append(f"- of {listed(lacking)}: a percentile of too few curves. It takes {needs}")
     if found["peak"] and dofs:
         lines.append(
             "each line is in its own order: a peak and a frequency of one column are not of one draw"
@@ -289,25 +290,16 @@ def _of_intervals(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:
     ]
     if unbounded:
         lines.append(
-            f"- of from or to of {_in_words(unbounded)} %: some errors are unknown, the others are too few"
+            f"the bounds of {listed(unbounded)} % are unknown where there is a -: without the draws whose "
+            "errors are unknown, too few are left"
         )
     short_of = {percent: needed for percent, needed in found["curves_needed"].items() if draws < needed}
     if short_of:
-        named = _in_words(list(short_of))
+        named = listed(list(short_of))
         few = f"{draws} draw is" if draws == 1 else f"{draws} draws are"
         needed = max(short_of.values())
         lines.append(f"{few} too few for both bounds of {named} %: {needed} are needed")
     return lines
-
-
-def _in_words(names: Sequence[str]) -> str:
-    """Percentiles or names of lines as a list in words.
-
-    >>> _in_words(["5", "50", "95"]), _in_words(["5"])
-    ('5, 50 and 95', '5')
-    """
-    *before, last = names
-    return f"{', '.join(before)} and {last}" if before else last
 
 
 def _of_large_errors(found: Mapping[str, Any], dofs: Sequence[str]) -> list[str]:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Measured
+from fcm.quoting import listed
 from fcm.units import in_unit
 
 _EACH = "are", "their standard errors are"
@@ -33,15 +34,6 @@ def misfit(data: Measured, residual: FloatArray, error: FloatArray) -> float:
     square = residual[:, 0] ** 2 if data.damping is not None else (residual**2).sum(axis=1)
     size = data.frequency if data.damping is not None else data.amplitude.max()
     return float(np.sqrt((square * (error[:, 0] / size) ** 2).mean()))
-
-
-def _listed(parts: list[str]) -> str:
-    """Parts of a sentence joined by commas and "and".
-
-    >>> _listed(["mu"]), _listed(["mu", "k_u"]), _listed(["mu", "k_u", "n_0"])
-    ('mu', 'mu and k_u', 'mu, k_u and n_0')
-    """
-    return " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
 
 
 def _groups(pairs: tuple[Pair, ...]) -> list[list[Pair]]:
@@ -169,7 +161,7 @@ def _of_outliers(part: FittedData) -> str:
     alone = (
         f"point {numbers[0]} of {points} stands alone"
         if len(numbers) == 1
-        else f"points {_listed(numbers)} of {points} stand alone"
+        else f"points {listed(numbers)} of {points} stand alone"
     )
     return (
         f"{part.measured.file}: {alone}, at least {part.isolated:.0f} times as far from the curve as the "
@@ -238,15 +230,15 @@ class Fitted:
         ]:
             each, error = ("is", "its standard error is") if len(hardly) == 1 else _EACH
             sizes = [self._relative(k) for k in hardly]
-            errors = _listed(sizes if len(set(sizes)) > 1 else sizes[:1])
+            errors = listed(sizes if len(set(sizes)) > 1 else sizes[:1])
             said.append(
-                f"{_listed([self.keys[k] for k in hardly])} {each} hardly determined by these data: "
+                f"{listed([self.keys[k] for k in hardly])} {each} hardly determined by these data: "
                 f"{error} {errors}"
             )
         for pairs in _groups(self.alike):
             among = dict.fromkeys(self.keys[k] for pair in pairs for k in pair[:2])
-            told = _listed([_told(self.keys[i], self.keys[j], power) for i, j, power in pairs])
-            said.append(f"{_listed(list(among))} cannot be distinguished: these data determine {told} alone")
+            told = listed([_told(self.keys[i], self.keys[j], power) for i, j, power in pairs])
+            said.append(f"{listed(list(among))} cannot be distinguished: these data determine {told} alone")
         for part in self.data:
             if part.unreached:
                 name = part.measured.file
